@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.makers import MAKERS, scenario
+from benchmarks.worlds.makers import WORLD_MAKERS, scenario
 from benchmarks.worlds.odd.kinds import ODD_KINDS, odd_world
 from benchmarks.worlds.odd.tasks import EMPTY_REGION
 from benchmarks.worlds.scenes import write
@@ -59,7 +59,7 @@ def named(text: str) -> Asked:
 
 def all_kinds() -> list[str]:
     """Return the names of all kinds: the odd ones, then those of benchmarks.worlds.makers."""
-    return [*ODD_KINDS, *(OWN_PREFIX + kind for kind in MAKERS)]
+    return [*ODD_KINDS, *(OWN_PREFIX + kind for kind in WORLD_MAKERS)]
 
 
 def worlds_of(kinds: list[str], seed: int, count: int) -> list[Asked]:
@@ -67,7 +67,7 @@ def worlds_of(kinds: list[str], seed: int, count: int) -> list[Asked]:
     asked = []
     for number in range(seed, seed + count):
         for kind in kinds:
-            tasks = sorted(MAKERS[kind.removeprefix(OWN_PREFIX)]) if kind.startswith(OWN_PREFIX) else [0]
+            tasks = sorted(WORLD_MAKERS[kind.removeprefix(OWN_PREFIX)]) if kind.startswith(OWN_PREFIX) else [0]
             asked += [Asked(kind, number, task) for task in tasks]
     return asked
 

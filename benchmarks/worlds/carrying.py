@@ -8,7 +8,7 @@ import numpy as np
 from shapely import Point, Polygon, union_all
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.floorplans import ROOM_SIDES, SNUG, FloorPlan, PlanDoor, Sides, corridor, random_plan
+from benchmarks.worlds.floorplans import ROOM_SIDES, SNUG, FloorPlan, PlanDoor, SidesByCount, corridor, random_plan
 from benchmarks.worlds.furniture import ell, rectangle
 from benchmarks.worlds.placing import colour, face, furniture, lay, stand
 from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
@@ -41,7 +41,7 @@ def door_widths(least: float, narrow: bool) -> tuple[int, int]:
 
 
 def to_corner_world(
-    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = ROOM_SIDES, fewest: int = 1
+    rng: np.random.Generator, seed: int, narrow: bool, sides: SidesByCount = ROOM_SIDES, fewest: int = 1
 ) -> RandomScenario | None:
     """Return a world of task (v): push the square into the northeast corner of the floor.
 
@@ -60,7 +60,12 @@ def to_corner_world(
 
 
 def next_room_world(
-    rng: np.random.Generator, seed: int, narrow: bool, task: int = 6, shape: str = "square", sides: Sides = ROOM_SIDES
+    rng: np.random.Generator,
+    seed: int,
+    narrow: bool,
+    task: int = 6,
+    shape: str = "square",
+    sides: SidesByCount = ROOM_SIDES,
 ) -> RandomScenario | None:
     """Return a world of task (vi), push the square, or (ix), push the L-shaped object, into the next room."""
     outline, least = load(rng, shape)
@@ -72,7 +77,7 @@ def next_room_world(
 
 
 def through_door_world(
-    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = ROOM_SIDES
+    rng: np.random.Generator, seed: int, narrow: bool, sides: SidesByCount = ROOM_SIDES
 ) -> RandomScenario | None:
     """Return a world of task (vii): push the brick through a door, and so into any other room."""
     outline, least = load(rng, "brick")

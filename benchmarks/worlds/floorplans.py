@@ -86,8 +86,8 @@ ROOM_SIDES = {
     3: (14, 19),
     6: (14, 19),
 }  # least and greatest inner side along an axis with so many rooms
-Sides = Mapping[int, tuple[int, int]]
-SNUG: Sides = dict.fromkeys(ROOM_SIDES, (18, 24))  # of rooms as they are mostly drawn
+SidesByCount = Mapping[int, tuple[int, int]]
+SNUG: SidesByCount = dict.fromkeys(ROOM_SIDES, (18, 24))  # of rooms as they are mostly drawn
 
 
 def random_plan(
@@ -98,7 +98,7 @@ def random_plan(
     closed: bool = False,
     ells: float = 0.15,
     loops: float = 0.0,
-    sides: Sides = ROOM_SIDES,
+    sides: SidesByCount = ROOM_SIDES,
 ) -> FloorPlan:
     """Return a random plan of some rooms, each joined to the next by a door.
 
@@ -158,7 +158,7 @@ def _mirrored(part: Polygon, width: int, height: int, east: bool, north: bool) -
     return box(west, south, right, top)
 
 
-def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: Sides) -> list[tuple[int, int]]:
+def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: SidesByCount) -> list[tuple[int, int]]:
     low, high = sides[count]
     spans, at = [], wall
     for _ in range(count):
@@ -169,7 +169,7 @@ def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: S
 
 
 def _rectangles(
-    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: Sides
+    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: SidesByCount
 ) -> tuple[list[Rect], Cell]:
     """Return one rectangle for each cell of the layout, and the table's size; outer sides are drawn in a little."""
     columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least, sides)

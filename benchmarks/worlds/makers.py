@@ -17,7 +17,7 @@ from benchmarks.worlds.plain import PLAIN
 from benchmarks.worlds.scenes import RandomScenario, write
 from benchmarks.worlds.walking import WALKING
 
-MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE_MAKERS}
+WORLD_MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE_MAKERS}
 STREAMS = {"wide": (), "plain": (1,), "snug": (2,), "loose": (3,)}
 UNABLE_EVERY = 12  # seeds
 MAX_WORLD_TRIES = 20_000
@@ -39,14 +39,14 @@ def scenario(task: int, seed: int, kind: str = "wide") -> RandomScenario:
     ValueError
         When there is no such task, seed or kind.
     """
-    if kind not in MAKERS:
-        raise ValueError(f"no worlds are {kind}: they are {', '.join(MAKERS)}")
-    if task not in MAKERS[kind] or seed < 0:
+    if kind not in WORLD_MAKERS:
+        raise ValueError(f"no worlds are {kind}: they are {', '.join(WORLD_MAKERS)}")
+    if task not in WORLD_MAKERS[kind] or seed < 0:
         raise ValueError(f"no task {task} with seed {seed}: tasks are 1 to 9, seeds from 0")
     rng = np.random.default_rng([task, seed, *STREAMS[kind]])
     unable = seed % UNABLE_EVERY == UNABLE_EVERY - 1
     for _ in range(MAX_WORLD_TRIES):
-        made = MAKERS[kind][task](rng, seed, unable)
+        made = WORLD_MAKERS[kind][task](rng, seed, unable)
         if made is not None:
             return made
     raise RuntimeError(f"no world found for task {task}, seed {seed}")

@@ -24,7 +24,7 @@ from planner.screen.unseen_gain import expected_gain
 
 Mask = Bools  # (rows, columns)
 Squares = NDArray[np.int64]  # flat indices on a screen: row * columns + column
-FIFTHS = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
+FIFTHS_PER_SQUARE = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
 LEVEL_MAX_PROBABILITY = (SPACE, 0.15, 0.3, 0.45)  # by level: a square occupied with at most this may be crossed (tuned)
 UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
@@ -101,7 +101,7 @@ class CostMaps:
         for level in range(UNSEEN + 1):
             far = self.distances[level].ravel()[squares]
             if (far != UNREACHED).any():
-                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS + LEVEL_COST * level)
+                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS_PER_SQUARE + LEVEL_COST * level)
         return None
 
     @cached_property
@@ -158,7 +158,7 @@ class CostMaps:
 
         Where no way is sure, the straight distance stands instead.
         """
-        lengths = self.distances[0].ravel()[squares] / FIFTHS
+        lengths = self.distances[0].ravel()[squares] / FIFTHS_PER_SQUARE
         rows, columns = np.divmod(squares, self.floor.shape[1])
         return np.where(lengths < 0, np.hypot(columns - self.here[0], rows - self.here[1]), lengths)
 

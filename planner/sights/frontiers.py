@@ -16,7 +16,7 @@ from geometry.raster.geodesic import UNREACHED
 from kb.mapping.occupancy import OPEN
 from kb.world.model import SPACE, Node
 from kb.world.rooms import Door
-from planner.screen.projection import FIFTHS, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
+from planner.screen.projection import FIFTHS_PER_SQUARE, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
 from planner.screen.unseen_gain import VERGE_WEIGHT
 
 CLOSE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
@@ -217,7 +217,7 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
     gain = cost_maps.information_gain.ravel()[candidates]
     if gain.max(initial=0.0) < VERGE_WEIGHT:
         return []
-    far = cost_maps.distances[0].ravel()[candidates] / FIFTHS
+    far = cost_maps.distances[0].ravel()[candidates] / FIFTHS_PER_SQUARE
     value = gain / (move_cost + square_cost * far)
     best = value >= EQUAL_VALUE_SHARE * value.max()
     chance = _chance(float(gain[best][far[best].argmin()]))

@@ -13,7 +13,7 @@ from benchmarks.worlds.odd.tasks import OddWorld
 ROUND_KIND = "round"
 ROUND_TASKS = ("next", "carry_next", "at_x", "carry_door", "circle", "both")
 ROUND_MARGINS = (-0.7, 0.6, 1.0, 1.5, 2.2)  # squares by which a door is wider than the thing
-RADII = (7.5, 10.5)  # squares
+ROUND_ROOM_RADII = (7.5, 10.5)  # squares
 POLYGON_SIDES = (16, 41)
 
 
@@ -31,7 +31,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
 
 def circles(rng: np.random.Generator, door: float) -> House:
     """Return two round rooms with a door of a given width between them, in any direction."""
-    radii = [max(float(rng.uniform(*RADII)), door + 2.5) for _ in range(2)]
+    radii = [max(float(rng.uniform(*ROUND_ROOM_RADII)), door + 2.5) for _ in range(2)]
     sides = int(rng.integers(*POLYGON_SIDES))
     depth = [radius * math.cos(math.asin(door / 2 / radius)) * math.cos(math.pi / sides) - 0.1 for radius in radii]
     far = depth[0] + float(rng.uniform(1.5, 4.5))

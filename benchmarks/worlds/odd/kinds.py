@@ -14,8 +14,8 @@ from benchmarks.worlds.odd import circular, constraints, fixtures, offgrid, open
 from benchmarks.worlds.odd.tasks import OddWorld
 from benchmarks.worlds.scenes import write
 
-Maker = Callable[[np.random.Generator, int], OddWorld | None]
-ODD_KINDS: dict[str, Maker] = {
+OddWorldMaker = Callable[[np.random.Generator, int], OddWorld | None]
+ODD_KINDS: dict[str, OddWorldMaker] = {
     offgrid.OFFGRID_KIND: offgrid.world,
     slanted.SLANTED_KIND: slanted.world,
     circular.ROUND_KIND: circular.world,

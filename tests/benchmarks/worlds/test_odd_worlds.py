@@ -56,7 +56,7 @@ def test_a_world_passes_utak_check_and_says_what_is_true(kind: str, seed: int, t
 
 
 @pytest.mark.parametrize("kind", ODD_KINDS)
-def test_things_and_the_robot_lie_on_the_floor_beside_each_other(kind: str) -> None:
+def test_objects_and_the_robot_are_apart_on_the_floor(kind: str) -> None:
     for world in worlds_of(kind):
         assert world.plan.width <= 64 and world.plan.height <= 64
         shapes = [thing.polygon for thing in world.things]
@@ -90,7 +90,7 @@ def test_each_kind_has_walks_and_carries_that_can_be_done(kind: str) -> None:
     assert set(ODD_GOALS) >= {world.task for world in worlds} or kind == "constraint"
 
 
-def test_off_grid_walls_lie_between_the_squares_and_doors_about_as_wide_as_what_is_carried() -> None:
+def test_off_grid_walls_are_off_the_grid_and_doors_nearly_as_wide_as_the_load() -> None:
     worlds = worlds_of("off_grid", 40)
     for world in worlds:
         places = coordinates(world.plan.floor)
@@ -138,7 +138,7 @@ def parted(floor: BaseGeometry, start: BaseGeometry, end: BaseGeometry) -> bool:
     return not any(part.distance(start) < 2 and part.distance(end) < 2 for part in parts)
 
 
-def test_what_touches_has_no_distance() -> None:
+def test_touching_objects_have_no_distance() -> None:
     seen = set()
     for world in worlds_of("touching", 40):
         x, others = world.things[0].polygon, [thing.polygon for thing in world.things[1:]]
@@ -157,7 +157,7 @@ def test_what_touches_has_no_distance() -> None:
     assert seen == set(touching.TOUCHING_VARIANTS)
 
 
-def test_wide_openings_are_no_doors_and_the_others_just_are() -> None:
+def test_wide_openings_are_no_doors_and_narrower_ones_are() -> None:
     for world in worlds_of("wide", 24):
         assert openings.is_door(world.plan) == (world.variant != "no_door") == (world.possible == YES)
         assert world.plan.necks[0].clear >= 4
@@ -179,7 +179,7 @@ def test_fixed_things_look_like_movable_ones_beside_them() -> None:
         assert all(thing.polygon.distance(world.plan.verge) > 2 for thing in world.things)
 
 
-def test_constraints_ask_every_question_and_nothing_is_square_where_nothing_is_meant() -> None:
+def test_constraint_worlds_ask_every_question_and_have_no_square_where_none_is_meant() -> None:
     worlds = worlds_of("constraint", 2 * len(constraints.QUESTIONS))
     assert {world.variant for world in worlds} == set(constraints.QUESTIONS)
     for world in worlds:
@@ -203,7 +203,7 @@ def test_unknown_kinds_are_refused() -> None:
 
 
 @pytest.mark.parametrize("kind", ["off_grid", "slanted", "round"])
-def test_motions_of_the_thing_alone_agree_with_what_is_known_of_doors(kind: str) -> None:
+def test_motions_of_the_object_alone_agree_with_the_known_doors(kind: str) -> None:
     for world in worlds_of(kind, 20):
         if world.task not in ("carry_next", "carry_door", "both"):
             continue
