@@ -128,7 +128,7 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     if not unclear.any():
         return replace(_settled_placement(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
-    viewpoint = sight_of(situation.cost_maps, unclear, f"where exactly the {side} corner is is not clear")
+    viewpoint = sight_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
     if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)

@@ -73,7 +73,7 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     border = edge & (cost_maps.distances[GAP_LEVEL] != UNREACHED)
     surely = grown(edge & cost_maps.floor, 1).ravel()
     stretches = [squares for squares in group_by_label(_stretches(border)) if not surely[squares].any()]
-    return [Viewpoint(squares, "there may be a gap") for squares in stretches]
+    return [Viewpoint(squares, "there may be a gap in what bounds the floor") for squares in stretches]
 
 
 def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
