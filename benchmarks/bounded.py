@@ -1,11 +1,11 @@
-"""How long a single command takes at most: scenarios under noise, each command timed by the processor's clock.
+"""The time of a single command: scenarios under noise, each command timed by the processor's clock.
 
     python -m benchmarks.bounded [SCENARIO ...] [--noise 0,0.02,0.05] [--seeds 1,2,3,4,5] [--judge] [-o rows.jsonl]
-    python -m benchmarks.bounded --campaign 5,6,7 --count 10 --noise 0,0.02      (random worlds, see
-    benchmarks.worlds.makers)
+    python -m benchmarks.bounded --campaign 5,6,7 --count 10 --noise 0,0.02
+        (random worlds, see benchmarks.worlds.makers)
 
-Scenarios are folders; all of examples/ when none is named. Each run goes in a process of its own that ends when its
-processor time is used up, so that one that runs away does not hold up the others; what it did until then is told.
+Scenarios are folders; all of examples/ when none is named. Each run is made in a process of its own that ends when its
+processor time is used up, so that a slow run does not hold up the others; what it did until then is reported.
 """
 
 import argparse
@@ -37,19 +37,19 @@ from simulator.scenario.expectation import should_fail
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 
-EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-WARMING = (
+EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
+WARMING_WORLDS = (
     "go_round_square",
     "push_l_tight_door",
     "push_square_corner",
     "push_brick_regrasp",
 )  # these call every kernel
 BOUND = 2.0  # processor seconds that no command may take
-LISTED = 10  # of the longest commands are listed
+LISTED_COMMANDS = 10  # of the longest commands are listed
 
 
 class Run(NamedTuple):
-    """One run to be made: a scenario's folder, the noise, its seed, most commands, and whether it is judged."""
+    """A run to be made: a scenario's folder, the noise, its seed, the limit of commands, and whether it is judged."""
 
     folder: Path
     noise: float
@@ -59,10 +59,14 @@ class Run(NamedTuple):
 
 
 class BoundedRow(NamedTuple):
-    """What came of a run.
+    """The result of a run.
 
-    seconds : of the processor, of waking and of each command. actions : what was commanded, None on waking.
-    verdict : `ended` when its process ended before the robot did. false : is what is claimed refuted by the truth?
+    Attributes
+    ----------
+    seconds : processor seconds of waking and of each command.
+    actions : the commands, None for waking.
+    verdict : the robot's verdict, or `ended` when its process ended before it gave one.
+    false : whether the truth refutes what the robot claims.
     """
 
     name: str
@@ -78,7 +82,10 @@ class BoundedRow(NamedTuple):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run all that is asked for and print what came of it; 0 when no command took too long and no claim was false."""
+    """Run everything that is asked for and print the results.
+
+    Returns 0 when no command took too long and no claim was false, else 1.
+    """
     given = _parser().parse_args(arguments)
     with tempfile.TemporaryDirectory(prefix="utak-bounded-") as scratch:
         folders = list(_worlds(given, Path(scratch))) if given.campaign else _folders(given.scenarios)
@@ -115,7 +122,7 @@ def _integers(text: str) -> list[int]:
 
 
 def _folders(named: Sequence[Path]) -> list[Path]:
-    return [folder for place in named or [EXAMPLES] for folder in scenarios_in(place)]
+    return [folder for place in named or [EXAMPLES_FOLDER] for folder in scenarios_in(place)]
 
 
 def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
@@ -125,14 +132,14 @@ def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
 
 
 def warm() -> None:
-    """Compile or load the kernels, which the runs then find in the process that they are forked from."""
+    """Compile or load the kernels; the processes of the runs are forked from this one and find them."""
     warm_all()
-    for name, noise in product(WARMING, (0.0, 0.02)):
-        run_here(Run(EXAMPLES / name, noise, 1, 20, False), lambda _: None)
+    for name, noise in product(WARMING_WORLDS, (0.0, 0.02)):
+        run_here(Run(EXAMPLES_FOLDER / name, noise, 1, 20, False), lambda _: None)
 
 
 def bounded(run: Run, seconds: int) -> BoundedRow:
-    """A run in a process of its own, which ends after so many seconds of the processor."""
+    """Make a run in a process of its own, which ends after `seconds` processor seconds."""
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_child, args=(run, seconds, theirs))
@@ -174,7 +181,7 @@ def _child(run: Run, seconds: int, pipe: Connection) -> None:
 
 
 def run_here(run: Run, tell: Any) -> None:
-    """Make a run, telling (seconds, action) of each command as it is done, and in the end what came of it."""
+    """Make a run in this process. tell : called with (seconds, action) after each command, and with the result."""
     robots: list[TimedRobot] = []
 
     def make(body: Body, task: Task, settings: Settings) -> TimedRobot:
@@ -203,7 +210,7 @@ def run_here(run: Run, tell: Any) -> None:
 
 
 def _told(rows: Iterable[BoundedRow], output: Path | None) -> Iterator[BoundedRow]:
-    """The rows as they come, each told on stderr and written to the output."""
+    """Yield the rows as they come; report each on stderr and write it to the output."""
     if output is not None:
         output.write_text("")
     for row in rows:
@@ -222,12 +229,12 @@ def _line(row: BoundedRow) -> str:
 
 
 def percentile(seconds: Sequence[float]) -> float:
-    """The 95th percentile, 0 of none."""
+    """Return the 95th percentile of some seconds, 0 of none."""
     return float(np.percentile(seconds, 95)) if seconds else 0.0
 
 
 def report(rows: Sequence[BoundedRow]) -> Iterator[str]:
-    """Lines: a table of scenario and noise, worst first, then the longest commands, false claims, and totals."""
+    """Return the lines of the report: a table by scenario and noise, worst first, the longest commands, and totals."""
     yield f"{'scenario':28} noise  longest   95%    all s  verdicts"
     groups: dict[tuple[str, float], list[BoundedRow]] = {}
     for row in rows:
@@ -238,7 +245,7 @@ def report(rows: Sequence[BoundedRow]) -> Iterator[str]:
         yield f"{name:28} {noise:<5} {_worst(group):8.2f} {percentile(seconds):6.2f} {sum(seconds):7.1f}  {verdicts}"
     commands = [(s, row, number) for row in rows for number, s in enumerate(row.seconds)]
     yield "the longest commands:"
-    for second, row, number in sorted(commands, key=lambda one: -one[0])[:LISTED]:
+    for second, row, number in sorted(commands, key=lambda one: -one[0])[:LISTED_COMMANDS]:
         run = f"{row.name} --noise {row.noise} --seed {row.seed}"
         yield f"  {second:6.2f} s  {run}, step {number}: {row.actions[number]}"
     for row in rows:

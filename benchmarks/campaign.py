@@ -36,7 +36,7 @@ from simulator.run.session import Session
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a campaign; 0 when every world came out right, 1 otherwise."""
+    """Run a campaign; return 0 when every world came out right, else 1."""
     given = _parser().parse_args(arguments)
     if judge_path() is None:
         print("campaign: NO JUDGE: set UTAK_JUDGE to judge.py; the episodes are not judged", file=sys.stderr)
@@ -86,7 +86,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _results(path: Path) -> TextIO:
-    """A file for results; one that holds anything else is not overwritten."""
+    """Return the path of a file for results; refuse one that holds anything else, so that it is not overwritten."""
     stream = opened(path, is_rows, "file of results")
     stream.truncate()
     return TextIOWrapper(stream, encoding="ascii")
@@ -97,13 +97,13 @@ def _numbers(text: str) -> list[int]:
 
 
 def _unclean(results: Path) -> list[tuple[int, int]]:
-    """The worlds of earlier results in which something went wrong."""
+    """Return the worlds of earlier results in which something went wrong."""
     rows = [json.loads(line) for line in results.read_text().splitlines()]
     return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
 
 
 def _warm_up(folder: Path) -> None:
-    """One trial that does not count: kernels are compiled and cached before any clock runs."""
+    """Run one trial that does not count, so that kernels are compiled and cached before any clock runs."""
     run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
 
 
@@ -122,7 +122,7 @@ def _one(world: tuple[int, int], conditions: Conditions, folder: Path) -> Campai
 
 
 def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None) -> Iterator[CampaignTrial]:
-    """The trials as they come, each told on stderr and written to the output."""
+    """Yield the trials as they come; report each on stderr and write it to the output."""
     for number, trial in enumerate(trials, 1):
         if output is not None:
             output.write(json.dumps(trial.row()) + "\n")
@@ -134,7 +134,7 @@ def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None
 
 
 def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> CampaignTrial:
-    """One world with a drawing of it at each step, on stderr."""
+    """Run one world and draw it on stderr at each step."""
     world = scenario(task, seed, conditions.kind)
     print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)
 

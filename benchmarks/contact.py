@@ -1,10 +1,10 @@
-"""First contact: exact, beside a sweep with shapely and Box2D's time of impact, in one process.
+"""First contact: the exact algorithm beside a sweep with shapely and Box2D's time of impact, in one process.
 
     python -m benchmarks.contact [--motions N] [--check N]
 
-The sweep looks at 32 poses of each motion and then halves; Box2D's b2TimeOfImpact takes convex pieces only, so the
-body and the obstacles are convex here. --check compares that many random pushes and turns of all kinds of shapes with
-shapely and counts disagreements: a motion that shapely finds to go into something, or one that stopped too early.
+The sweep tests 32 poses of each motion and then halves the step. Box2D's b2TimeOfImpact takes convex pieces only, so
+the body and the obstacles are convex here. --check compares that many random pushes and turns of all kinds of shapes
+with shapely and counts disagreements: a motion that shapely finds to enter an obstacle, or one that stopped too early.
 """
 
 import argparse
@@ -20,13 +20,19 @@ from shapely import affinity, box
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Rotate, Translate
 
-ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
-HORSESHOE = shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)])
-KINDS = [box(0, 0, 2, 2), box(0, 0, 4, 1), ELL, HORSESHOE, shapely.Polygon([(0, 0), (4, 0), (4, 3)])]
+CONTACT_ELL = shapely.Polygon([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)])
+CONTACT_HORSESHOE = shapely.Polygon([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)])
+CONTACT_SHAPES = [
+    box(0, 0, 2, 2),
+    box(0, 0, 4, 1),
+    CONTACT_ELL,
+    CONTACT_HORSESHOE,
+    shapely.Polygon([(0, 0), (4, 0), (4, 3)]),
+]
 
 
 def swept(body: Any, solid: Any, motion: Motion, steps: int = 32) -> float:
-    """The fraction that a sweep finds: the first of some poses that overlaps, then halved down to 1e-6."""
+    """Return the fraction of a motion at its first contact by a sweep: the first overlap, halved down to 1e-6."""
     poses = [motion.part(t).carry(body) for t in np.linspace(0, 1, steps)]
     hit = np.nonzero(shapely.intersects(solid, poses))[0]
     if len(hit) == 0:
@@ -42,9 +48,9 @@ def swept(body: Any, solid: Any, motion: Motion, steps: int = 32) -> float:
 
 
 def box2d_motions(body: Any, obstacles: list[Any], motions: list[Motion]) -> int:
-    """Box2D's time of impact of a moved convex body with every convex obstacle; how many motions were stopped.
+    """Count the motions of a convex body that Box2D's time of impact stops at any convex obstacle.
 
-    A turn is a sweep whose centre is the pivot. (Box2D means turns to be small: of large ones it may miss impacts.)
+    A turn is a sweep with its centre at the pivot. Box2D is made for small turns: in large ones it may miss impacts.
     """
     import Box2D
 
@@ -65,7 +71,7 @@ def box2d_motions(body: Any, obstacles: list[Any], motions: list[Motion]) -> int
 
 
 def rate(work: Callable[[], Any], count: int, runs: int = 25) -> float:
-    """Motions a second, the best of some runs."""
+    """Return the motions per second, the best of some runs."""
     best = math.inf
     for _ in range(runs):
         begin = time.perf_counter()
@@ -75,7 +81,7 @@ def rate(work: Callable[[], Any], count: int, runs: int = 25) -> float:
 
 
 def speed(count: int, pieces: int) -> None:
-    """One table: pushes and turns a second against so many convex obstacles."""
+    """Print a table: pushes and turns per second against various numbers of convex obstacles."""
     rng = np.random.default_rng(pieces)
     body, obstacles = box(-1, -1, 1, 1), []
     while len(obstacles) < pieces:
@@ -113,7 +119,7 @@ def speed(count: int, pieces: int) -> None:
 
 
 def disagreements(count: int) -> int:
-    """Random motions, one after another from where the last one stopped, looked at again with shapely."""
+    """Count disagreements with shapely over random motions, each from where the last one stopped."""
     rng = np.random.default_rng(1)
     bad = done = 0
     while done < count:
@@ -132,8 +138,8 @@ def disagreements(count: int) -> int:
 
 
 def _thrown(rng: np.random.Generator) -> Any:
-    """A shape at a random place: half of them whole, with many flush contacts to come."""
-    shape = KINDS[int(rng.integers(len(KINDS)))]
+    """Return a shape at a random place; half of the places are whole squares, with many flush contacts."""
+    shape = CONTACT_SHAPES[int(rng.integers(len(CONTACT_SHAPES)))]
     if rng.random() < 0.5:
         turned = affinity.rotate(shape, 90.0 * int(rng.integers(4)), origin=(0, 0))
         return affinity.translate(turned, *np.round(rng.uniform(-6, 6, 2)))
@@ -141,7 +147,7 @@ def _thrown(rng: np.random.Generator) -> Any:
 
 
 def _motion(rng: np.random.Generator) -> Motion:
-    """A random push or turn, every other one along the axes."""
+    """Return a random push or turn, every other push along an axis."""
     if rng.random() < 0.5:
         dx, dy = rng.uniform(-9, 9, 2) if rng.random() < 0.5 else rng.integers(-9, 10, 2) * rng.integers(0, 2, 2)
         return Translate(float(dx), float(dy))
@@ -150,7 +156,7 @@ def _motion(rng: np.random.Generator) -> Motion:
 
 
 def _disagrees(body: Any, still: list[Any], motion: Motion, fraction: float) -> bool:
-    """Whether shapely finds the motion to go into something, or to have stopped too early."""
+    """Return whether shapely finds that the motion enters an obstacle, or that it stopped too early."""
     travelled = motion.part(fraction)
     poses = [travelled.part(t).carry(body) for t in np.linspace(0, 1, 24)]
     for obstacle in still:

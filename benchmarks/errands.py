@@ -1,4 +1,4 @@
-"""CarryingPlan planned from the truth, in random worlds of tasks 5 to 9; every plan done again with shapely.
+"""Carrying plans computed from the truth in random worlds of tasks 5 to 9; every plan is repeated with shapely.
 
     python -m benchmarks.errands [--task 5,6,7,8,9] [--seed N] [--count N] [--no-pull] [--margin M] [--unable]
 
@@ -22,14 +22,14 @@ from geometry.manipulation.plan_carrying import CarryingPlan, InCorner, Inside, 
 
 
 def free_squares(world: RandomScenario) -> np.ndarray:
-    """The squares that neither walls nor other things cover."""
+    """Return the squares that neither walls nor other objects cover, (rows, columns)."""
     width, height = world.plan.width, world.plan.height
     others = [world.plan.verge, *(thing.polygon for thing in world.things[1:])]
     return ~np.any([digital(other, width, height) for other in others], axis=0)
 
 
 def goal_of(world: RandomScenario) -> InCorner | Inside:
-    """What the task asks for, from the truth."""
+    """Return the goal of the task as an end of manipulation planning, from the truth."""
     if world.task != 5:
         return Inside(list(shapely.get_parts(world.target)))
     corner = furthest_corner(world.plan.floor, "northeast", world.heading)
@@ -39,7 +39,7 @@ def goal_of(world: RandomScenario) -> InCorner | Inside:
 
 
 def faults(plan: CarryingPlan, shape: Any, free: np.ndarray, goal: InCorner | Inside, samples: int = 65) -> list[str]:
-    """What is wrong with a plan when it is done again with shapely; nothing when all is well."""
+    """Return what is wrong with a plan when it is repeated with shapely; nothing when it is correct."""
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1)).buffer(1e-6, join_style="mitre")
     shapely.prepare(floor)
@@ -62,7 +62,7 @@ def faults(plan: CarryingPlan, shape: Any, free: np.ndarray, goal: InCorner | In
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print a line for each task, and one for each world in which something is amiss."""
+    """Print a line for each task, and one for each world with a fault."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--task", default="5,6,7,8,9")
     parser.add_argument("--seed", type=int, default=0)

@@ -2,10 +2,10 @@
 
     python -m benchmarks.malformed [N] [--seed S] [--what scenarios|queries|rules|maps]
 
-Spoils N (default 10,000) good texts in their bytes, words, numbers, lines or files, one at a time, and reads them:
-scenarios, of which those that are accepted are also simulated for a moment; queries; files of rules, which are tried
-out; or Moving AI maps. Prints a table, and exits 1 when anything else came out than what was asked for or a proper
-refusal.
+The program changes N (default 10,000) good texts in their bytes, words, numbers, lines or files, one at a time, and
+reads them: scenarios, of which those that are accepted are also simulated for a moment; queries; files of rules, which
+are tried out; or Moving AI maps. It prints a table, and exits with 1 when anything else happened than acceptance or a
+proper refusal.
 """
 
 import argparse
@@ -30,10 +30,10 @@ from kb.reasoning.user_rules import checked_rules
 from simulator.scenario.scenario import read_scenario
 from simulator.world.physics import Tabletop
 
-PATIENCE = 20.0  # seconds until a file counts as hung
+HANG_SECONDS = 20.0  # seconds until a file counts as hung
 REFUSAL = re.compile(r"\A[^\n]*:\d+:\d+-\d+: error: [^\n]+")
 
-WORLD = """\
+GOOD_WORLD = """\
 % A room with two things.
 table(16, 12).
 verge("POLYGON ((0 0, 16 0, 16 12, 0 12, 0 0), (1 1, 15 1, 15 11, 1 11, 1 1))").
@@ -43,7 +43,7 @@ fixed(p1, h, "POLYGON ((12 8, 13 8, 13 10, 12 10, 12 8), (12.2 8.2, 12.2 9, 12.8
 utak("POINT (2.5 2.5)", 90).
 """
 GOOD = {
-    "world.lp": WORLD,
+    "world.lp": GOOD_WORLD,
     "start.lp": "object(x). shape(x, square).\nconfidence(colour(x, g), 80). %* two *% door(d). room(r).\n",
     "goal.lp": 'first(at(utak, x)). then(circled(utak, x)).\nnot_through(utak, d). pose(x, "POINT (3 4)", -90).\n',
     "expect.lp": 'near(utak, "POLYGON ((4 4, 7 4, 7 7, 4 4))", 2).\nunmoved(t1). within(40). circles(utak, t1).\n',
@@ -52,7 +52,7 @@ FACTS = [
     "room(r1).", "unseen(r1,9).", "node(o1).", "kind(o1,object,95).", "shape(o1,square,80).", "offset(o1,250,-50).",
     "in(o1,r1).", "colour(o1,g,99).", "corner(northeast,900,900).", "held(o1).", "rect(o1,0,0,300,300).",
 ]  # fmt: skip
-QUERIES = (
+GOOD_QUERIES = (
     "object(X), shape(X, square, C), C > 50, not held(X)", "#count{X : object(X), in(X, r1)} >= 2", "X = 1..9, Y = X*7",
     "offset(o1, E, N), D = E*E + N*N", "kind(X, (object; verge), C)", "in(X, r1) : object(X)", "1 { object(X) } 3",
     "rect(X, W, S, E, N), |E-W| < 400, not corner(_, E, N)", "C = #max{D,T : shape(o1, T, D)}, shape(o1, S, C)",
@@ -70,7 +70,7 @@ odd_one(R) :- region(R, _, C), C \\ 2 = 1. odd_one(x).
 """
 MAP = "type octile\nheight 4\nwidth 5\nmap\n@@@@@\n@..T@\n@.SW@\n@@@@@\n"
 PICTURE = "bbbbbbbb\nb..gg..b\nb.....cb\nb.U..ccb\nb......b\nbbbbbbbb\n"
-WORDS = (
+STRAY_WORDS = (
     "2147483648", "-2147483648", "65536*65536", "X*X", "C+1", "not ", "-object(o1)", "#count{X : object(X)}", "1..",
     "#sum{C,X : shape(X,_,C)}", "banana", "_", "choose(1)", "#true", "@f(1)", "&diff{a}", "|", "**", "#inf", "{", "}",
     '"', "'", "(", ")", "((", "))", ".", "..", ",", ";", ":-", "%", "%*", "*%", "#include", '#include "/etc/passwd".',
@@ -108,7 +108,7 @@ def _repeat(draw: random.Random, raw: bytes) -> bytes:
 
 def _insert(draw: random.Random, raw: bytes) -> bytes:
     at = draw.randrange(len(raw) + 1)
-    return raw[:at] + draw.choice(WORDS).encode() + raw[at:]
+    return raw[:at] + draw.choice(STRAY_WORDS).encode() + raw[at:]
 
 
 def _replace_word(draw: random.Random, raw: bytes) -> bytes:
@@ -116,7 +116,7 @@ def _replace_word(draw: random.Random, raw: bytes) -> bytes:
     if not words:
         return raw
     word = draw.choice(words)
-    other = draw.choice([draw.choice(WORDS).encode(), draw.choice(words).group(), b""])
+    other = draw.choice([draw.choice(STRAY_WORDS).encode(), draw.choice(words).group(), b""])
     return raw[: word.start()] + other + raw[word.end() :]
 
 
@@ -160,7 +160,7 @@ MUTATIONS: tuple[Callable[[random.Random, bytes], bytes], ...] = (
 
 
 def write_malformed(folder: Path, draw: random.Random) -> None:
-    """Write one spoilt scenario into a new folder."""
+    """Write one malformed scenario into a new folder."""
     folder.mkdir()
     files = dict(GOOD)
     if draw.random() < 0.2:
@@ -177,7 +177,7 @@ def write_malformed(folder: Path, draw: random.Random) -> None:
 
 
 def _no_file(path: Path, draw: random.Random) -> None:
-    """Put something in a file's place that is none."""
+    """Put something that is no file in a file's place."""
     kind = draw.randrange(6)
     if kind == 0:
         path.mkdir()
@@ -201,7 +201,7 @@ def _hung(number: int, frame: FrameType | None) -> None:
 
 
 def outcome(folder: Path) -> str:
-    """Return how reading a scenario came out, as `came_out` does."""
+    """Return the outcome of reading a scenario, as `came_out` does."""
     return came_out(lambda: _simulated(folder))
 
 
@@ -214,7 +214,7 @@ def _simulated(folder: Path) -> None:
 def came_out(read: Callable[[], object]) -> str:
     """Return `accepted`, `refused`, `given up`, `cannot open`, or a fault that begins with an exclamation mark."""
     signal.signal(signal.SIGALRM, _hung)
-    signal.setitimer(signal.ITIMER_REAL, PATIENCE)
+    signal.setitimer(signal.ITIMER_REAL, HANG_SECONDS)
     try:
         read()
     except BadInputError as bad:
@@ -234,7 +234,7 @@ def came_out(read: Callable[[], object]) -> str:
 
 
 def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
-    """Return how many of `count` spoilt scenarios came out how; faulty ones are kept in `keep`."""
+    """Count the outcomes of `count` malformed scenarios; faulty ones are kept in `keep`."""
     outcomes: Counter[str] = Counter()
     for number in range(count):
         folder = keep / f"{seed}-{number}"
@@ -249,18 +249,18 @@ def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
 
 
 def queries(count: int, seed: int) -> Counter[str]:
-    """Return how many of `count` spoilt queries came out how."""
+    """Count the outcomes of `count` malformed queries."""
     outcomes: Counter[str] = Counter()
     with QueryEngine(seconds=5.0) as engine:
         for number in range(count):
             draw = random.Random(f"{seed}-{number}")
-            text = spoil(draw, draw.choice(QUERIES)).decode("utf-8", errors="surrogateescape")
+            text = spoil(draw, draw.choice(GOOD_QUERIES)).decode("utf-8", errors="surrogateescape")
             _count(outcomes, came_out(lambda text=text: engine.ask(FACTS, text)), text)  # type: ignore[misc]
     return outcomes
 
 
 def rules(count: int, seed: int, keep: Path) -> Counter[str]:
-    """Return how many of `count` spoilt files of rules came out how, by themselves and beside our encodings."""
+    """Count the outcomes of `count` malformed files of rules, by themselves and beside our encodings."""
     outcomes: Counter[str] = Counter()
     for number in range(count):
         draw = random.Random(f"{seed}-{number}")
@@ -277,7 +277,7 @@ def rules(count: int, seed: int, keep: Path) -> Counter[str]:
 
 
 def maps(count: int, seed: int) -> Counter[str]:
-    """Return how many of `count` spoilt maps came out how."""
+    """Count the outcomes of `count` malformed maps."""
     outcomes: Counter[str] = Counter()
     for number in range(count):
         raw = spoil(random.Random(f"{seed}-{number}"), MAP)

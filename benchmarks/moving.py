@@ -3,9 +3,9 @@
     python -m benchmarks.moving FOLDER [--peers] [--runs N] [--limit SECONDS] [--only TEXT]
 
 FOLDER holds JSON scenes: obstacles and robot as rings, start and goal as [x, y, radians], bounds of the reference
-point, expected: feasible, infeasible or unknown. Every motion found is checked again with shapely at 512 poses and by
-first contact against the obstacles one by one. With --peers each scene is also given to OMPL's planners, which ask the
-very distance kernel that plan_motion uses whether a state is valid; the best of them is chosen afterwards.
+point, expected: feasible, infeasible or unknown. Every motion found is checked with shapely at 512 poses and by first
+contact against the obstacles one by one. With --peers each scene is also given to OMPL's planners, which ask the same
+distance kernel as plan_motion whether a state is valid; the best of them is chosen afterwards.
 """
 
 import argparse
@@ -26,7 +26,7 @@ from geometry.motion.se2 import Pose
 
 
 class MovingScene(NamedTuple):
-    """One moving problem."""
+    """A moving problem."""
 
     name: str
     body: Any
@@ -48,7 +48,7 @@ def load(path: Path) -> MovingScene:
 
 
 def faults(scene: MovingScene, plan: MotionPlan, samples: int = 512) -> int:
-    """How many motions of a plan go into an obstacle, by shapely or by first contact; and 1000 for the wrong end."""
+    """Count the motions of a plan that enter an obstacle, by shapely or by first contact; plus 1000 for a wrong end."""
     solid = shapely.union_all(scene.obstacles).buffer(-1e-6, join_style="mitre")
     shapely.prepare(solid)
     obstacles, body, bad = Obstacles(scene.obstacles), scene.start.place(scene.body), 0
@@ -61,7 +61,7 @@ def faults(scene: MovingScene, plan: MotionPlan, samples: int = 512) -> int:
 
 
 def timed(scene: MovingScene, runs: int) -> tuple[MotionPlan, float, float]:
-    """The plan, and the least milliseconds without and with the preparation of the floor."""
+    """Return the plan, and the least milliseconds without and with the preparation of the obstacle field."""
     warm, cold = [], []
     for _ in range(runs):
         begin = time.perf_counter()
@@ -100,7 +100,7 @@ def main() -> None:
 
 
 def _beside(scene: MovingScene, warm: float, args: argparse.Namespace) -> float:
-    """Print OMPL's best planner and its median; how many times our time it is."""
+    """Print OMPL's best planner and its median time, and the ratio to our time."""
     from benchmarks.engine.ompl_peer import best_planner
 
     name, peer = best_planner(scene, args.runs, args.limit)
@@ -110,7 +110,7 @@ def _beside(scene: MovingScene, warm: float, args: argparse.Namespace) -> float:
 
 
 def _sum_up(ratios: dict[str, float]) -> None:
-    """The geometric means over the scenes that are hard for the peer, and over the others."""
+    """Print the geometric means over the scenes that are hard for the peer, and over the others."""
     for title, some in (
         ("the best OMPL planner needs over 100 ms", [r for r in ratios.values() if r > 0]),
         ("the others", [-r for r in ratios.values() if r < 0]),

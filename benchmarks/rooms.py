@@ -2,8 +2,8 @@
 
     python -m benchmarks.rooms [--seconds S] [--seed N] [--peers]
 
-Found motions are swept again with shapely. With --peers OMPL's RRTConnect looks for --limit seconds for a motion where
-none is said to be possible: one that it finds, and that shapely finds free, contradicts a proof.
+Found motions are swept again with shapely. With --peers OMPL's RRTConnect searches for --limit seconds for a motion
+where none is said to be possible. If it finds one that shapely finds free, the proof is contradicted.
 """
 
 import argparse
@@ -19,22 +19,22 @@ from benchmarks.moving import MovingScene, faults
 from geometry.cspace.plan_motion import plan_motion
 from geometry.motion.se2 import Pose
 
-ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
-TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])
-HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4, 5), (4, 2), (2, 2), (2, 5), (0, 5)])
+ROOMS_ELL = shapely.Polygon([(0, 0), (6, 0), (6, 2), (2, 2), (2, 6), (0, 6)])
+ROOMS_TEE = shapely.Polygon([(0, 0), (6, 0), (6, 2), (4, 2), (4, 5), (2, 5), (2, 2), (0, 2)])
+ROOMS_HORSESHOE = shapely.Polygon([(0, 0), (6, 0), (6, 5), (4, 5), (4, 2), (2, 2), (2, 5), (0, 5)])
 BODIES = [
     box(0, 0, 3, 3),
     box(0, 0, 6, 2),
     box(0, 0, 4, 2),
-    ELL,
-    TEE,
-    HORSESHOE,
+    ROOMS_ELL,
+    ROOMS_TEE,
+    ROOMS_HORSESHOE,
     shapely.Polygon([(0, 0), (6, 0), (2, 5)]),
 ]
 
 
 def random_scene(rng: np.random.Generator, rooms: int) -> MovingScene | None:
-    """Rooms in a row with doors, some things about, a body with its reference point anywhere; None when none fits."""
+    """Return rooms in a row with doors, some objects, and a body with its reference point anywhere; None for none."""
     size = float(rng.uniform(0.6, 1.1))
     body = affinity.scale(BODIES[int(rng.integers(len(BODIES)))], size, size, origin=(0, 0))
     body = affinity.translate(body, *rng.uniform(-4, 1, 2))
@@ -61,7 +61,7 @@ def random_scene(rng: np.random.Generator, rooms: int) -> MovingScene | None:
 
 
 def _free_pose(rng: np.random.Generator, body: Any, walls: Any, west: float, east: float, high: float) -> Pose | None:
-    """A pose in which a body overlaps nothing."""
+    """Return a pose in which a body overlaps nothing."""
     for _ in range(300):
         pose = Pose(float(rng.uniform(west, east)), float(rng.uniform(0, high)), float(rng.uniform(0, 360)))
         if not pose.place(body).intersects(walls):
@@ -70,7 +70,7 @@ def _free_pose(rng: np.random.Generator, body: Any, walls: Any, west: float, eas
 
 
 def main() -> None:
-    """Print what came out."""
+    """Run the problems and print the results."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)

@@ -3,11 +3,9 @@
     python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--jobs J]       in each of the two checkouts
     python -m benchmarks.unchanged compare BEFORE AFTER
 
-`write` runs all examples, and random worlds of every kind of benchmarks.worlds.odd and of the plain and the wide
-kind of
-benchmarks.worlds.makers, each without noise and with noise. `compare` reads the files as JSON and leaves out `why`
-of the
-steps and `reason` of the result, which are sentences for people. Exits with 1 when anything else differs.
+`write` runs all examples, and random worlds of every kind of benchmarks.worlds.odd and of the plain and the wide kind
+of benchmarks.worlds.makers, each without noise and with noise. `compare` reads the files as JSON. It leaves out `why`
+of the steps and `reason` of the result, which are sentences for people. It exits with 1 when anything else differs.
 """
 
 import argparse
@@ -25,18 +23,18 @@ from simulator.run.session import Session
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 
-EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+SCENARIOS_FOLDER = Path(__file__).resolve().parent.parent / "examples"
 NOISES = (0.0, 0.02)
-KINDS = [kind for kind in all_kinds() if kind not in ("own_snug", "own_loose")]
+COMPARED_KINDS = [kind for kind in all_kinds() if kind not in ("own_snug", "own_loose")]
 Job = tuple[str | Asked, float, Path]
 
 
 def jobs_of(count: int, seed: int, folder: Path) -> Iterator[Job]:
     """Yield each scenario and noise with the file of its episode. count : random worlds, shared among the kinds."""
-    examples: list[str | Asked] = sorted(path.parent.name for path in EXAMPLES.glob("*/goal.lp"))
-    shares = sum(9 if kind.startswith("own_") else 1 for kind in KINDS)
-    worlds = worlds_of(KINDS, seed, -(-count // shares)) if count else []
-    worlds += worlds_of([kind for kind in KINDS if not kind.startswith("own_")], seed + 500, count // 30)
+    examples: list[str | Asked] = sorted(path.parent.name for path in SCENARIOS_FOLDER.glob("*/goal.lp"))
+    shares = sum(9 if kind.startswith("own_") else 1 for kind in COMPARED_KINDS)
+    worlds = worlds_of(COMPARED_KINDS, seed, -(-count // shares)) if count else []
+    worlds += worlds_of([kind for kind in COMPARED_KINDS if not kind.startswith("own_")], seed + 500, count // 30)
     for asked in [*examples, *worlds]:
         name = asked if isinstance(asked, str) else asked.name.replace(":", "-")
         for noise in NOISES:
@@ -49,7 +47,7 @@ def run(job: Job) -> str:
     if file.exists():
         return file.name
     with tempfile.TemporaryDirectory() as made:
-        folder = EXAMPLES / asked if isinstance(asked, str) else Path(made)
+        folder = SCENARIOS_FOLDER / asked if isinstance(asked, str) else Path(made)
         if isinstance(asked, Asked):
             written(asked, folder)
         unfinished = file.with_suffix(".part")
@@ -73,7 +71,7 @@ def without_sentences(file: Path) -> list[str]:
 
 
 def differences(before: Path, after: Path) -> Iterator[str]:
-    """Yield a sentence for each episode that is not the same in both folders."""
+    """Yield a sentence for each episode that differs between the two folders."""
     names = {file.name for folder in (before, after) for file in folder.glob("*.jsonl")}
     for name in sorted(names):
         if not (before / name).exists() or not (after / name).exists():
@@ -86,7 +84,7 @@ def differences(before: Path, after: Path) -> Iterator[str]:
 
 
 def write(given: argparse.Namespace) -> int:
-    """Run all jobs in processes beside each other."""
+    """Run all jobs in parallel processes."""
     given.folder.mkdir(parents=True, exist_ok=True)
     todo = list(jobs_of(given.count, given.seed, given.folder))
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
@@ -106,7 +104,7 @@ def compare(given: argparse.Namespace) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Do what the command line asks for and return the exit code."""
+    """Execute the command line and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.unchanged", description=(__doc__ or "").split("\n")[0])
     parts = parser.add_subparsers(required=True)
     writing = parts.add_parser("write", help="run scenarios and keep their episodes")

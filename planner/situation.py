@@ -90,7 +90,7 @@ class Situation:
                 break
         return rooms, mask
 
-    def forbidden(self, who: str) -> tuple[Door, ...]:
+    def forbidden(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that the constraints of the task forbid to the robot or to an object.
 
         Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept
@@ -99,18 +99,18 @@ class Situation:
 
         Parameters
         ----------
-        who : str
+        actor : str
             "utak", or the name of a node.
 
         Returns
         -------
         tuple[Door, ...]
-            Empty when no constraint is about `who`.
+            Empty when no constraint is about `actor`.
         """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
-        if who not in meant:
+        if actor not in meant:
             return ()
-        if who == "utak":
+        if actor == "utak":
             return self.avoided[:1] or self.rooms.doors
         return tuple(door for door in self.rooms.doors if door.likely)
 

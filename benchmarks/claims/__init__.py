@@ -1,5 +1,13 @@
-"""A campaign that refutes claims: is what the robot says is done, done, and what it calls impossible, impossible?
+"""A campaign that refutes claims: what the robot calls done must be done, what it calls impossible must be impossible.
 
-Read `asked` (which worlds), `child` (one run in a process of its own), `refute` (claims against the truth), `row` (what
-came of a world), `run` (one world from folder to row), `table` and `report` (what came of all), `__main__`.
+Modules, in reading order:
+
+asked     which worlds are asked for, and what is known of them
+child     one run in a process of its own
+refute    claims against the truth
+row       the result of one world
+run       one world from its folder to its row
+table     the table of all results
+report    a page about the worlds that went wrong
+__main__  the program
 """

@@ -17,13 +17,13 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
-from benchmarks.claims.asked import OWN, OWN_ASKED, Asked, all_kinds, named, worlds_of
+from benchmarks.claims.asked import OWN_ASKED, OWN_PREFIX, Asked, all_kinds, named, worlds_of
 from benchmarks.claims.report import report
 from benchmarks.claims.row import ClaimRow, read_rows
 from benchmarks.claims.run import Limits, run_world, warm_up
 from benchmarks.claims.table import table
 from benchmarks.harness.judging import judge_path
-from benchmarks.worlds.odd.kinds import KINDS
+from benchmarks.worlds.odd.kinds import ODD_KINDS
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -57,7 +57,7 @@ def _parser() -> argparse.ArgumentParser:
         "--own", type=int, default=0, help="worlds of each task of benchmarks.worlds.makers (%(default)s)"
     )
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
-    parser.add_argument("--kind", type=_kinds, default=list(KINDS), help=f"of {', '.join(all_kinds())} (odd ones)")
+    parser.add_argument("--kind", type=_kinds, default=list(ODD_KINDS), help=f"of {', '.join(all_kinds())} (odd ones)")
     parser.add_argument("--only", type=named, metavar="WORLD", help="one world: KIND:SEED or own_KIND:TASK:SEED")
     parser.add_argument("--noise", type=float, default=0.0, help="noise of motions and grasps (%(default)s)")
     parser.add_argument("--noise-seed", type=int, default=0, help="seed of the noise (%(default)s)")
@@ -83,7 +83,7 @@ def _kinds(text: str) -> list[str]:
 def _asked(given: argparse.Namespace) -> list[Asked]:
     if given.only:
         return [given.only]
-    own = worlds_of([OWN + kind for kind in OWN_ASKED], given.seed, given.own)
+    own = worlds_of([OWN_PREFIX + kind for kind in OWN_ASKED], given.seed, given.own)
     return worlds_of(given.kind, given.seed, given.count) + own
 
 

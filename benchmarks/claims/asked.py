@@ -5,12 +5,12 @@ from pathlib import Path
 
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.makers import MAKERS, scenario
-from benchmarks.worlds.odd.kinds import KINDS, odd_world
-from benchmarks.worlds.odd.tasks import NOWHERE
+from benchmarks.worlds.makers import WORLD_MAKERS, scenario
+from benchmarks.worlds.odd.kinds import ODD_KINDS, odd_world
+from benchmarks.worlds.odd.tasks import EMPTY_REGION
 from benchmarks.worlds.scenes import write
 
-OWN = "own_"  # before the names of the kinds of benchmarks.worlds.makers
+OWN_PREFIX = "own_"  # before the names of the kinds of benchmarks.worlds.makers
 OWN_ASKED = ("plain", "wide")  # those that --own runs
 
 
@@ -30,22 +30,28 @@ class Asked:
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a world: its task in a word, what it is within its kind, whether it can be done, and why not.
+    """The facts about a world that are known by its construction.
 
-    possible : "yes", "no" or "unknown". avoid : where the robot must never be, in squares of the table.
+    Attributes
+    ----------
+    task : the task in a word.
+    variant : what the world is within its kind.
+    possible : whether the task can be done: "yes", "no" or "unknown".
+    why : why it cannot be done.
+    avoid : where the robot must never be, in squares, table frame.
     """
 
     task: str
     variant: str
     possible: str
     why: str
-    avoid: BaseGeometry = NOWHERE
+    avoid: BaseGeometry = EMPTY_REGION
 
 
 def named(text: str) -> Asked:
     """Return the world of a name. Raises ValueError when it is none."""
     kind, *numbers = text.split(":")
-    if kind not in all_kinds() or len(numbers) != 1 + kind.startswith(OWN):
+    if kind not in all_kinds() or len(numbers) != 1 + kind.startswith(OWN_PREFIX):
         raise ValueError(f"no world is called {text}: say KIND:SEED or own_KIND:TASK:SEED")
     *task, seed = (int(number) for number in numbers)
     return Asked(kind, seed, *task)
@@ -53,23 +59,23 @@ def named(text: str) -> Asked:
 
 def all_kinds() -> list[str]:
     """Return the names of all kinds: the odd ones, then those of benchmarks.worlds.makers."""
-    return [*KINDS, *(OWN + kind for kind in MAKERS)]
+    return [*ODD_KINDS, *(OWN_PREFIX + kind for kind in WORLD_MAKERS)]
 
 
 def worlds_of(kinds: list[str], seed: int, count: int) -> list[Asked]:
-    """Return so many worlds of each kind (and of each task of the own kinds) from a seed on, the kinds in turn."""
+    """Return `count` worlds of each kind (and of each task of kinds with tasks) from a seed on, the kinds in turn."""
     asked = []
     for number in range(seed, seed + count):
         for kind in kinds:
-            tasks = sorted(MAKERS[kind.removeprefix(OWN)]) if kind.startswith(OWN) else [0]
+            tasks = sorted(WORLD_MAKERS[kind.removeprefix(OWN_PREFIX)]) if kind.startswith(OWN_PREFIX) else [0]
             asked += [Asked(kind, number, task) for task in tasks]
     return asked
 
 
 def written(asked: Asked, folder: Path) -> Known:
     """Write the scenario of a world into a folder and return what is known of it."""
-    if asked.kind.startswith(OWN):
-        own = scenario(asked.task, asked.seed, asked.kind.removeprefix(OWN))
+    if asked.kind.startswith(OWN_PREFIX):
+        own = scenario(asked.task, asked.seed, asked.kind.removeprefix(OWN_PREFIX))
         write(own, folder)
         return Known(f"task {asked.task}", "", "yes" if own.possible else "no", own.texts.unable)
     odd = odd_world(asked.kind, asked.seed)

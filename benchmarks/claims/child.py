@@ -9,7 +9,7 @@ import json
 import resource
 from pathlib import Path
 
-EPISODE, CYCLES, RESULT = "episode.jsonl", "cycles.txt", "result.json"
+EPISODE_FILE, CYCLES_FILE, RESULT_FILE = "episode.jsonl", "cycles.txt", "result.json"
 
 
 def main() -> None:
@@ -48,7 +48,7 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
         return robots[0]
 
     settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps)
-    with EpisodeLog(folder / EPISODE) as log, (folder / CYCLES).open("w") as cycles:
+    with EpisodeLog(folder / EPISODE_FILE) as log, (folder / CYCLES_FILE).open("w") as cycles:
 
         def noted(session: Session) -> None:
             cycles.write(f"{robots[0].cycles[-1].processor:.3f}\n")
@@ -57,7 +57,7 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
         result = Session(read_scenario(folder), settings, make, log).run(noted)
     names = ("believed", "achieved", "verdict", "reason", "steps", "unmet")
     told = {name: getattr(result, name) for name in names}
-    (folder / RESULT).write_text(json.dumps(told) + "\n")
+    (folder / RESULT_FILE).write_text(json.dumps(told) + "\n")
 
 
 if __name__ == "__main__":

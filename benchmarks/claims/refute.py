@@ -1,9 +1,8 @@
-"""Claims against the truth: a `done` that is not achieved, and an `impossible` to which a way is known.
+"""Claims against the truth: a `done` that is not achieved, and an `impossible` to which a plan is known.
 
-That a world's task can be done is known by its construction, or is found by a search that knows the true world: a
-program beside the judge (see benchmarks.harness.judging), `countersearch.py SCENARIO --seconds S --plan`, which
-exits with 0
-when it has found a way, 1 when it has not, and 2 when it cannot tell what the goal means.
+A task is known to be possible by the construction of its world, or by a search that knows the true world. The search is
+a program beside the judge (see benchmarks.harness.judging), `countersearch.py SCENARIO --seconds S --plan`. It exits
+with 0 when it has found a plan, 1 when it has not, and 2 when it cannot tell what the goal means.
 """
 
 import json
@@ -17,12 +16,12 @@ from shapely.geometry.base import BaseGeometry
 
 from benchmarks.harness.judging import judge_path
 
-SHORT = 80  # characters of an expectation that a page can hold
+MAX_SHOWN_CHARACTERS = 80  # characters of an expectation that a page can hold
 ANSWERS = {0: "solvable", 1: "not found", 2: "unsupported"}
 
 
 class Countersearch(NamedTuple):
-    """What a search that knows the world says: solvable, not found, unsupported or absent; and the way, as printed."""
+    """The answer of a search that knows the true world: solvable, not found, unsupported or absent; and the plan."""
 
     answer: str
     way: str = ""
@@ -37,7 +36,7 @@ class Claims(NamedTuple):
 
 
 def searched(folder: Path, seconds: int) -> Countersearch:
-    """Look for a way in the scenario of a folder, knowing its true world."""
+    """Search for a plan in the scenario of a folder with the true world known, for at most `seconds`."""
     judge = judge_path()
     program = judge and judge.with_name("countersearch.py")
     if program is None or not program.is_file():
@@ -52,7 +51,10 @@ def searched(folder: Path, seconds: int) -> Countersearch:
 
 
 def trespassed(episode: Path, avoid: BaseGeometry) -> bool:
-    """Return whether the robot was ever in a region by an episode: it moves straight from one place to the next."""
+    """Return whether the robot was ever in the region `avoid` (table frame) by an episode.
+
+    It moves straight from one place to the next.
+    """
     if avoid.is_empty:
         return False
     lines = [json.loads(line) for line in episode.read_text().splitlines()]
@@ -77,4 +79,4 @@ def refuted(
 
 def _short(fact: str) -> str:
     """Return a fact with no more than the first corners of its region."""
-    return fact if len(fact) <= SHORT else fact[:SHORT] + " ..."
+    return fact if len(fact) <= MAX_SHOWN_CHARACTERS else fact[:MAX_SHOWN_CHARACTERS] + " ..."

@@ -1,4 +1,4 @@
-"""A page about the worlds that went wrong: false claims with what refutes them, errors, and what stayed undecided."""
+"""A page about the worlds that went wrong: false claims with what refutes them, errors, and undecided worlds."""
 
 from collections.abc import Iterator, Sequence
 

@@ -1,4 +1,4 @@
-"""What came of one world, as a frozen value and as a line of JSON."""
+"""The result of one world, as a frozen value and as a line of JSON."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -13,10 +13,15 @@ TIME, ERROR = "time", "error"  # in place of a verdict: the run was ended by a l
 
 @dataclass(frozen=True)
 class ClaimRow:
-    """What came of one world.
+    """The result of one world.
 
-    verdict : what the robot said, whatever the word; or "time" or "error". cycles : processor seconds of each command.
-    judged : the judge's findings, None without one. countersearch : see `refute`. error : the last line of a traceback.
+    Attributes
+    ----------
+    verdict : what the robot claimed; or "time" or "error".
+    cycles : processor seconds of each command.
+    judged : the judge's findings, None without a judge.
+    countersearch : see benchmarks.claims.refute.
+    error : the last line of a traceback.
     """
 
     kind: str
@@ -41,7 +46,7 @@ class ClaimRow:
 
     @property
     def asked(self) -> Asked:
-        """The world that this is of."""
+        """The world of this row."""
         return Asked(self.kind, self.seed, self.task)
 
     @property
@@ -56,7 +61,7 @@ class ClaimRow:
 
     @property
     def broken_laws(self) -> list[str]:
-        """The judge's findings but for expectations that are not met, which the verdict is held against anyway."""
+        """The judge's findings without unmet expectations, against which the verdict is checked anyway."""
         return [finding for finding in self.judged or [] if not any(told in finding for told in UNMET)]
 
     @property
@@ -65,19 +70,19 @@ class ClaimRow:
         return percentile(self.cycles)
 
     def line(self) -> str:
-        """The row as JSON, with the longest command and the 95th percentile told as well."""
+        """Return the row as JSON, with the longest command and the 95th percentile."""
         told = {"longest": max(self.cycles, default=0.0), "percentile_95": self.percentile}
         return json.dumps(asdict(self) | told)
 
 
 def percentile(seconds: list[float], share: float = 0.95) -> float:
-    """Return the least value that so large a share of the values does not exceed; 0 when there are none."""
+    """Return the least value that the given share (0 to 1) of the values does not exceed; 0 when there are none."""
     ordered = sorted(seconds)
     return ordered[min(len(ordered) - 1, int(share * len(ordered)))] if ordered else 0.0
 
 
 def read_rows(path: Path) -> list[ClaimRow]:
-    """Return the rows of a file of results; a last line that was cut short is left out."""
+    """Return the rows of a file of results; an incomplete last line is left out."""
     rows = []
     for line in path.read_text().splitlines():
         try:

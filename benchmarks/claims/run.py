@@ -1,4 +1,4 @@
-"""One world from its folder to its row: written, run in its own process, judged, its claims held against the truth."""
+"""One world from its folder to its row: written, run in its own process, judged, and its claims checked."""
 
 import json
 import shutil
@@ -15,12 +15,14 @@ from benchmarks.claims import child
 from benchmarks.claims.asked import Asked, written
 from benchmarks.claims.refute import Countersearch, refuted, searched, trespassed
 from benchmarks.claims.row import ERROR, TIME, ClaimRow
-from benchmarks.harness.judging import ROOT, judge_path
+from benchmarks.harness.judging import CHECKOUT, judge_path
 from simulator.run.warming import warm_all
 from utak_command import beside
 
-WARMING = (5, 9)  # tasks: walking, and carrying
-WALL = 6  # times the processor seconds that a run may take by the clock: other programs may be at work as well
+WARMING_TASKS = (5, 9)  # tasks: walking, and carrying
+WALL_CLOCK_FACTOR = (
+    6  # times the processor seconds that a run may take by the clock: other programs may be at work as well
+)
 JUDGING = 300  # seconds
 ERRORS = "stderr.txt"
 OUT_OF_TIME = (-24, -9)  # SIGXCPU, SIGKILL
@@ -28,7 +30,7 @@ OUT_OF_TIME = (-24, -9)  # SIGXCPU, SIGKILL
 
 @dataclass(frozen=True)
 class Limits:
-    """How worlds are run: noise and its seed, most commands, processor seconds and megabytes, and search seconds."""
+    """The conditions of all runs: noise, its seed, and limits of commands, processor time, memory and search."""
 
     noise: float = 0.0
     noise_seed: int = 0
@@ -39,7 +41,7 @@ class Limits:
 
 
 def run_child(place: Path, limits: Limits) -> str:
-    """Run the robot in a child; return what to say in place of a verdict when it left no result."""
+    """Run the robot in a child process; return what stands in place of a verdict when it left no result."""
     options = {
         "--noise": limits.noise,
         "--noise-seed": limits.noise_seed,
@@ -51,7 +53,9 @@ def run_child(place: Path, limits: Limits) -> str:
     call = beside("benchmarks.claims.child", str(place.resolve()), *given)
     with (place / ERRORS).open("w") as errors:
         try:
-            done = subprocess.run(call, cwd=ROOT, stdout=errors, stderr=errors, timeout=WALL * limits.seconds or None)
+            done = subprocess.run(
+                call, cwd=CHECKOUT, stdout=errors, stderr=errors, timeout=WALL_CLOCK_FACTOR * limits.seconds or None
+            )
         except subprocess.TimeoutExpired:
             return TIME
     return TIME if done.returncode in OUT_OF_TIME else ERROR
@@ -63,7 +67,7 @@ Runner = Callable[[Path, Limits], str]
 def run_world(
     asked: Asked, limits: Limits, folder: Path, keep: Path | None = None, runner: Runner = run_child
 ) -> ClaimRow:
-    """Run a world in a folder that is removed again; a copy of what went wrong stays in `keep`.
+    """Run a world in a temporary folder and return its row; a copy of what went wrong stays in `keep`.
 
     runner : runs the robot in a scenario's folder as `run_child` does.
     """
@@ -77,7 +81,7 @@ def run_world(
     verdict = told.get("verdict", ended)
     believed, achieved = bool(told.get("believed")), bool(told.get("achieved"))
     unmet = [*told.get("unmet", []), *_misses(place, told)]
-    if told and trespassed(place / child.EPISODE, known.avoid):
+    if told and trespassed(place / child.EPISODE_FILE, known.avoid):
         unmet.append("the robot was where the goal forbids it to be")
         achieved = False
     search = searched(place, limits.search) if verdict == "impossible" else Countersearch("")
@@ -113,7 +117,7 @@ def run_world(
 def warm_up(folder: Path) -> None:
     """Compile kernels and run some worlds without limits, so that all are in the cache before any clock runs."""
     warm_all()
-    for task in WARMING:
+    for task in WARMING_TASKS:
         place = folder / f"warming-up-{task}"
         written(Asked("own_wide", 0, task), place)
         run_child(place, Limits(max_steps=20, seconds=0, megabytes=0))
@@ -121,20 +125,20 @@ def warm_up(folder: Path) -> None:
 
 
 def _cycles(place: Path) -> list[float]:
-    path = place / child.CYCLES
+    path = place / child.CYCLES_FILE
     return [float(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def _result(place: Path) -> dict[str, Any]:
-    path = place / child.RESULT
+    path = place / child.RESULT_FILE
     return dict(json.loads(path.read_text())) if path.exists() else {}
 
 
 def _misses(place: Path, told: dict[str, Any]) -> list[str]:
-    """Return, of a run that does not meet its expectations, where the robot and the things ended, in squares."""
+    """Return, for a run that does not meet its expectations, where the robot and the objects ended, in squares."""
     if not told.get("unmet"):
         return []
-    last = json.loads((place / child.EPISODE).read_text().splitlines()[-2])
+    last = json.loads((place / child.EPISODE_FILE).read_text().splitlines()[-2])
     things = [f"{name} about ({x:.2f}, {y:.2f})" for name, (x, y) in _middles(last["objects"]).items()]
     return ["the robot ended at ({:.2f}, {:.2f})".format(*last["utak"]), *things]
 
@@ -149,11 +153,11 @@ def _last_line(place: Path) -> str:
 
 
 def _judged(place: Path) -> list[str] | None:
-    """Return the judge's findings in a process of its own; None without a judge."""
+    """Run the judge in a process of its own and return its findings; None without a judge."""
     judge = judge_path()
     if judge is None:
         return None
-    call = [sys.executable, str(judge), str(place), str(place / child.EPISODE)]
+    call = [sys.executable, str(judge), str(place), str(place / child.EPISODE_FILE)]
     try:
         done = subprocess.run(call, capture_output=True, text=True, timeout=JUDGING)
     except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""The table of a campaign about claims: a line a kind, and one for all."""
+"""The table of a campaign about claims: one row for each kind, and one for all."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ VERDICTS = ("done", "impossible", "possible_if", "limit")
 
 
 def table(rows: Sequence[ClaimRow]) -> str:
-    """Return what came of the worlds by kind, as aligned text; verdicts of other names have columns of their own."""
+    """Return the results of the worlds by kind, as aligned text; unusual verdicts have columns of their own."""
     others = sorted({row.verdict for row in rows} - set(VERDICTS) - {"error"})
     verdicts = [*VERDICTS, *others, "error"]
     kinds = sorted({row.kind for row in rows})

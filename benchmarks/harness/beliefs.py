@@ -1,8 +1,8 @@
-"""What the robot believes, brought to the table's frame and compared with the truth.
+"""The robot's beliefs, brought to the table frame and compared with the truth.
 
-Only the campaign knows both sides. The robot keeps his map on the lattice of the table's squares, turned by some
-quarter turns, and his world model hangs on himself: so the two maps are laid on each other at the square in which he
-stands at the end. Where he woke must then fall on (0, 0) of the lattice; by how much it does not is his drift.
+Only the campaign knows both sides. The robot keeps its map in a frame of its own, turned by some quarter turns against
+the table, and its world model hangs on the robot itself. So the two maps are aligned at the square in which the robot
+stands at the end. The place where it woke must then fall on (0, 0) of the map frame; the difference is its drift.
 """
 
 import math
@@ -15,19 +15,22 @@ from numpy.typing import NDArray
 from shapely import Polygon, box, union_all
 from shapely.affinity import affine_transform
 
-from benchmarks.worlds.furniture import SHAPES
+from benchmarks.worlds.furniture import OUTLINE_SHAPES
 
-FULL = 1  # the state of kb.mapping.occupancy of a square that is certainly occupied
-FOVEA = 4  # squares from Utak to the edge of his fovea
-HAIR = 1e-5  # squares from a line between two squares to a point that is on it
-NEAR = 0.1  # the least common part of union for a believed object to be the true one
+SETTLED_FULL = 1  # the state of kb.mapping.occupancy of a square that is certainly occupied
+FOVEA_HALF_WIDTH = 4  # squares from the robot to the edge of its fovea
+LINE_TOLERANCE = 1e-5  # squares from a line between two squares to a point that is on it
+MIN_OVERLAP = 0.1  # the least common part of union for a believed object to be the true one
 
 
 class SeenBeliefs(NamedTuple):
-    """What a robot holds, in squares of the table.
+    """The beliefs of a robot, in squares, table frame.
 
-    objects : (class, polygon) of the objects of his model. certain : (x, y, occupied) squares held with confidence 100.
-    drift : how far his map has slipped from where he woke, in squares (the greater of both axes).
+    Attributes
+    ----------
+    objects : (class, polygon) of the objects of its model.
+    certain : (x, y, occupied), the squares held with confidence 100.
+    drift : how far its map has slipped from where it woke, in squares (the greater of both axes).
     """
 
     objects: list[tuple[str, Polygon]]
@@ -36,7 +39,7 @@ class SeenBeliefs(NamedTuple):
 
 
 class Score(NamedTuple):
-    """How beliefs compare with the truth: objects in sight of the fovea, those right; certain squares, those wrong."""
+    """The comparison of beliefs with the truth: objects seen by the fovea, right ones; certain squares, wrong ones."""
 
     met: int
     known: int
@@ -48,21 +51,21 @@ class Score(NamedTuple):
     mistaken: tuple[str, ...]
 
 
-class Frame(NamedTuple):
-    """The table's frame seen from the robot's lattice: quarter turns, and the table's square at (0, 0)."""
+class TableFrame(NamedTuple):
+    """The table frame seen from the map frame: quarter turns, and the table's square at (0, 0) of the map."""
 
     quarters: int
     east: int
     north: int
 
     def square(self, x: int, y: int) -> tuple[int, int]:
-        """A square of the lattice as a square of the table."""
+        """Convert a square of the map frame to a square of the table frame."""
         for _ in range(self.quarters):
             x, y = -y, x
         return x + self.east, y + self.north
 
     def polygon(self, shape: Any) -> Polygon:
-        """A polygon of the lattice as a polygon of the table."""
+        """Convert a polygon of the map frame to a polygon of the table frame."""
         c, s = [(1, 0), (0, 1), (-1, 0), (0, -1)][self.quarters]
         x = self.east + 0.5 - c * 0.5 + s * 0.5
         y = self.north + 0.5 - s * 0.5 - c * 0.5
@@ -70,26 +73,27 @@ class Frame(NamedTuple):
 
 
 def beliefs(robot: Any, origin: tuple[float, float], now: tuple[float, float], heading: int) -> SeenBeliefs:
-    """What a robot believes at the end; empty when he exposes no model.
+    """Return the beliefs of a robot at the end; empty when it exposes no model.
 
     Parameters
     ----------
-    robot : has `model` with `lattice.angle`, `place`, `objects` and `view`, as in kb.world.model.
-    woke, now : the table's points where he woke and where he stands. heading : degrees from table north, as he woke.
+    robot : has `model` with `frame`, `place`, `objects` and `view`, as in kb.world.model.
+    origin, now : where it woke and where it stands, points of the table frame.
+    heading : the direction that it faced when it woke, in degrees from table north.
     """
     model = getattr(robot, "model", None)
     if model is None:
         return SeenBeliefs([], [])
     quarters = round((heading - model.frame.angle) / 90) % 4
-    x, y = Frame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
-    frames = [Frame(quarters, east - x, north - y) for east, north in _beside(now)]
+    x, y = TableFrame(quarters, 0, 0).square(*(math.floor(v) for v in model.place))
+    frames = [TableFrame(quarters, east - x, north - y) for east, north in _beside(now)]
     drift, frame = min(
         (max(abs(frame.east - math.floor(origin[0])), abs(frame.north - math.floor(origin[1]))), frame)
         for frame in frames
     )
     objects = [(_class(node.shape), frame.polygon(_outline(node))) for node in model.objects]
     rows, columns = np.nonzero(model.certain)
-    full = model.view.state[rows, columns] == FULL
+    full = model.view.state[rows, columns] == SETTLED_FULL
     west, south = model.view.west, model.view.south
     certain = [
         (*frame.square(column + west, row + south), bool(occupied))
@@ -99,13 +103,13 @@ def beliefs(robot: Any, origin: tuple[float, float], now: tuple[float, float], h
 
 
 def _beside(place: tuple[float, float]) -> Iterable[tuple[int, int]]:
-    """The square of a point; right on a line those to either side, for he may be believed to stand on any of them."""
-    return product(*({math.floor(v - HAIR), math.floor(v + HAIR)} for v in place))
+    """Return the square of a point; on a grid line the squares on both sides, for the robot may be in either."""
+    return product(*({math.floor(v - LINE_TOLERANCE), math.floor(v + LINE_TOLERANCE)} for v in place))
 
 
 def _class(shape: Mapping[str, int]) -> str:
-    """The class believed most; of equals the first by name. Rectangle and polygon stand in for none."""
-    narrow = {name: sure for name, sure in shape.items() if name in SHAPES} or shape
+    """Return the class believed most, among equals the first by name; rectangle and polygon count as none."""
+    narrow = {name: sure for name, sure in shape.items() if name in OUTLINE_SHAPES} or shape
     return min(narrow, key=lambda name: (-narrow[name], name)) if narrow else "unknown"
 
 
@@ -116,16 +120,18 @@ def _outline(node: Any) -> Any:
 
 
 def under_fovea(track: Iterable[tuple[float, float]], heading: int) -> set[tuple[int, int]]:
-    """The table's squares that were ever under the 8 x 8 squares of the fovea."""
+    """Return the table's squares that were ever under the 8 x 8 squares of the fovea."""
     c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-    offsets = [(e, n) for e in range(-FOVEA, FOVEA) for n in range(-FOVEA, FOVEA)]
+    offsets = [
+        (e, n) for e in range(-FOVEA_HALF_WIDTH, FOVEA_HALF_WIDTH) for n in range(-FOVEA_HALF_WIDTH, FOVEA_HALF_WIDTH)
+    ]
     turned = {(round(e * c - n * s), round(e * s + n * c)) for e, n in offsets}
     halts = {(math.floor(x), math.floor(y)) for x, y in track}
     return {(x + dx, y + dy) for x, y in halts for dx, dy in turned}
 
 
 def squares_of(grid: NDArray[np.bool_]) -> set[tuple[int, int]]:
-    """The squares (x, y) of a digital representation."""
+    """Return the squares (x, y) of a digital representation."""
     rows, columns = np.nonzero(grid)
     return set(zip(columns.tolist(), rows.tolist(), strict=True))
 
@@ -140,6 +146,7 @@ def compare(
 
     Parameters
     ----------
+    held : the beliefs.
     things : by name, the class, polygon and digital representation (height, width) of each object at the end.
     occupied : (height, width), all that is not floor; beyond it all is verge.
     seen : the squares that were ever under the fovea.
@@ -162,8 +169,8 @@ def compare(
 
 
 def _match(held: SeenBeliefs, polygon: Polygon) -> str:
-    """The class of the believed object that covers the true one best; "nothing" where none does."""
-    best, name = NEAR, "nothing"
+    """Return the class of the believed object that covers the true one best; "nothing" where none does."""
+    best, name = MIN_OVERLAP, "nothing"
     for kind, shape in held.objects:
         common = shape.intersection(polygon).area
         part = common / (shape.area + polygon.area - common)

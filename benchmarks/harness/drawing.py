@@ -18,11 +18,12 @@ def drawing(
     objects: Mapping[str, Polygon] | None = None,
     marks: Mapping[str, BaseGeometry] | None = None,
 ) -> str:
-    """The table as lines of text.
+    """Return the table as lines of text.
 
     Parameters
     ----------
-    utak : where Utak is, if not where he began; drawn as an arrow near to his heading.
+    scenario : the world.
+    utak : where the robot is, if not where it began; drawn as an arrow near to its heading.
     objects : polygons of objects by name, if not those of the scenario.
     marks : regions to be drawn with a character of their own on free squares.
     """

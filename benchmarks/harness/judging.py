@@ -8,13 +8,13 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-ROOT = Path(__file__).resolve().parents[2]
+CHECKOUT = Path(__file__).resolve().parents[2]
 
 
 def judge_path() -> Path | None:
-    """Where the judge is, or None."""
+    """Return the path of the judge, or None."""
     named = os.environ.get("UTAK_JUDGE")
-    paths = [Path(named)] if named else [above / "shared" / "judge" / "judge.py" for above in ROOT.parents]
+    paths = [Path(named)] if named else [above / "shared" / "judge" / "judge.py" for above in CHECKOUT.parents]
     return next((path for path in paths if path.is_file()), None)
 
 
@@ -29,7 +29,7 @@ def _judge(path: Path) -> ModuleType:
 
 
 def findings(folder: Path, episode: Path) -> list[str] | None:
-    """What the judge finds in an episode, a line a finding; None when there is no judge."""
+    """Return what the judge finds in an episode, one finding a line; None when there is no judge."""
     path = judge_path()
     if path is None:
         return None

@@ -1,7 +1,7 @@
-"""A robot that knows the table from the start: what his planner would do if nothing had to be found out.
+"""A robot that knows the table from the start: what its planner would do if nothing had to be found out.
 
-The same mind as any other's, but his map is filled in before he wakes, and he knows how the table lies under him. The
-campaign compares with it how many commands finding out costs (`--knowing`).
+It is the same mind as any other, but its map is filled in before it wakes, and it knows the orientation of the table.
+The campaign compares the commands of both, to measure what finding out costs (`--knowing`).
 """
 
 import math
@@ -24,11 +24,11 @@ from planner.cycle import Options, Robot
 from simulator.run.session import RobotMaker
 from simulator.scenario.settings import Settings
 
-BEYOND = 3  # squares of verge known around the table
+KNOWN_VERGE = 3  # squares of verge known around the table
 
 
 class Informed(Knowledge):
-    """The knowledge of one who was told all about a world."""
+    """The knowledge of a robot that was told everything about a world."""
 
     def __init__(self, world: RandomScenario) -> None:
         super().__init__()
@@ -53,9 +53,11 @@ class Informed(Knowledge):
         occupied = np.logical_or.reduce(
             [digital(shape, width, height) for shape in (world.plan.verge, *(thing.polygon for thing in world.things))]
         )
-        occupied = np.pad(occupied, BEYOND, constant_values=True)
+        occupied = np.pad(occupied, KNOWN_VERGE, constant_values=True)
         rows, columns = np.indices(occupied.shape).reshape(2, -1)
-        offsets = [turned(c - BEYOND - x, r - BEYOND - y, -90 * quarters) for r, c in zip(rows, columns, strict=True)]
+        offsets = [
+            turned(c - KNOWN_VERGE - x, r - KNOWN_VERGE - y, -90 * quarters) for r, c in zip(rows, columns, strict=True)
+        ]
         squares = np.rint(offsets).astype(int)
         occupancy = memory.occupancy
         for corner in (squares.min(0), squares.max(0)):
@@ -66,7 +68,7 @@ class Informed(Knowledge):
 
 
 def knowing(world: RandomScenario) -> RobotMaker:
-    """Makes robots that know a world."""
+    """Return a maker of robots that know a world."""
 
     def make(body: Body, task: Task, settings: Settings) -> Any:
         robot = Robot(body, task, Options(settings.paths, settings.kb_files, settings.max_steps, settings.pull))

@@ -1,4 +1,4 @@
-"""What is said of a passage that is too narrow, beside the truth."""
+"""The passage that a verdict calls too narrow, compared with the truth."""
 
 import math
 import re
@@ -10,14 +10,15 @@ from benchmarks.worlds.scenes import RandomScenario
 from kb.perception.frame import turned
 
 ALLOWED = 0.25  # squares by which a missing width may be off
-NEAR = 1.5  # squares from the true passage to the one told
+MAX_PASSAGE_DISTANCE = 1.5  # squares from the true passage to the one told
 SAID = re.compile(r"at POINT \((\S+) (\S+)\), is too narrow by (\S+) squares")
 
 
 class Narrowness(NamedTuple):
-    """off : squares by which the missing width that is told differs from the true one; nan when none is told.
+    """The comparison of a named passage with the true one.
 
-    away : squares from the passage told to the true one, 0 within it; nan when none is told.
+    off : squares by which the named missing width differs from the true one; nan when none is named.
+    away : squares from the named passage to the true one, 0 within it; nan when none is named.
     """
 
     off: float
@@ -26,7 +27,7 @@ class Narrowness(NamedTuple):
     @property
     def right(self) -> bool:
         """Whether the passage was told, and rightly."""
-        return abs(self.off) <= ALLOWED and self.away <= NEAR
+        return abs(self.off) <= ALLOWED and self.away <= MAX_PASSAGE_DISTANCE
 
 
 def narrowness(world: RandomScenario, reason: str) -> Narrowness | None:

@@ -1,6 +1,7 @@
-"""How long the robot thinks: the time of his steps without the time that the world takes.
+"""The time of the robot's thinking: the time of its steps without the time that the world takes.
 
-Both clocks are read: the wall's, which a user feels, and the processor's, which other work on the machine leaves alone.
+Both clocks are read: the clock on the wall, which a user feels, and the processor's, which other work on the machine
+does not affect.
 """
 
 import time
@@ -19,12 +20,12 @@ class Seconds(NamedTuple):
         return Seconds(self.wall - other.wall, self.processor - other.processor)
 
     def plus(self, other: "Seconds") -> "Seconds":
-        """The sum of two times."""
+        """Return the sum of two times."""
         return Seconds(self.wall + other.wall, self.processor + other.processor)
 
 
 def now() -> Seconds:
-    """Both clocks."""
+    """Return the time by both clocks."""
     return Seconds(time.perf_counter(), time.process_time())
 
 
@@ -36,14 +37,14 @@ class TimedBody:
         self.seconds = Seconds(0.0, 0.0)
 
     def wake(self) -> Impression:
-        """As kb.body.Body."""
+        """Wake the body, as kb.body.Body.wake."""
         begun = now()
         impression = self._body.wake()
         self.seconds = self.seconds.plus(now() - begun)
         return impression
 
     def act(self, command: Command) -> Impression:
-        """As kb.body.Body."""
+        """Execute a command, as kb.body.Body.act."""
         begun = now()
         impression = self._body.act(command)
         self.seconds = self.seconds.plus(now() - begun)

@@ -1,4 +1,4 @@
-"""The table of a campaign: a line a task, and the worlds that went wrong."""
+"""The table of a campaign: one row for each task, and the worlds that went wrong."""
 
 import math
 from collections import Counter
@@ -11,7 +11,7 @@ ROMAN = {1: "i", 2: "ii", 3: "iii", 4: "iv", 5: "v", 6: "vi", 7: "vii", 8: "viii
 
 
 def table(trials: Sequence[CampaignTrial]) -> str:
-    """What came of the trials, a row a task and one for all, as aligned text."""
+    """Return the results of the trials, one row for each task and one for all, as aligned text."""
     tasks = sorted({trial.task for trial in trials})
     groups = [(f"({ROMAN[task]})", [trial for trial in trials if trial.task == task]) for task in tasks]
     rows = [_row(name, group) for name, group in [*groups, ("all", list(trials))]]
@@ -46,7 +46,7 @@ def _row(name: str, trials: Sequence[CampaignTrial]) -> dict[str, str]:
 
 
 def _milliseconds(seconds: Sequence[float]) -> str:
-    """Median and 95th percentile."""
+    """Return the median and the 95th percentile of some seconds, in milliseconds, as text."""
     if not seconds:
         return "-"
     ordered = sorted(1000 * value for value in seconds)
@@ -58,7 +58,7 @@ def _part(some: int, whole: int) -> str:
 
 
 def _judged(trials: Sequence[CampaignTrial]) -> str:
-    """Episodes in which the judge found something; "none!" when there was no judge."""
+    """Return the number of episodes in which the judge found something; "none!" when there was no judge."""
     judged = [trial.judged for trial in trials if not trial.crash]
     return "none!" if any(said is None for said in judged) else str(sum(bool(said) for said in judged))
 
@@ -68,7 +68,7 @@ def _summed(trials: Sequence[CampaignTrial], name: str) -> int:
 
 
 def verdicts(trials: Sequence[CampaignTrial]) -> str:
-    """How often each verdict was given, where the task can be done and where it cannot."""
+    """Return how many times each verdict was given, for possible and for impossible tasks."""
     lines = []
     for possible in (True, False):
         counted = Counter(trial.verdict for trial in trials if trial.possible is possible)
@@ -79,7 +79,7 @@ def verdicts(trials: Sequence[CampaignTrial]) -> str:
 
 
 def narrowness(trials: Sequence[CampaignTrial]) -> str:
-    """How well passages that are too narrow were told; "" when there were none."""
+    """Return how well passages that are too narrow were named; "" when there were none."""
     told = [trial.narrow for trial in trials if trial.narrow is not None]
     if not told:
         return ""
@@ -93,7 +93,7 @@ def narrowness(trials: Sequence[CampaignTrial]) -> str:
 
 
 def faults(trials: Sequence[CampaignTrial]) -> str:
-    """A line for whatever was not as it should be, with the worlds in which it was so."""
+    """Return a line for each kind of fault, with the worlds that have it."""
     said: dict[str, list[str]] = {}
     for trial in trials:
         found = _faults(trial)

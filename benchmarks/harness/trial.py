@@ -34,9 +34,9 @@ LOOPS = (4,)  # tasks whose shortest way is a loop
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a trial is run: noise, seed of the noise, path-finder, most commands, most seconds.
+    """The conditions of a trial: noise and its seed, path-finder, greatest number of commands and of seconds.
 
-    knowing : is it also run by one who knows everything? kind : of the world, see benchmarks.worlds.makers.
+    knowing : whether a robot that knows everything is run, too. kind : of the world, see benchmarks.worlds.makers.
     """
 
     noise: float = 0.0
@@ -50,12 +50,16 @@ class Conditions:
 
 @dataclass(frozen=True)
 class CampaignTrial:
-    """What came of one world.
+    """The result of one world.
 
-    `narrow` compares what he said of too narrow a passage with the truth (None where none is).
-    `needed` tells how many commands the same planner gave knowing everything (0: not tried, or not achieved),
-    `judged` holds the judge's findings (None without a judge), `cycles` the times of each cycle, `walked` and
-    `shortest` squares (nan where there is no such way), `crash` the last line of an error, if there was one.
+    Attributes
+    ----------
+    narrow : the named passage that is too narrow, compared with the truth; None where there is none.
+    needed : the number of commands of the same planner when it knows everything; 0 when not tried, or not achieved.
+    judged : the judge's findings, None without a judge.
+    cycles : the times of each cycle.
+    walked, shortest : lengths in squares; nan where there is no such way.
+    crash : the last line of an error, if there was one.
     """
 
     task: int
@@ -77,21 +81,21 @@ class CampaignTrial:
 
     @property
     def false_done(self) -> bool:
-        """Believed done, and was not."""
+        """Whether the task was believed done, and was not."""
         return self.believed and not self.achieved
 
     @property
     def right(self) -> bool:
-        """Achieved where that was possible, and refused with a reason where it was not."""
+        """Whether the task was achieved where possible, and refused with a reason where impossible."""
         return self.achieved if self.possible else not (self.crash or self.believed or not self.reason)
 
     @property
     def clean(self) -> bool:
-        """Nothing at all went wrong: right, nothing found by the judge, and no certain square wrong."""
+        """Whether nothing went wrong: right, no finding of the judge, and no certain square wrong."""
         return self.right and not self.judged and not (self.score and self.score.wrong)
 
     def row(self) -> dict[str, Any]:
-        """The trial as a JSON object."""
+        """Return the trial as a JSON object."""
         row = asdict(self) | {"score": self.score and self.score._asdict(), "clean": self.clean}
         return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row.items()}
 
@@ -108,7 +112,7 @@ def run_trial(
     watch: Callable[[Session], None] = lambda session: None,
     maker: RobotMaker = make_robot,
 ) -> CampaignTrial:
-    """Make a world, run the robot in it, and judge what he did; errors of the robot end up in the trial."""
+    """Make a world, run the robot in it, and judge its episode; errors of the robot end up in the trial."""
     world = scenario(task, seed, conditions.kind)
     place = write(world, folder / world.name)
     try:
@@ -123,7 +127,7 @@ def run_trial(
 
 
 def _needed(world: RandomScenario, place: Path, conditions: Conditions) -> int:
-    """The commands that the same planner gives knowing everything; 0 when he does not achieve the task."""
+    """Return the number of commands that the same planner gives when it knows everything; 0 when it fails the task."""
     settings = Settings(conditions.seed, 0.0, conditions.paths, conditions.max_steps)
     with EpisodeLog(place / "knowing.jsonl") as log:
         result = Session(read_scenario(place), settings, knowing(world), log).run()
@@ -189,7 +193,7 @@ def _shortest(world: RandomScenario) -> float:
 
 
 def _scored(world: RandomScenario, robot: Any, moved: dict[str, Polygon], track: list[tuple[float, float]]) -> Score:
-    """What the robot believes at the end against the truth at the end."""
+    """Compare the robot's beliefs at the end with the truth at the end."""
     plan = world.plan
     things = {}
     occupied = digital(plan.verge, plan.width, plan.height)
@@ -204,7 +208,7 @@ def _scored(world: RandomScenario, robot: Any, moved: dict[str, Polygon], track:
 
 
 class _alarm:  # noqa: N801
-    """Within this context an alarm ends what takes too long (0: never)."""
+    """Return a context within which an alarm ends what takes too long. seconds : 0 for never."""
 
     def __init__(self, seconds: int) -> None:
         self._seconds = seconds

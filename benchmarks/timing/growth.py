@@ -1,10 +1,10 @@
-"""How the time of one action cycle grows with the area that Utak has seen.
+"""The time of one action cycle, by the area that the robot has seen.
 
     python -m benchmarks.timing.growth [--sides 64,128,256,512] [--steps 60]
 
-Utak crosses square tables of growing side, with blocks strewn over them, towards the northeast corner. One line a
-table: the squares seen, and the
-processor's milliseconds of a cycle, for the last third of its cycles and for each 1,000 squares seen.
+The robot crosses square tables of growing side, with blocks strewn over them, towards the northeast corner. One line a
+table: the squares seen, and the processor's milliseconds of a cycle, for the last third of its cycles and for each
+1,000 squares seen.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def crossing(side: int, steps: int) -> tuple[Robot, list[float]]:
-    """Let Utak cross a table; returns him and the processor's milliseconds of each cycle, his body's not counted."""
+    """Let the robot cross a table; return it and the processor's milliseconds of each cycle without its body's."""
     body = Embodiment(Tabletop(strewn(side), 0.0, 0))
     facts = "at(utak, corner(northeast))."
     start, goal = Source("start.lp", ""), Source("goal.lp", facts)
@@ -57,7 +57,7 @@ def crossing(side: int, steps: int) -> tuple[Robot, list[float]]:
 
 
 def strewn(side: int) -> World:
-    """A square table with a block of 3 x 3 in the middle of every 16 x 16 squares."""
+    """Return a square table with a block of 3 x 3 in the middle of every 16 x 16 squares."""
     floor = box(2, 2, side - 2, side - 2)
     verge = Polygon([(0, 0), (side, 0), (side, side), (0, side)], [list(floor.exterior.coords)[:-1]])
     blocks = [

@@ -1,5 +1,6 @@
-"""One cold run of benchmarks.timing.sixrooms: python -m benchmarks.timing.sixrooms_child FOLDER BEGAN; prints its
-times as JSON.
+"""One cold run of benchmarks.timing.sixrooms: python -m benchmarks.timing.sixrooms_child FOLDER BEGAN.
+
+It prints its times as JSON.
 """
 
 import time
@@ -56,7 +57,7 @@ def main(folder: Path, began: float) -> None:
 
 
 def _counted(manipulation_oracle: object) -> list[object]:
-    """A list that grows with each way to carry something that geometry is asked for."""
+    """Return a list that grows with each manipulation query that geometry is asked."""
     asked: list[object] = []
     plan = manipulation_oracle.plan_carrying  # type: ignore[attr-defined]
 

@@ -1,4 +1,4 @@
-"""Random worlds for the tasks in which Utak carries something: (v) to (ix)."""
+"""Random worlds for the tasks (v) to (ix), in which the robot carries an object."""
 
 import math
 from collections.abc import Sequence
@@ -8,11 +8,11 @@ import numpy as np
 from shapely import Point, Polygon, union_all
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.floorplans import SIDES, SNUG, FloorPlan, PlanDoor, Sides, corridor, random_plan
+from benchmarks.worlds.floorplans import ROOM_SIDES, SNUG, FloorPlan, PlanDoor, SidesByCount, corridor, random_plan
 from benchmarks.worlds.furniture import ell, rectangle
 from benchmarks.worlds.placing import colour, face, furniture, lay, stand
 from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
-from benchmarks.worlds.walking import NOWHERE, corner_box, furthest_corner
+from benchmarks.worlds.walking import NO_REGION, corner_box, furthest_corner
 
 # Least door in a wall 2 thick that an L of arms `a` and width `w` passes: {(a, w): squares}. Found by a flood of the
 # grid of poses, so right to about 0.1; that of (6, 2) agrees with 3.80-3.88, proved by other means.
@@ -20,7 +20,7 @@ ELLS = {(5, 2): 3.84, (6, 2): 3.84, (7, 2): 3.84, (8, 2): 3.84, (6, 3): 5.28, (8
 
 
 def load(rng: np.random.Generator, shape: str) -> tuple[Polygon, float]:
-    """An outline to be carried and the least passage in a wall 2 thick that lets it through."""
+    """Return an outline to be carried and the least width of a passage in a wall 2 thick that lets it through."""
     if shape == "square":
         side = int(rng.integers(3, 6))
         return rectangle(side, side), float(side)
@@ -33,7 +33,7 @@ def load(rng: np.random.Generator, shape: str) -> tuple[Polygon, float]:
 
 
 def door_widths(least: float, narrow: bool) -> tuple[int, int]:
-    """Doors 1 to 3 squares wider than the least passage, or by half a square to one and a half too narrow."""
+    """Return door widths: 1 to 3 squares more than the least passage, or half a square to one and a half less."""
     if narrow:
         width = math.ceil(least - 1.5)
         return width, width
@@ -41,11 +41,11 @@ def door_widths(least: float, narrow: bool) -> tuple[int, int]:
 
 
 def to_corner_world(
-    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES, fewest: int = 1
+    rng: np.random.Generator, seed: int, narrow: bool, sides: SidesByCount = ROOM_SIDES, fewest: int = 1
 ) -> RandomScenario | None:
-    """(v) Push the square into the northeast corner of the floor; narrow: the corner is beyond too narrow a door.
+    """Return a world of task (v): push the square into the northeast corner of the floor.
 
-    fewest : rooms.
+    narrow : whether the corner is beyond a door that is too narrow. fewest : the least number of rooms.
     """
     outline, least = load(rng, "square")
     plan = random_plan(rng, 2 if narrow else int(rng.integers(fewest, 4)), door_widths(least, narrow), sides=sides)
@@ -60,9 +60,14 @@ def to_corner_world(
 
 
 def next_room_world(
-    rng: np.random.Generator, seed: int, narrow: bool, task: int = 6, shape: str = "square", sides: Sides = SIDES
+    rng: np.random.Generator,
+    seed: int,
+    narrow: bool,
+    task: int = 6,
+    shape: str = "square",
+    sides: SidesByCount = ROOM_SIDES,
 ) -> RandomScenario | None:
-    """(vi) Push the square, or (ix) the L-shaped object, into the next room."""
+    """Return a world of task (vi), push the square, or (ix), push the L-shaped object, into the next room."""
     outline, least = load(rng, shape)
     plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
     home = _one_of(rng, [room.name for room in plan.rooms])
@@ -72,9 +77,9 @@ def next_room_world(
 
 
 def through_door_world(
-    rng: np.random.Generator, seed: int, narrow: bool, sides: Sides = SIDES
+    rng: np.random.Generator, seed: int, narrow: bool, sides: SidesByCount = ROOM_SIDES
 ) -> RandomScenario | None:
-    """(vii) Push the brick through the door: any door, so it ends in any other room."""
+    """Return a world of task (vii): push the brick through a door, and so into any other room."""
     outline, least = load(rng, "brick")
     plan = random_plan(rng, 2 if narrow else int(rng.integers(2, 4)), door_widths(least, narrow), sides=sides)
     home = _one_of(rng, [room.name for room in plan.rooms])
@@ -84,7 +89,10 @@ def through_door_world(
 
 
 def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> RandomScenario | None:
-    """(viii) Push the brick around the corner of a corridor; narrow: the second arm is narrower than the brick."""
+    """Return a world of task (viii): push the brick around the corner of a corridor.
+
+    narrow : whether the second arm is narrower than the brick.
+    """
     outline, least = load(rng, "brick")
     long, thin = int(outline.bounds[2]), int(least)
     low = long + 4  # Utak has to get round the brick in the first arm
@@ -95,7 +103,7 @@ def around_corner_world(rng: np.random.Generator, seed: int, narrow: bool) -> Ra
     if polygon is None or polygon.distance(two) < 6:
         return None
     thing = PlacedThing("t1", colour(rng), "brick", polygon)
-    utak = stand(rng, [one], [thing], NOWHERE, 0)
+    utak = stand(rng, [one], [thing], NO_REGION, 0)
     missing = float(thin - second) if narrow else 0.0
     return _finished(8, seed, plan, (thing,), utak, face(rng), "around(x, corner).\n", two, missing)
 
@@ -132,7 +140,7 @@ def carried(
     heading: int,
     least: float,
 ) -> RandomScenario | None:
-    """A world with the load in its home room and up to two other things that leave it a way; None when they do not."""
+    """Return a world with the load in its home room and up to two other objects; None when these block its way."""
     necks = [door.polygon for door in plan.doors]
     polygon = lay(rng, outline, plan.room(home), [*necks, *([target] if task == 5 else [])])
     if polygon is None:
@@ -142,7 +150,7 @@ def carried(
     keep = [polygon, *[neck.buffer(span) for neck in necks], *([target.buffer(span)] if task == 5 else [])]
     rooms = [room.polygon for room in plan.rooms]
     things = (thing, *furniture(rng, rooms, int(rng.integers(0, 3)), keep, without=[shape]))
-    utak = stand(rng, rooms if least == 0 else [plan.room(home)], things, NOWHERE, 0)
+    utak = stand(rng, rooms if least == 0 else [plan.room(home)], things, NO_REGION, 0)
     if not least and not _roomy(plan, things, span / 2 + 0.5, target if task == 5 else None):
         return None
     missing = least - plan.doors[0].width if least else 0.0
@@ -150,7 +158,7 @@ def carried(
 
 
 def _roomy(plan: FloorPlan, things: Sequence[PlacedThing], radius: float, target: BaseGeometry | None) -> bool:
-    """Whether a disc about the load can go in each room from the load to the doors and to the target's box."""
+    """Return whether a disc around the load can move in each room from the load to the doors and the target's box."""
     for room in plan.rooms:
         others = union_all([thing.polygon for thing in things[1:]])
         free = room.polygon.buffer(-radius).difference(others.buffer(radius))
@@ -167,7 +175,7 @@ def _roomy(plan: FloorPlan, things: Sequence[PlacedThing], radius: float, target
 
 
 def _before(door: PlanDoor, room: Polygon, radius: float) -> Point:
-    """The point in a room before the middle of a door, the radius away from the wall."""
+    """Return the point in a room that is `radius` before the middle of a door."""
     middle = door.polygon.centroid
     away = radius + door.polygon.area / door.width / 2
     steps = [(away, 0.0), (-away, 0.0)] if door.vertical else [(0.0, away), (0.0, -away)]

@@ -12,7 +12,7 @@ from shapely import Polygon, box, union_all
 from shapely.geometry.base import BaseGeometry
 
 JAMB = 2  # squares of wall left between a door and the corner of a room
-ARM = 9  # squares: the least width of an arm of an L-shaped room
+MIN_ARM_WIDTH = 9  # squares: the least width of an arm of an L-shaped room
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,11 @@ class FloorPlan:
         return box(0, 0, self.width, self.height).difference(self.floor)
 
     def room(self, name: str) -> Polygon:
-        """The polygon of a room by name."""
+        """Return the polygon of a room by its name."""
         return next(room.polygon for room in self.rooms if room.name == name)
 
     def neighbours(self, name: str) -> list[str]:
-        """The rooms that share a door with one."""
+        """Return the rooms that share a door with a room."""
         return sorted({b if a == name else a for a, b in (door.rooms for door in self.doors) if name in (a, b)})
 
 
@@ -80,14 +80,14 @@ LAYOUTS: dict[int, list[list[Cell]]] = {
         [(1, 0), (0, 0), (0, 1), (1, 1), (1, 2), (0, 2)],
     ],
 }
-SIDES = {
+ROOM_SIDES = {
     1: (20, 58),
     2: (16, 29),
     3: (14, 19),
     6: (14, 19),
 }  # least and greatest inner side along an axis with so many rooms
-Sides = Mapping[int, tuple[int, int]]
-SNUG: Sides = dict.fromkeys(SIDES, (18, 24))  # of rooms as they are mostly drawn
+SidesByCount = Mapping[int, tuple[int, int]]
+SNUG: SidesByCount = dict.fromkeys(ROOM_SIDES, (18, 24))  # of rooms as they are mostly drawn
 
 
 def random_plan(
@@ -98,19 +98,19 @@ def random_plan(
     closed: bool = False,
     ells: float = 0.15,
     loops: float = 0.0,
-    sides: Sides = SIDES,
+    sides: SidesByCount = ROOM_SIDES,
 ) -> FloorPlan:
-    """A plan with so many rooms, each joined to the next by a door.
+    """Return a random plan of some rooms, each joined to the next by a door.
 
     Parameters
     ----------
     rooms : 1 to 3, or 6.
     doors : least and greatest width of a door in squares; every room is at least twice as wide as its doors.
     wall : thickness of the walls in squares.
-    closed : leave the doors out: rooms that nothing joins.
+    closed : whether the doors are left out, so that nothing joins the rooms.
     ells : chance that a corner is cut from a room, which makes it L-shaped.
     loops : chance that two neighbours which do not follow each other share a door too, where their walls let them.
-    sides : least and greatest inner side of a room along an axis with so many of them.
+    sides : least and greatest inner side of a room along an axis, by the number of rooms along it.
     """
     while True:
         cells = LAYOUTS[rooms][rng.integers(len(LAYOUTS[rooms]))]
@@ -122,13 +122,16 @@ def random_plan(
             pairs = [(i, j) for j in range(rooms) for i in range(j - 1) if loops and rng.random() < loops]
             joints += [_door(rng, rects, pair, widths[pair[0]], wall) for pair in pairs]
             made = [joint for joint in joints if joint is not None]
-            shapes = [_cut(rng, rect, made, max(ARM, least)) if rng.random() < ells else box(*rect) for rect in rects]
+            shapes = [
+                _cut(rng, rect, made, max(MIN_ARM_WIDTH, least)) if rng.random() < ells else box(*rect)
+                for rect in rects
+            ]
             named = tuple(PlanRoom(f"r{i + 1}", shape) for i, shape in enumerate(shapes))
             return FloorPlan(*size, named, () if closed else tuple(made))
 
 
 def corridor(rng: np.random.Generator, widths: tuple[int, int], wall: int = 2) -> tuple[FloorPlan, Polygon, Polygon]:
-    """A floor in the form of an L, mirrored at random: the plan (one room), its two arms without the elbow.
+    """Return an L-shaped floor, mirrored at random: the plan (one room), and its two arms without the elbow.
 
     The first arm runs west and east and has width `widths[0]`, the second north and south with `widths[1]`.
     """
@@ -155,7 +158,7 @@ def _mirrored(part: Polygon, width: int, height: int, east: bool, north: bool) -
     return box(west, south, right, top)
 
 
-def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: Sides) -> list[tuple[int, int]]:
+def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: SidesByCount) -> list[tuple[int, int]]:
     low, high = sides[count]
     spans, at = [], wall
     for _ in range(count):
@@ -166,9 +169,9 @@ def _spans(rng: np.random.Generator, count: int, wall: int, least: int, sides: S
 
 
 def _rectangles(
-    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: Sides
+    rng: np.random.Generator, cells: list[Cell], wall: int, least: int, sides: SidesByCount
 ) -> tuple[list[Rect], Cell]:
-    """One rectangle a cell of the layout, drawn in a little on sides where no room lies, and the table's size."""
+    """Return one rectangle for each cell of the layout, and the table's size; outer sides are drawn in a little."""
     columns = _spans(rng, 1 + max(c for c, _ in cells), wall, least, sides)
     rows = _spans(rng, 1 + max(r for _, r in cells), wall, least, sides)
     rects = []
@@ -186,7 +189,7 @@ def _rectangles(
 
 
 def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], width: int, wall: int) -> PlanDoor | None:
-    """A door between two of the rectangles, or None where they do not face each other widely enough."""
+    """Return a door between two of the rectangles, or None where they do not face each other widely enough."""
     a, b = (rects[index] for index in pair)
     names = (f"r{pair[0] + 1}", f"r{pair[1] + 1}")
     for vertical in (True, False):
@@ -204,7 +207,7 @@ def _door(rng: np.random.Generator, rects: list[Rect], pair: tuple[int, int], wi
 
 
 def _cut(rng: np.random.Generator, rect: Rect, doors: list[PlanDoor], arm: int) -> Polygon:
-    """The rectangle without one of its corners, the cut clear of the doors, or as it was when it is too small."""
+    """Return the rectangle without one of its corners, clear of the doors; unchanged when it is too small."""
     west, south, east, north = rect
     room = box(*rect)
     if min(east - west, north - south) < arm + 4:
@@ -220,7 +223,7 @@ def _cut(rng: np.random.Generator, rect: Rect, doors: list[PlanDoor], arm: int) 
 
 
 def convex_corners(floor: BaseGeometry) -> list[tuple[float, float, float, float]]:
-    """Corners of a rectilinear floor where it turns by a right angle to the inside: (x, y, inward x, inward y)."""
+    """Return the convex corners of a rectilinear floor: (x, y, inward x, inward y)."""
     corners = []
     for polygon in getattr(floor, "geoms", [floor]):
         ring = list(polygon.exterior.coords)[:-1]
@@ -234,6 +237,6 @@ def convex_corners(floor: BaseGeometry) -> list[tuple[float, float, float, float
 
 
 def is_simple_row(plan: FloorPlan) -> bool:
-    """Whether each room is joined to the next one (what random_plan promises unless the rooms are closed off)."""
+    """Return whether each room is joined to the next one, as random_plan promises unless the rooms are closed off."""
     joined = [set(door.rooms) for door in plan.doors]
     return all({a.name, b.name} in joined for a, b in pairwise(plan.rooms))

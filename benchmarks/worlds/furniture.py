@@ -1,8 +1,8 @@
-"""Objects of all the shapes that Utak tells apart, as polygons about the origin.
+"""Objects of all shape classes that the robot tells apart, as polygons about the origin.
 
-Turned objects are larger: the few squares of a small square turned by 40 degrees could be those of a disc. A disc of
-radius 3 fills 6 x 6 squares as a square does. One of radius 4 leaves out one square at each corner, as does a square
-of side 7 turned by 10 degrees. From 5 on a disc leaves out three, which no square of its size does.
+Rotated objects are larger: the few squares of a small square at 40 degrees could be those of a disc. A disc of radius 3
+fills 6 x 6 squares as a square does. One of radius 4 leaves out one square at each corner, as does a square of side 7
+at 10 degrees. From 5 on a disc leaves out three, which no square of its size does.
 """
 
 import math
@@ -11,14 +11,15 @@ import numpy as np
 from shapely import Point, Polygon
 from shapely.affinity import rotate, translate
 
-SHAPES = ("square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc")
-COLOURS = "acdefghijklmnopqrstuvwxyz"  # b is the verge's
+OUTLINE_SHAPES = ("square", "brick", "l_shape", "t_shape", "u_shape", "triangle", "disc")
+THING_COLOURS = "acdefghijklmnopqrstuvwxyz"  # b is the verge's
 
 
 def outline(rng: np.random.Generator, shape: str, turned: bool) -> Polygon:
-    """A polygon of the shape named, sides along the axes, with room for a later turn where `turned`.
+    """Return a polygon of the named shape class with sides along the axes.
 
-    Its lower left corner is at the origin and all corners (but a disc's) are whole squares.
+    Its lower left corner is at the origin, and all corners (but a disc's) are at whole squares.
+    turned : whether it must be large enough to be recognised after a rotation.
     """
     grow = 2 if turned else 0
     if shape == "square":
@@ -40,17 +41,17 @@ def outline(rng: np.random.Generator, shape: str, turned: bool) -> Polygon:
 
 
 def rectangle(width: int, height: int) -> Polygon:
-    """A square or a brick."""
+    """Return a square or a brick."""
     return Polygon([(0, 0), (width, 0), (width, height), (0, height)])
 
 
 def ell(width: int, height: int, thick: int) -> Polygon:
-    """An L: a foot of `width`, a stem of `height`, both `thick`."""
+    """Return an L: a foot of `width`, a stem of `height`, both `thick`."""
     return Polygon([(0, 0), (width, 0), (width, thick), (thick, thick), (thick, height), (0, height)])
 
 
 def tee(arm: int, thick: int, stem: int) -> Polygon:
-    """A T on its head: a bar of twice the arm and the stem's thickness, a stem of length `stem` upon its middle."""
+    """Return an upside-down T: a bar of twice the arm and the stem's thickness, a stem `stem` long on its middle."""
     bar, top = 2 * arm + thick, thick + stem
     left, right = arm, arm + thick
     return Polygon(
@@ -59,27 +60,27 @@ def tee(arm: int, thick: int, stem: int) -> Polygon:
 
 
 def horseshoe(thick: int, gap: int, depth: int) -> Polygon:
-    """A U that opens to the north: walls `thick`, `gap` between its legs, which are `depth` deep."""
+    """Return a U that opens to the north: walls `thick`, `gap` between its legs, which are `depth` deep."""
     width, top = 2 * thick + gap, thick + depth
     inner = [(width - thick, top), (width - thick, thick), (thick, thick), (thick, top)]
     return Polygon([(0, 0), (width, 0), (width, top), *inner, (0, top)])
 
 
 def triangle(rng: np.random.Generator, least: int) -> Polygon:
-    """A right-angled triangle or one with its tip above the base."""
+    """Return a right-angled triangle or one with its tip above the base."""
     base, height = least + int(rng.integers(0, 4)), least + int(rng.integers(0, 4))
     tip = 0 if rng.random() < 0.5 else int(rng.integers(1, base))
     return Polygon([(0, 0), (base, 0), (tip, height)])
 
 
 def disc(radius: int, corners: int = 32) -> Polygon:
-    """A regular polygon of so many corners, its lower left at the origin."""
+    """Return a regular polygon with so many corners, its lower left at the origin."""
     angles = [2 * math.pi * (k + 0.5) / corners for k in range(corners)]
     return Polygon([(radius + radius * math.cos(a), radius + radius * math.sin(a)) for a in angles])
 
 
 def laid(rng: np.random.Generator, polygon: Polygon, centre: Point, turned: bool) -> Polygon:
-    """The polygon laid at about a place: turned by any angle, or by quarter turns with its corners on whole squares."""
+    """Return the polygon at a place: at any angle, or at a quarter turn with its corners on whole squares."""
     if turned:
         spun = rotate(polygon, float(rng.uniform(0, 360)), origin="center")
         middle = spun.envelope.centroid
@@ -91,5 +92,5 @@ def laid(rng: np.random.Generator, polygon: Polygon, centre: Point, turned: bool
 
 
 def rounded(polygon: Polygon) -> Polygon:
-    """Corners to six decimals: what the world file says is then exactly what the truth says."""
+    """Return the polygon with corners of six decimals: the world file then says exactly what the truth is."""
     return Polygon([(round(x, 6) + 0.0, round(y, 6) + 0.0) for x, y in polygon.exterior.coords[:-1]])

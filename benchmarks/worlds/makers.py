@@ -12,48 +12,48 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.worlds.carrying import CARRYING, CARRYING_SNUG
-from benchmarks.worlds.loose import LOOSE
+from benchmarks.worlds.loose import LOOSE_MAKERS
 from benchmarks.worlds.plain import PLAIN
 from benchmarks.worlds.scenes import RandomScenario, write
 from benchmarks.worlds.walking import WALKING
 
-MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE}
+WORLD_MAKERS = {"wide": WALKING | CARRYING, "snug": WALKING | CARRYING_SNUG, "plain": PLAIN, "loose": LOOSE_MAKERS}
 STREAMS = {"wide": (), "plain": (1,), "snug": (2,), "loose": (3,)}
 UNABLE_EVERY = 12  # seeds
-TRIES = 20_000
+MAX_WORLD_TRIES = 20_000
 
 
 def scenario(task: int, seed: int, kind: str = "wide") -> RandomScenario:
-    """A random world with a task.
+    """Return a random world with a task.
 
     Parameters
     ----------
     task : 1 to 9, as in the paper: (i) to (ix).
     seed : any integer from 0; when it is 11 modulo 12 the task cannot be done.
     kind : "wide"; "snug", in which the rooms of what is carried are no larger than people mostly draw them (two or
-        three, of 18 to 24 squares); "loose", the same with things between the squares, turned, and Ls of two widths
-        (tasks 5 to 9); or "plain", a world of benchmarks.worlds.plain, in which every task can be done.
+        three, of 18 to 24 squares); "loose", the same with objects off the grid, rotated, and Ls of two widths (tasks 5
+        to 9); or "plain", a world of benchmarks.worlds.plain, in which every task can be done.
 
     Raises
     ------
     ValueError
         When there is no such task, seed or kind.
     """
-    if kind not in MAKERS:
-        raise ValueError(f"no worlds are {kind}: they are {', '.join(MAKERS)}")
-    if task not in MAKERS[kind] or seed < 0:
+    if kind not in WORLD_MAKERS:
+        raise ValueError(f"no worlds are {kind}: they are {', '.join(WORLD_MAKERS)}")
+    if task not in WORLD_MAKERS[kind] or seed < 0:
         raise ValueError(f"no task {task} with seed {seed}: tasks are 1 to 9, seeds from 0")
     rng = np.random.default_rng([task, seed, *STREAMS[kind]])
     unable = seed % UNABLE_EVERY == UNABLE_EVERY - 1
-    for _ in range(TRIES):
-        made = MAKERS[kind][task](rng, seed, unable)
+    for _ in range(MAX_WORLD_TRIES):
+        made = WORLD_MAKERS[kind][task](rng, seed, unable)
         if made is not None:
             return made
     raise RuntimeError(f"no world found for task {task}, seed {seed}")
 
 
 def seeds(first: int, count: int, unable: bool = False) -> list[int]:
-    """So many seeds from the first on. unable : only those of worlds in which the task cannot be done."""
+    """Return `count` seeds from the first on. unable : whether only those of impossible tasks."""
     if not unable:
         return list(range(first, first + count))
     begin = first + (UNABLE_EVERY - 1 - first) % UNABLE_EVERY
@@ -61,7 +61,7 @@ def seeds(first: int, count: int, unable: bool = False) -> list[int]:
 
 
 def add_kinds(parser: argparse.ArgumentParser) -> None:
-    """Options that say of which kind worlds are."""
+    """Add the options that say of which kind worlds are."""
     kinds = parser.add_mutually_exclusive_group()
     said = {"plain": "one or two rooms, everything on whole squares", "snug": "smaller rooms to carry in"}
     said["loose"] = "the same, with things between the squares"

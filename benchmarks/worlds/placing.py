@@ -1,4 +1,4 @@
-"""Where things and Utak may lie: clear of walls, doors, each other and of what the task needs free."""
+"""The places of objects and of the robot: clear of walls, doors, each other and of what the task needs free."""
 
 from collections.abc import Sequence
 
@@ -7,16 +7,16 @@ import shapely
 from shapely import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from benchmarks.worlds.furniture import COLOURS, SHAPES, laid, outline
+from benchmarks.worlds.furniture import OUTLINE_SHAPES, THING_COLOURS, laid, outline
 from benchmarks.worlds.scenes import PlacedThing
 
-GAP = 3.0  # squares between an object and anything else: at least two whole free squares for Utak
+OBJECT_GAP = 3.0  # squares between an object and anything else: at least two whole free squares for Utak
 TURNED_GAP = 4.0  # between an object at an odd angle and another one: its squares reach beyond its sides
-TRIES = 80
+MAX_PLACING_TRIES = 80
 
 
 def spot(rng: np.random.Generator, room: BaseGeometry) -> Point:
-    """A point of the bounding box of a room."""
+    """Return a point of the bounding box of a room."""
     west, south, east, north = room.bounds
     return Point(float(rng.uniform(west, east)), float(rng.uniform(south, north)))
 
@@ -27,14 +27,14 @@ def lay(
     room: BaseGeometry,
     others: Sequence[BaseGeometry],
     turned: bool = False,
-    wall_gap: float = GAP,
+    wall_gap: float = OBJECT_GAP,
 ) -> Polygon | None:
-    """A shape (by class, or its outline) in a room, clear of its walls and of others; None when it finds no place."""
+    """Return a shape (by class, or its outline) in a room, clear of its walls and of others; None for no place."""
     inner = room.buffer(-wall_gap)
-    for _ in range(TRIES):
+    for _ in range(MAX_PLACING_TRIES):
         raw = outline(rng, shape, turned) if isinstance(shape, str) else shape
         here = laid(rng, raw, spot(rng, room), turned)
-        gap = TURNED_GAP if turned else GAP
+        gap = TURNED_GAP if turned else OBJECT_GAP
         if inner.covers(here) and all(here.distance(other) >= gap for other in others):
             return here
     return None
@@ -47,8 +47,8 @@ def furniture(
     keep_clear: Sequence[BaseGeometry],
     without: Sequence[str] = (),
 ) -> tuple[PlacedThing, ...]:
-    """Up to `count` things of all shapes but those in `without`, named d1, d2 ...; a third turned, some fixed."""
-    shapes = [shape for shape in SHAPES if shape not in without]
+    """Return up to `count` objects of all shapes but those in `without`, named d1, d2 ...; some rotated or fixed."""
+    shapes = [shape for shape in OUTLINE_SHAPES if shape not in without]
     things: list[PlacedThing] = []
     for _ in range(count):
         room = rooms[int(rng.integers(len(rooms)))]
@@ -62,8 +62,8 @@ def furniture(
 
 
 def colour(rng: np.random.Generator) -> str:
-    """Any colour but the verge's."""
-    return COLOURS[rng.integers(len(COLOURS))]
+    """Return any colour but the verge's."""
+    return THING_COLOURS[rng.integers(len(THING_COLOURS))]
 
 
 def stand(
@@ -73,11 +73,11 @@ def stand(
     away: BaseGeometry,
     distance: float,
 ) -> Point | None:
-    """A place for Utak in a free square of a room, at least so far from a region; None when none is found.
+    """Return a place for the robot in a free square of a room, at least `distance` from a region; None for none.
 
-    Mostly the middle of the square, now and then any point of it.
+    Mostly it is the middle of the square, now and then any point of it.
     """
-    for _ in range(TRIES):
+    for _ in range(MAX_PLACING_TRIES):
         at = spot(rng, rooms[int(rng.integers(len(rooms)))])
         west, south = int(at.x), int(at.y)
         square = box(west, south, west + 1, south + 1)
@@ -91,12 +91,12 @@ def stand(
 
 
 def face(rng: np.random.Generator) -> int:
-    """A heading: half of them quarter turns, half any whole degree."""
+    """Return a heading in degrees: half of them quarter turns, half any whole degree."""
     return int(rng.integers(4)) * 90 if rng.random() < 0.5 else int(rng.integers(360))
 
 
 def digital(shape: BaseGeometry, width: int, height: int) -> np.ndarray:
-    """The squares whose open interior meets a shape: bool (height, width), row 0 in the south."""
+    """Return the squares whose open interior meets a shape: bool (height, width), row 0 in the south."""
     columns, rows = np.meshgrid(np.arange(width), np.arange(height))
     cut = shapely.intersection(shapely.box(columns, rows, columns + 1, rows + 1), shape)
     return np.asarray(shapely.area(cut) > 1e-9)

@@ -26,7 +26,7 @@ class PlacedThing:
 
 @dataclass(frozen=True)
 class TaskTexts:
-    """What start.lp, goal.lp and expect.lp say; `unable` says why the task cannot be done, empty when it can."""
+    """The texts of start.lp, goal.lp and expect.lp; `unable` says why the task cannot be done, empty when it can."""
 
     start: str
     goal: str
@@ -38,9 +38,9 @@ class TaskTexts:
 class RandomScenario:
     """One random world with its task.
 
-    `heading` is the direction Utak faces, degrees counter-clockwise from table north. `target` is the region that a
-    point must reach (tasks 1 to 3; empty otherwise), in squares of the table. `missing` is by how much a door is too
-    narrow for the object to be carried (0 where no door is).
+    `heading` is the direction that the robot faces, degrees counter-clockwise from table north. `target` is the region
+    that a point must reach (tasks 1 to 3; empty otherwise), in squares, table frame. `missing` is by how much a door is
+    too narrow for the object to be carried (0 where no door is).
     """
 
     task: int
@@ -77,20 +77,33 @@ class LaidFloor(Protocol):
     """A floor on a table of width x height squares."""
 
     @property
-    def width(self) -> int: ...
+    def width(self) -> int:
+        """The width of the table, in squares."""
+        ...
+
     @property
-    def height(self) -> int: ...
+    def height(self) -> int:
+        """The height of the table, in squares."""
+        ...
+
     @property
-    def verge(self) -> BaseGeometry: ...
+    def verge(self) -> BaseGeometry:
+        """All that is not floor, in squares, table frame."""
+        ...
 
 
-class Told(Protocol):
+class WorldWithTask(Protocol):
     """A world with a task, whatever made it."""
 
     @property
-    def world(self) -> str: ...
+    def world(self) -> str:
+        """The text of world.lp."""
+        ...
+
     @property
-    def texts(self) -> TaskTexts: ...
+    def texts(self) -> TaskTexts:
+        """The texts of start.lp, goal.lp and expect.lp."""
+        ...
 
 
 def world_text(plan: LaidFloor, utak: Point, heading: int, things: Iterable[PlacedThing]) -> str:
@@ -106,8 +119,8 @@ def world_text(plan: LaidFloor, utak: Point, heading: int, things: Iterable[Plac
     return "\n".join(lines) + "\n"
 
 
-def write(scenario: Told, folder: Path) -> Path:
-    """Write the four files of a scenario into a folder, made when it is not there; gives the folder."""
+def write(scenario: WorldWithTask, folder: Path) -> Path:
+    """Write the four files of a scenario into a folder, which is made when it is not there; return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     texts = scenario.texts
     files = {"world": scenario.world, "start": texts.start, "goal": texts.goal, "expect": texts.expect}
@@ -117,5 +130,5 @@ def write(scenario: Told, folder: Path) -> Path:
 
 
 def wkt(shape: BaseGeometry) -> str:
-    """Well-known text with up to six decimals and no needless zeros."""
+    """Return well-known text with up to six decimals and no needless zeros."""
     return str(shapely.to_wkt(shape, rounding_precision=6, trim=True))

@@ -1,4 +1,4 @@
-"""Worlds of six rooms with something to be carried to or in a distant one; the same for the same kind and seed."""
+"""Worlds of six rooms with an object to be carried to or in a distant one; the same for the same kind and seed."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,28 +9,29 @@ from shapely.affinity import rotate, translate
 
 from benchmarks.worlds.carrying import carried, door_widths, load
 from benchmarks.worlds.floorplans import FloorPlan, random_plan
-from benchmarks.worlds.placing import GAP, face, spot
+from benchmarks.worlds.placing import OBJECT_GAP, face, spot
 from benchmarks.worlds.scenes import RandomScenario, wkt
 from benchmarks.worlds.walking import corner_box, furthest_corner
 from kb.perception.frame import turned
 
-SHAPES = {"corner": "square", "pose": "l_shape"}  # else the kind is the shape
-FAR = 3  # doors between a thing and where it must go
-OFF = 2  # doors between Utak and a thing for the next room
-TASKS = {"corner": 5, "square": 6, "brick": 7, "l_shape": 9, "pose": 6}
+SIX_ROOM_SHAPES = {"corner": "square", "pose": "l_shape"}  # else the kind is the shape
+MIN_CARRY_DOORS = 3  # doors between a thing and where it must go
+MIN_WALK_DOORS = 2  # doors between Utak and a thing for the next room
+SIX_ROOM_TASKS = {"corner": 5, "square": 6, "brick": 7, "l_shape": 9, "pose": 6}
 
 
 def six_room_world(kind: str, seed: int, loops: bool = False) -> RandomScenario:
-    """A random world of six rooms.
+    """Return a random world of six rooms.
 
     Parameters
     ----------
-    kind : corner: a square to the northeast corner of the whole floor, FAR doors away or more. pose: an L to a pose so
-        far away. square, l_shape: into the next room, OFF doors from Utak or more. brick: so through a door.
+    kind : corner: a square to the northeast corner of the whole floor, MIN_CARRY_DOORS doors away or more. pose: an L
+        to a pose so far away. square, l_shape: into the next room, MIN_WALK_DOORS from the robot or more. brick: so
+        through a door.
     seed : any integer from 0.
-    loops : some rooms are joined to others than the next too. Then pieces of wall stand alone between doors.
+    loops : whether some rooms are joined to others than the next, too. Then pieces of wall stand alone between doors.
     """
-    rng = np.random.default_rng([sorted(TASKS).index(kind), seed, 6])
+    rng = np.random.default_rng([sorted(SIX_ROOM_TASKS).index(kind), seed, 6])
     while True:
         made = _drawn(rng, kind, seed, 0.3 * loops)
         if made is not None:
@@ -38,7 +39,7 @@ def six_room_world(kind: str, seed: int, loops: bool = False) -> RandomScenario:
 
 
 def doors_between(plan: FloorPlan, one: str) -> dict[str, int]:
-    """How many doors lie between a room and each."""
+    """Return the number of doors between a room and each room."""
     away, front = {one: 0}, [one]
     while front:
         room = front.pop(0)
@@ -50,12 +51,12 @@ def doors_between(plan: FloorPlan, one: str) -> dict[str, int]:
 
 
 def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> RandomScenario | None:
-    """A world, or None when what was drawn is too near, or leaves no room."""
-    shape = SHAPES.get(kind, kind)
+    """Return a world, or None when what was drawn is too near, or leaves no room."""
+    shape = SIX_ROOM_SHAPES.get(kind, kind)
     outline, least = load(rng, shape)
     plan = random_plan(rng, 6, door_widths(least, False), loops=loops)
     away = doors_between(plan, home := f"r{int(rng.integers(6)) + 1}")
-    far = [room.polygon for room in plan.rooms if away[room.name] >= FAR]
+    far = [room.polygon for room in plan.rooms if away[room.name] >= MIN_CARRY_DOORS]
     heading, goal, target = face(rng), "in(x, room(next)).\n", union_all([plan.room(n) for n in plan.neighbours(home)])
     if kind == "brick":
         goal, target = "through(x, d).\n", union_all([room.polygon for room in plan.rooms if room.name != home])
@@ -64,24 +65,24 @@ def _drawn(rng: np.random.Generator, kind: str, seed: int, loops: float) -> Rand
         if corner is None or not any(room.intersects(corner_box(corner, 1.0)) for room in far):
             return None
         goal, target = "at(x, corner(northeast)).\n", corner_box(corner, outline.bounds[2] + 1.5)
-    made = carried(rng, TASKS[kind], seed, plan, shape, outline, home, target, goal, heading, 0.0)
+    made = carried(rng, SIX_ROOM_TASKS[kind], seed, plan, shape, outline, home, target, goal, heading, 0.0)
     if made is None or kind in ("corner", "pose"):
         return made if made is None or kind == "corner" else _posed(rng, made, far)
     stands = next((room.name for room in plan.rooms if room.polygon.covers(made.utak)), home)
-    return made if away[stands] >= OFF else None
+    return made if away[stands] >= MIN_WALK_DOORS else None
 
 
 def _posed(rng: np.random.Generator, world: RandomScenario, rooms: Sequence[Polygon]) -> RandomScenario | None:
-    """The same world, but its thing must be brought to a pose in one of some rooms."""
+    """Return the same world with its object to be brought to a pose in one of some rooms."""
     thing, quarters = world.things[0].polygon, int(rng.integers(4))
     if not rooms:
         return None
-    room = rooms[int(rng.integers(len(rooms)))].buffer(-GAP)
+    room = rooms[int(rng.integers(len(rooms)))].buffer(-OBJECT_GAP)
     spun = rotate(thing, 90.0 * quarters, origin="centroid")
     goal = spot(rng, room)
     x, y = goal.x - thing.centroid.x, goal.y - thing.centroid.y
     there = translate(spun, x, y)
-    if not room.covers(there) or any(other.polygon.distance(there) < GAP for other in world.things[1:]):
+    if not room.covers(there) or any(other.polygon.distance(there) < OBJECT_GAP for other in world.things[1:]):
         return None
     east, north = turned(goal.x - world.utak.x, goal.y - world.utak.y, -world.heading)
     text = f'pose(x, "POINT ({east:.4f} {north:.4f})", {90 * quarters}).\n'

@@ -26,7 +26,7 @@ from planner.situation import Situation
 CORNER_VIEW_RANGE = 6  # squares from a corner within which it is seen well (tuned on random worlds)
 CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at most (convention)
 ROTATED_ALLOWANCE = 1.25  # squares that a rotated object may reach further from its walls than a straight one (tuned)
-WALL = 1.0  # squares: so deep in the squares in which it was seen a wall may lie (derived: one whole square)
+WALL = 1.0  # squares: so deep a wall may lie in the squares in which it was seen (derived)
 STAIR_DEPTH = math.sqrt(2)  # squares: so far behind its stairs of squares a slanted wall may be (derived: a diagonal)
 WALL_RELEASE = (
     0.4  # squares away from one slanted wall while pressed on the other: the first would stop it else (tuned)
@@ -185,7 +185,7 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     if not unclear.any():
         return replace(_settled_placement(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
-    viewpoint = sight_of(situation.cost_maps, unclear, f"where exactly the {side} corner is is not clear")
+    viewpoint = sight_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
     may_go_on = unclear & (view.probability < 1 - CLEAR)
     if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)

@@ -1,7 +1,8 @@
 """Optimistic planning: floor that is likely there where it was never seen or is not settled.
 
 A robot that carries objects takes such a risk: being stopped costs it a command or two, and mostly it is not stopped.
-The floor may go on beyond all that was seen. So masks of it have a margin of BEYOND squares around the view's arrays.
+The floor may go on beyond all that was seen. So masks of it have a margin of BEYOND squares around the arrays
+of the view.
 """
 
 import numpy as np
@@ -10,19 +11,19 @@ from geometry.kernels.arrays import Bools
 from geometry.raster.components import edged
 from planner.situation import Situation
 
-BEYOND = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned on random worlds)
+BEYOND = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned)
 BOLD = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)
 
 
 def framed(mask: Bools) -> Bools:
-    """Return a mask of the view with a margin of BEYOND False squares, (rows + 2 BEYOND, columns + 2 BEYOND)."""
+    """Return a mask of the view, (rows, columns), with a margin of BEYOND False squares on each side."""
     return np.pad(mask, BEYOND)
 
 
 def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
     """Add to a mask the unseen squares that BEYOND steps from square to neighbouring square lead to from it.
 
-    mask : (rows, columns) of the view. Returns it with the margin, (rows + 2 BEYOND, columns + 2 BEYOND).
+    mask : (rows, columns) of the view. Returns it with the margin of `framed`.
     """
     unseen, wider = ~framed(situation.model.view.seen), framed(mask)
     for _ in range(BEYOND):
@@ -31,5 +32,5 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
 
 def hoped_floor(situation: Situation) -> Bools:
-    """Return all squares that are assumed to be free, with the margin, (rows + 2 BEYOND, columns + 2 BEYOND)."""
+    """Return all squares that are assumed to be free, with the margin of `framed`."""
     return spread_into_unseen(situation.cost_maps.free(BOLD), situation)

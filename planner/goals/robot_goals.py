@@ -129,10 +129,8 @@ def corner_destination(side: str, situation: Situation) -> Destination:
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
         return unknown
-    column, row = situation.corners[side].square
     rooms = rooms_to_see(side, situation)
-    best = np.array([row * situation.model.labels.shape[1] + column])
-    return Destination(best, rooms[0].what if rooms else "", rooms)
+    return Destination(_corner_square(side, situation), rooms[0].what if rooms else "", rooms)
 
 
 def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destination | None:
@@ -172,36 +170,20 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         Empty when no such room is left.
     """
     cost_maps, model = situation.cost_maps, situation.model
-    partitions = [rooms.labels.ravel() for rooms in (situation.rooms, situation.rooms_by_sure_walls) if rooms.doors]
-    doorways = (situation.rooms.doorways | situation.rooms_by_sure_walls.doorways).ravel()
-    column, row = situation.corners[side].square
-    best = np.array([row * model.labels.shape[1] + column])
-    known = _furthest_towards(side, best, model)
+    known = _furthest_towards(side, _corner_square(side, situation), model)
 
     def short(view: Viewpoint) -> float:
+        """Return how much less far than the known corner a viewpoint lies towards the side, in squares."""
         return known - _furthest_towards(side, view.squares, model)
-
-    def apart(view: Viewpoint) -> bool:
-        return any((labels[view.squares] != labels[best]).any() for labels in partitions)
-
-    def narrow(view: Viewpoint) -> bool:
-        return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
     unreached = [view for view in rooms_beyond(cost_maps) if short(view) <= UNREACHED_REACH]
     found = [view for view in unreached if cost_maps.nearest(view.squares) is not None]
     open_ends = [view for view in frontiers(cost_maps, APART) if short(view) <= MAX_UNSEEN_REACH]
-    likely_ends = [view for view in likely_gaps(cost_maps) if short(view) <= MAX_UNSEEN_REACH and narrow(view)]
-    ends = promised(cost_maps, [*open_ends, *likely_ends])
+    gaps = [view for view in likely_gaps(cost_maps) if short(view) <= MAX_UNSEEN_REACH and _is_narrow(view, model)]
+    ends = promised(cost_maps, [*open_ends, *gaps])
     for view in ends[: len(open_ends)]:
-        if doorways[view.squares].any():
-            least, sideward = MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH
-        elif narrow(view):
-            least, sideward = NARROW_REACH, DOOR_SIDEWARD_REACH
-        elif apart(view):
-            least, sideward = WIDE_REACH, SIDEWARD_REACH
-        else:
-            continue
-        if short(view) <= _unseen_reach(side, view, least, sideward, model):
+        limits = _reach_limits(side, view, situation)
+        if limits is not None and short(view) <= _unseen_reach(side, view, *limits, model):
             found.append(view)
     for view in ends[len(open_ends) :]:
         near = short_of(cost_maps, view.squares)
@@ -209,6 +191,35 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
             found.append(view._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
     return tuple(view._replace(what=what) for view in found)
+
+
+def _corner_square(side: str, situation: Situation) -> Squares:
+    """Return the square of the known corner towards a side, as a flat index, (1,)."""
+    column, row = situation.corners[side].square
+    return np.array([row * situation.model.labels.shape[1] + column])
+
+
+def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int, int] | None:
+    """Return the least reach and the sideward reach of the unseen floor behind a frontier, in squares.
+
+    Returns None where it leads to no other room: it is neither in a doorway, nor as narrow as a door, nor in another
+    room than the known corner.
+    """
+    rooms = (situation.rooms, situation.rooms_by_sure_walls)
+    if any(one.doorways.ravel()[view.squares].any() for one in rooms):
+        return MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH
+    if _is_narrow(view, situation.model):
+        return NARROW_REACH, DOOR_SIDEWARD_REACH
+    partitions = (one.labels.ravel() for one in rooms if one.doors)
+    best = _corner_square(side, situation)
+    if any((labels[view.squares] != labels[best]).any() for labels in partitions):
+        return WIDE_REACH, SIDEWARD_REACH
+    return None
+
+
+def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
+    """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns."""
+    return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
 
 def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: WorldModel) -> float:

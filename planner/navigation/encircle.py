@@ -17,7 +17,7 @@ from planner.screen.projection import UNSEEN, CostMaps
 
 
 def winding(track: Sequence[XY], node: Node) -> int:
-    """Compute the winding number of a track around an object, counter-clockwise positive.
+    """Compute how many turns a track makes around an object, counter-clockwise positive.
 
     track : points of the map frame, closed by its first point.
     """

@@ -18,7 +18,7 @@ from planner.screen.moves import HURRY, one_move
 from planner.screen.projection import CostMaps, Squares
 from planner.subgoal_kind import SubgoalKind
 
-MOVE, WAY = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares of ordinary way (tuned)
+MOVE, WAY = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares (tuned)
 SEEN_SQUARE_VALUE = (
     0.05  # squares of way that an unseen square in sight from the turn is worth (tuned on random worlds)
 )

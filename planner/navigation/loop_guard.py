@@ -77,8 +77,8 @@ class LoopGuard:
 def _knowledge(model: WorldModel) -> StateKey:
     """Return what changes when something new is known.
 
-    That are the numbers of seen squares, of settled squares and of squares that stopped a motion, and the places of the
-    objects that moved or were stuck.
+    These are the numbers of seen squares, of settled squares and of squares that stopped a motion, and the places of
+    the objects that moved or were stuck.
     """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(

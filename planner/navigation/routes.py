@@ -15,7 +15,7 @@ from geometry.pathfinders.grid_astar import grid_way
 from geometry.pathfinders.visibility_graph import visibility_way
 from kb.reasoning.solver import solve
 from kb.world.rooms import Door, crosses
-from planner.navigation.subgoals import ASP, TENTHS
+from planner.navigation.subgoals import ASP, TENTHS_PER_SQUARE
 from planner.screen.projection import CostMaps, Squares
 from planner.screen.sweeps import squares_along
 
@@ -42,27 +42,31 @@ class PlannedRoute(NamedTuple):
     level: int
 
 
-Line = tuple[list[list[float]], float, float]  # points (x, y) in the view frame, length and clearance, all in squares
-PathFinder = Callable[[Bools, Square, Square], list[Line]]  # of free squares (rows, columns), the start and the goal
+FoundLine = tuple[
+    list[list[float]], float, float
+]  # points (x, y) in the view frame, length and clearance, all in squares
+PathFinder = Callable[
+    [Bools, Square, Square], list[FoundLine]
+]  # of free squares (rows, columns), the start and the goal
 
 
-def by_skeleton(free: Bools, start: Square, goal: Square) -> list[Line]:
+def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton."""
     routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
-def by_visibility(free: Bools, start: Square, goal: Square) -> list[Line]:
+def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's."""
     return _single(free, visibility_way(free, _centre(start), _centre(goal)))
 
 
-def by_grid(free: Bools, start: Square, goal: Square) -> list[Line]:
+def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route over the squares and their eight neighbours, by A*."""
     return _single(free, grid_way(free, _centre(start), _centre(goal)))
 
 
-def _single(free: Bools, points: Floats | None) -> list[Line]:
+def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
     """Return the only route of a path-finder, with its length and the clearance of the squares that it touches."""
     if points is None:
         return []
@@ -131,7 +135,8 @@ def choose_way(
     for number, route in enumerate(offered):
         columns, rows = np.array(route.squares).T
         risk = round(100 * float(cost_maps.model.view.probability[rows[1:], columns[1:]].sum()))
-        facts.append(f"route({number},{round(TENTHS * route.length)},{round(TENTHS * route.clearance)},{risk})")
+        length, clearance = (round(TENTHS_PER_SQUARE * squares) for squares in (route.length, route.clearance))
+        facts.append(f"route({number},{length},{clearance},{risk})")
         facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
         if len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares):
             facts.append(f"last({number})")

@@ -9,11 +9,11 @@ from planner.screen.projection import CostMaps, Squares
 from planner.subgoal_kind import SubgoalKind
 
 ASP = Path(__file__).resolve().parent.parent / "asp"  # the folder of the planner's encodings
-TENTHS = 10  # the encodings count lengths and costs in tenths of squares
+TENTHS_PER_SQUARE = 10  # the encodings count lengths and costs in tenths of squares
 
 
 class Subgoal(NamedTuple):
-    """Squares to go to, and why.
+    """A place to go to, and the reason.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
         if reached is not None:
             assumed = reached.level and subgoal.kind == SubgoalKind.EXPLORE
             kind = SubgoalKind.PASS if assumed else SubgoalKind(subgoal.kind)
-            facts.append(f"aim({number},{kind},{round(TENTHS * (reached.cost + subgoal.price))})")
+            facts.append(f"aim({number},{kind},{round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price))})")
             facts.append(f"chance({number},{subgoal.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
     answer = solve([ASP / "aims.lp"], facts) if facts else None

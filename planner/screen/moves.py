@@ -1,7 +1,7 @@
 """From a route to the next command: the longest straight move along it that is safe.
 
-A robot that only walks (STROLL) makes short moves, and so looks often. One that carries objects (HURRY) counts
-commands, and makes long moves.
+A robot that only walks (STROLL) makes short moves, and so looks often.
+One that carries objects (HURRY) counts commands, and makes long moves.
 """
 
 import math
@@ -77,7 +77,7 @@ _WALKING_LENGTHS: Mapping[str, int] = {
     SubgoalKind.PASS: 8,
     SubgoalKind.SETTLE: 12,
 }
-STROLL = Pace(_WALKING_LENGTHS, 9, bold=False)  # the pace of a robot that only walks (lengths tuned on random worlds)
+STROLL = Pace(_WALKING_LENGTHS, 9, bold=False)  # of a robot that only walks (lengths tuned on random worlds)
 HURRY = Pace(
     {**_WALKING_LENGTHS, SubgoalKind.INSPECT: 48, SubgoalKind.EXPLORE: 48}, 48, bold=True
 )  # of one that carries

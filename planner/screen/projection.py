@@ -1,8 +1,8 @@
 """Cost maps: the world model projected on the screen, at several certainty levels.
 
 The screen is the paper's map in the head: an array of squares, [row, column], cut to the window that was seen.
-Certainty level 0 holds the squares that are surely floor. Each further level holds more, up to UNSEEN, which holds all
-that is not excluded. A way over a less certain level leads to its goal only if what is assumed proves true.
+Certainty level 0 holds the squares that are surely floor. Each further level holds more, up to UNSEEN, which
+holds all that is not excluded. A way over a less certain level leads to its goal only if what is assumed proves true.
 
 Two frames are used throughout the planner. The map frame has whole squares at whole coordinates, and does not change
 when the map grows. The view frame is the frame of the arrays: the map frame moved by (-view.west, -view.south).
@@ -24,9 +24,9 @@ from planner.screen.unseen_gain import expected_gain
 
 Mask = Bools  # (rows, columns)
 Squares = NDArray[np.int64]  # flat indices on a screen: row * columns + column
-FIFTHS = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
+FIFTHS_PER_SQUARE = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
 LEVEL_MAX_PROBABILITY = (SPACE, 0.15, 0.3, 0.45)  # by level: a square occupied with at most this may be crossed (tuned)
-UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which squares that were never seen may be crossed, too
+UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
 APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
 MAX_TRUSTED_PROBABILITY = 0.04  # a square occupied with at most this probability may be crossed without a look (tuned)
@@ -101,7 +101,7 @@ class CostMaps:
         for level in range(UNSEEN + 1):
             far = self.distances[level].ravel()[squares]
             if (far != UNREACHED).any():
-                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS + LEVEL_COST * level)
+                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS_PER_SQUARE + LEVEL_COST * level)
         return None
 
     @cached_property
@@ -158,7 +158,7 @@ class CostMaps:
 
         Where no way is sure, the straight distance stands instead.
         """
-        lengths = self.distances[0].ravel()[squares] / FIFTHS
+        lengths = self.distances[0].ravel()[squares] / FIFTHS_PER_SQUARE
         rows, columns = np.divmod(squares, self.floor.shape[1])
         return np.where(lengths < 0, np.hypot(columns - self.here[0], rows - self.here[1]), lengths)
 

@@ -16,10 +16,10 @@ from geometry.raster.geodesic import UNREACHED
 from kb.mapping.occupancy import OPEN
 from kb.world.model import SPACE, Node
 from kb.world.rooms import Door
-from planner.screen.projection import FIFTHS, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
+from planner.screen.projection import FIFTHS_PER_SQUARE, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
 from planner.screen.unseen_gain import VERGE_WEIGHT
 
-CLOSE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: fovea offsets -4..3)
+CLOSE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
 MIDDLE_ZONE_RANGE = 7  # squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)
 JAMB_RANGE = 8  # squares around the end of a door's neck within which its walls are looked at (tuned on random worlds)
 APART = 2  # squares from earlier viewpoints beyond which a new one is sought first (tuned on random worlds)
@@ -32,7 +32,7 @@ FRONTIER_REASON = "the floor goes on unseen"
 
 
 class Viewpoint(NamedTuple):
-    """Squares from each of which the same thing is seen or felt that is not known yet.
+    """A set of squares from each of which the same unknown thing is seen or felt.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Viewpoint(NamedTuple):
 
 
 def frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
-    """Find the frontiers: reachable floor that borders on unseen squares, one Viewpoint for each connected stretch.
+    """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     border = edge & (cost_maps.distances[GAP_LEVEL] != UNREACHED)
     surely = grown(edge & cost_maps.floor, 1).ravel()
     stretches = [squares for squares in group_by_label(_stretches(border)) if not surely[squares].any()]
-    return [Viewpoint(squares, "there may be a gap") for squares in stretches]
+    return [Viewpoint(squares, "there may be a gap in what bounds the floor") for squares in stretches]
 
 
 def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
@@ -148,9 +148,9 @@ def close_to(cost_maps: CostMaps, x: float, y: float) -> Squares:
 
 
 def short_of(cost_maps: CostMaps, squares: Squares) -> Squares:
-    """Return the floor from which the robot sees what lies behind `squares`.
+    """Return the floor from which the robot sees what lies behind `squares`, as flat indices, (n,).
 
-    That are those of them that can be reached, and floor within SHORT_OF of them. All are flat indices, (n,).
+    The squares themselves count, if they can be reached, and floor within SHORT_OF of them.
     """
     mask = marked(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, APART) & grown(mask, SHORT_OF)
@@ -198,7 +198,7 @@ def promised(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint
 def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_cost: float) -> list[Viewpoint]:
     """Choose, of the squares that one straight move reaches, those with the greatest information gain for their cost.
 
-    They need not be frontiers: a long move along a frontier often shows more than a short one up to it.
+    They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it.
 
     Parameters
     ----------
@@ -217,7 +217,7 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
     gain = cost_maps.information_gain.ravel()[candidates]
     if gain.max(initial=0.0) < VERGE_WEIGHT:
         return []
-    far = cost_maps.distances[0].ravel()[candidates] / FIFTHS
+    far = cost_maps.distances[0].ravel()[candidates] / FIFTHS_PER_SQUARE
     value = gain / (move_cost + square_cost * far)
     best = value >= EQUAL_VALUE_SHARE * value.max()
     chance = _chance(float(gain[best][far[best].argmin()]))

@@ -102,7 +102,7 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
     Viewpoint
     """
     squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
-    return Viewpoint(squares, f"what {node.name} is is not clear")
+    return Viewpoint(squares, f"it is not clear what {node.name} is")
 
 
 def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> Squares:

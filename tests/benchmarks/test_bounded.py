@@ -17,7 +17,7 @@ def test_every_command_of_a_run_is_timed() -> None:
     assert not row.false
 
 
-def test_a_run_that_does_not_end_is_ended_and_what_it_did_is_told(monkeypatch) -> None:
+def test_an_endless_run_is_ended_and_reported(monkeypatch) -> None:
     def endless(run: Run, tell) -> None:
         tell((0.25, {"do": "release"}))
         while True:

@@ -1,4 +1,4 @@
-"""The campaign tells an honest robot from a liar, a loiterer and one that breaks."""
+"""The campaign tells an honest robot from one that makes false claims, one that idles and one that breaks."""
 
 import json
 import math
@@ -26,7 +26,7 @@ from simulator.scenario.settings import Settings
 
 
 class Report(NamedTuple):
-    """What a robot reports of a step."""
+    """The report of a step."""
 
     command: Command | None
     impression: Impression
@@ -35,7 +35,7 @@ class Report(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a robot says at the end."""
+    """The verdict of a robot."""
 
     believed: bool
     verdict: str
@@ -61,13 +61,13 @@ class Scripted:
 
 
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
-    """Make such robots."""
+    """Return a maker of such robots."""
     return lambda body, task, settings: Scripted(body, commands, verdict)
 
 
 @pytest.fixture(autouse=True)
 def cold(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No trial before those that are asked for."""
+    """Leave out the trial that warms up."""
     monkeypatch.setattr(campaign, "_warm_up", lambda folder: None)
 
 
@@ -77,12 +77,12 @@ HERE = Move(0.0, 0.0)
 
 
 def straight_seed() -> int:
-    """A world of task (i) in which nothing lies between Utak and the corner."""
+    """Return a world of task (i) with nothing between the robot and the corner."""
     return next(s for s in range(100) if not (w := scenario(1, s)).things and len(w.plan.rooms) == 1 and w.possible)
 
 
 def way_to_target(seed: int) -> Move:
-    """The straight way to the target of task (i), in Utak's frame."""
+    """Return the straight move to the target of task (i), in the robot's own frame."""
     world = scenario(1, seed)
     middle = world.target.centroid
     dx, dy = middle.x - world.utak.x, middle.y - world.utak.y
@@ -116,7 +116,7 @@ def test_giving_up_is_right_only_where_it_cannot_be_done(tmp_path: Path) -> None
         assert not trial.judged or possible
 
 
-def test_a_robot_that_breaks_is_a_crash_and_not_an_end_of_the_campaign(tmp_path: Path) -> None:
+def test_a_robot_that_breaks_is_a_crash_and_does_not_end_the_campaign(tmp_path: Path) -> None:
     def broken(body: Body, task: Task, settings: Settings) -> Scripted:
         raise KeyError("no mind")
 
@@ -126,7 +126,7 @@ def test_a_robot_that_breaks_is_a_crash_and_not_an_end_of_the_campaign(tmp_path:
     assert "crash: KeyError" in faults([trial])
 
 
-def test_a_robot_that_loiters_is_stopped(tmp_path: Path) -> None:
+def test_an_idle_robot_is_stopped(tmp_path: Path) -> None:
     def slow(body: Body, task: Task, settings: Settings) -> Scripted:
         time.sleep(30)
         return Scripted(body, [HERE], DONE)
@@ -142,7 +142,7 @@ def test_a_loop_is_measured_against_the_shortest_loop(tmp_path: Path) -> None:
 
 
 def times(*seconds: float) -> list[Seconds]:
-    """Cycles of so many seconds on the wall and half of them by the processor."""
+    """Return cycles of the given seconds on the wall and half of them by the processor."""
     return [Seconds(value, value / 2) for value in seconds]
 
 
@@ -186,7 +186,7 @@ def test_the_table_counts() -> None:
     assert json.loads(json.dumps(trials[2].row()))["shortest"] is None
 
 
-def test_without_a_judge_it_says_so_loudly(
+def test_a_missing_judge_is_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.setenv("UTAK_JUDGE", str(tmp_path / "nowhere.py"))
@@ -228,12 +228,12 @@ def test_one_world_is_drawn_at_each_step(
 
 
 def narrow_world() -> RandomScenario:
-    """A world of task (vii) whose door is too narrow."""
+    """Return a world of task (vii) with a door that is too narrow."""
     return scenario(7, seeds(0, 1, unable=True)[0])
 
 
 def said(world: RandomScenario, away: float, off: float) -> str:
-    """The reason of a verdict that tells a place so far from the middle of the door, and a width so far off."""
+    """Return a reason that names a place `away` from the middle of the door, and a missing width `off` the true one."""
     door = world.plan.doors[0]
     x, y = door.polygon.centroid.x - world.utak.x, door.polygon.centroid.y - world.utak.y
     x, y = (x, y + away) if door.vertical else (x + away, y)
@@ -251,7 +251,7 @@ def test_worlds_that_cannot_be_done_are_found_by_their_seeds() -> None:
 @pytest.mark.parametrize(
     ("away", "off", "right"), [(0.0, 0.0, True), (0.0, 0.2, True), (0.0, -0.4, False), (9, 0, False)]
 )
-def test_what_is_said_of_a_passage_is_held_against_the_truth(away: float, off: float, right: bool) -> None:
+def test_a_named_passage_is_compared_with_the_truth(away: float, off: float, right: bool) -> None:
     world = narrow_world()
     found = narrowness(world, said(world, away, off))
     assert found is not None
@@ -262,7 +262,7 @@ def test_what_is_said_of_a_passage_is_held_against_the_truth(away: float, off: f
     assert ("told wrongly" in faults([trial])) != right
 
 
-def test_a_verdict_that_tells_no_passage_is_not_right() -> None:
+def test_a_verdict_without_a_passage_is_not_right() -> None:
     found = narrowness(narrow_world(), "o cannot be carried there")
     assert found is not None and math.isnan(found.off) and math.isnan(found.away)
     assert told_right([CampaignTrial(7, 11, False, narrow=found)]).startswith("too narrow passages: 0/1")

@@ -1,4 +1,4 @@
-"""The campaign about claims finds a planted false done and a planted false impossible, and takes true ones for true."""
+"""The campaign about claims finds a false done and a false impossible, and accepts true ones."""
 
 import json
 from collections.abc import Callable
@@ -28,7 +28,7 @@ ABLE, UNABLE = Asked("plugged", 0), Asked("plugged", 5)
 
 
 class Report(NamedTuple):
-    """What a robot reports of a step."""
+    """The report of a step."""
 
     command: Command | None
     impression: Impression
@@ -37,7 +37,7 @@ class Report(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What a robot says at the end."""
+    """The verdict of a robot."""
 
     believed: bool
     verdict: str
@@ -110,12 +110,12 @@ def test_other_verdicts_claim_nothing_and_have_their_columns(
 
 
 def counted(rows: list[ClaimRow], column: str) -> str:
-    """Return what the last line of the table says in a column; its head is split at two blanks or more."""
+    """Return the value of a column in the last line of the table; its head is split at two blanks or more."""
     lines = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in table(rows).splitlines()]
     return lines[-1][lines[0].index(column)]
 
 
-def test_a_way_found_refutes_what_is_not_known_by_construction() -> None:
+def test_a_found_plan_refutes_an_impossible_claim() -> None:
     found, none = Countersearch("solvable", "move 1 0"), Countersearch("not found")
     assert refuted("impossible", False, False, [], "unknown", found).false_impossible
     assert not refuted("impossible", False, False, [], "unknown", none).false_impossible
@@ -125,7 +125,7 @@ def test_a_way_found_refutes_what_is_not_known_by_construction() -> None:
     assert "inside(t1)" in refuted("done", True, False, ["inside(t1)"], "yes", none).refutation
 
 
-def test_who_goes_where_a_constraint_forbids_has_not_done_it(tmp_path: Path) -> None:
+def test_a_task_with_a_violated_constraint_is_not_done(tmp_path: Path) -> None:
     episode = tmp_path / "episode.jsonl"
     episode.write_text("".join(json.dumps({"step": n, "utak": [x, 1.0]}) + "\n" for n, x in enumerate((1.0, 9.0, 1.0))))
     assert trespassed(episode, box(4, 0, 6, 2))
@@ -142,7 +142,7 @@ def test_a_child_that_breaks_is_an_error(tmp_path: Path) -> None:
 
 def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) -> None:
     def runner(place: Path, limits: Limits) -> str:
-        (place / child.CYCLES).write_text("1.0\n2.0\n")
+        (place / child.CYCLES_FILE).write_text("1.0\n2.0\n")
         (place / "stderr.txt").write_text("")
         return "time"
 
@@ -150,7 +150,7 @@ def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) 
     assert (row.verdict, row.commands, row.cycles, row.faulty) == ("time", 1, [2.0, 97.0], True)
 
 
-def test_results_are_gone_on_with(
+def test_a_campaign_continues_earlier_results(
     claiming: Callable[[Asked, str], ClaimRow], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows = [claiming(ABLE, "limit")]

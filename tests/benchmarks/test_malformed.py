@@ -1,4 +1,4 @@
-"""Spoilt scenario files are accepted or refused with a place; and the campaign sees when they are not."""
+"""Malformed files are accepted, or refused with a place; the campaign finds other outcomes."""
 
 from pathlib import Path
 
@@ -7,28 +7,28 @@ import pytest
 from benchmarks import malformed
 
 
-def test_five_hundred_spoilt_scenarios(tmp_path: Path) -> None:
+def test_five_hundred_malformed_scenarios(tmp_path: Path) -> None:
     outcomes = malformed.campaign(500, 7, tmp_path)
     assert [result for result in outcomes if result.startswith("!")] == []
     assert outcomes["accepted"] > 10
     assert outcomes["refused"] > 200
 
 
-def test_spoilt_queries() -> None:
+def test_malformed_queries() -> None:
     outcomes = malformed.queries(400, 7)
     assert [result for result in outcomes if result.startswith("!")] == []
     assert outcomes["accepted"] > 25
     assert outcomes["refused"] > 200
 
 
-def test_spoilt_rules(tmp_path: Path) -> None:
+def test_malformed_rules(tmp_path: Path) -> None:
     outcomes = malformed.rules(120, 7, tmp_path)
     assert [result for result in outcomes if result.startswith("!")] == []
     assert outcomes["accepted"] > 5
     assert outcomes["refused"] > 60
 
 
-def test_spoilt_maps() -> None:
+def test_malformed_maps() -> None:
     outcomes = malformed.maps(1000, 7)
     assert [result for result in outcomes if result.startswith("!")] == []
     assert outcomes["accepted"] > 20
@@ -40,7 +40,7 @@ def test_the_campaign_sees_faults(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         while True:
             pass
 
-    monkeypatch.setattr(malformed, "PATIENCE", 0.05)
+    monkeypatch.setattr(malformed, "HANG_SECONDS", 0.05)
     monkeypatch.setattr(malformed, "read_scenario", forever)
     assert malformed.outcome(tmp_path) == "! hung"
     monkeypatch.setattr(malformed, "read_scenario", lambda folder: 1 // 0)

@@ -1,5 +1,17 @@
-"""Odd random worlds: kinds of floors and things that ordinary random worlds do not have.
+"""Odd random worlds: kinds of floors and objects that ordinary random worlds do not have.
 
-Read `houses` (floors), `lying` (places of things), `tasks` (goals and what is true at the end), the kinds `offgrid`,
-`slanted`, `circular`, `plugged`, `touching`, `openings`, `fixtures` and `constraints`, and `kinds` (all by name).
+Modules, in reading order:
+
+houses       floors of rooms and doors at any angle
+lying        places of objects and of the robot
+tasks        goals, and what is true at the end
+offgrid      walls, doors and objects off the grid
+slanted      slanted walls
+circular     round rooms
+plugged      doors that objects fill
+touching     objects that touch
+openings     wide openings that are no doors
+fixtures     fixed objects beside movable ones
+constraints  constraints and contradictory goals
+kinds        all kinds by name
 """

@@ -14,15 +14,18 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt
 
-KIND = "constraint"
-X, DOOR = "object(x).\nshape(x, square).\n", "door(d).\n"
+CONSTRAINT_KIND = "constraint"
+X, DOOR_FACTS = "object(x).\nshape(x, square).\n", "door(d).\n"
 NEXT, CARRIED = "in(utak, room(next)).\n", "in(x, room(next)).\n"
-MARGIN = 0.1  # squares: who goes so far beyond the middle of a door went through it
-OTHERS: dict[str, Polygon] = {"brick": box(0, 0, 6, 2), "l_shape": ell(6, 6, 2)}  # nothing that looks like a square
+DOOR_MARGIN = 0.1  # squares beyond the middle of a door at which the robot went through it
+NON_SQUARES: dict[str, Polygon] = {
+    "brick": box(0, 0, 6, 2),
+    "l_shape": ell(6, 6, 2),
+}  # nothing that looks like a square
 
 
 class ConstraintQuestion(NamedTuple):
-    """A task: how many doors (0: one room), whether x is there, its facts, the answer, and why it cannot be done."""
+    """A task: the number of doors (0: one room), whether x exists, its facts, the answer, and why it is impossible."""
 
     doors: int
     there: bool
@@ -35,12 +38,14 @@ class ConstraintQuestion(NamedTuple):
 ONLY_DOOR = "the only door must not be used"
 NO_SQUARE = "there is no square"
 QUESTIONS = {
-    "walk_one_door": ConstraintQuestion(1, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.NO, ONLY_DOOR),
-    "walk_two_doors": ConstraintQuestion(2, False, DOOR, NEXT + "not_through(utak, d).\n", tasks.UNKNOWN),
-    "carry_one_door": ConstraintQuestion(1, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.NO, ONLY_DOOR),
-    "carry_two_doors": ConstraintQuestion(2, True, X + DOOR, CARRIED + "not_through(x, d).\n", tasks.UNKNOWN),
-    "walk_at_home": ConstraintQuestion(1, True, X + DOOR, "at(utak, x).\nnot_through(utak, d).\n", tasks.YES),
-    "carry_on_foot": ConstraintQuestion(1, True, X + DOOR, CARRIED + "not_through(utak, d).\n", tasks.UNKNOWN),
+    "walk_one_door": ConstraintQuestion(1, False, DOOR_FACTS, NEXT + "not_through(utak, d).\n", tasks.NO, ONLY_DOOR),
+    "walk_two_doors": ConstraintQuestion(2, False, DOOR_FACTS, NEXT + "not_through(utak, d).\n", tasks.NOT_KNOWN),
+    "carry_one_door": ConstraintQuestion(
+        1, True, X + DOOR_FACTS, CARRIED + "not_through(x, d).\n", tasks.NO, ONLY_DOOR
+    ),
+    "carry_two_doors": ConstraintQuestion(2, True, X + DOOR_FACTS, CARRIED + "not_through(x, d).\n", tasks.NOT_KNOWN),
+    "walk_at_home": ConstraintQuestion(1, True, X + DOOR_FACTS, "at(utak, x).\nnot_through(utak, d).\n", tasks.YES),
+    "carry_on_foot": ConstraintQuestion(1, True, X + DOOR_FACTS, CARRIED + "not_through(utak, d).\n", tasks.NOT_KNOWN),
     "walk_two_corners": ConstraintQuestion(
         0, False, "", "at(utak, corner(northeast)).\nat(utak, corner(southwest)).\n", tasks.NO, "two corners at once"
     ),
@@ -70,10 +75,10 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
             return None
         things.append(PlacedThing("t1", colour(rng), "square", x))
     for number in range(1, int(rng.integers(0, 3)) + 1):
-        shape = str(rng.choice(sorted(OTHERS)))
+        shape = str(rng.choice(sorted(NON_SQUARES)))
         room = plan.rooms[int(rng.integers(len(plan.rooms)))]
         other = place(
-            rng, OTHERS[shape], room, [*taken, *(t.polygon for t in things)], True, 90.0 * int(rng.integers(4))
+            rng, NON_SQUARES[shape], room, [*taken, *(t.polygon for t in things)], True, 90.0 * int(rng.integers(4))
         )
         if other is not None:
             things.append(PlacedThing(f"d{number}", colour(rng), shape, other))
@@ -86,16 +91,18 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     expect = "fails.\n" if question.possible == tasks.NO else _expected(variant, scene)
     texts = TaskTexts(question.start, question.goal, expect, question.why)
     shut = question.doors == 1 and "not_through(utak, d)" in question.goal
-    avoid = plan.beyond(home).buffer(-MARGIN) if shut else tasks.NOWHERE
-    return OddWorld(KIND, seed, variant, variant, plan, scene.things, utak, facing, texts, question.possible, avoid)
+    avoid = plan.beyond(home).buffer(-DOOR_MARGIN) if shut else tasks.EMPTY_REGION
+    return OddWorld(
+        CONSTRAINT_KIND, seed, variant, variant, plan, scene.things, utak, facing, texts, question.possible, avoid
+    )
 
 
 def _expected(variant: str, scene: OddScene) -> str:
-    """Return what is true at the end of the questions that can be answered."""
+    """Return what is true at the end of the tasks that can be done."""
     if variant == "walk_at_home":
         return f'inside(utak, "{wkt(tasks.beside([scene.things[0].polygon], scene.plan))}").\n'
-    who = "utak" if variant.startswith("walk") else "t1"
-    return f'inside({who}, "{wkt(scene.plan.beyond(scene.home))}").\n'
+    subject = "utak" if variant.startswith("walk") else "t1"
+    return f'inside({subject}, "{wkt(scene.plan.beyond(scene.home))}").\n'
 
 
 def _plan(rng: np.random.Generator, doors: int) -> House:

@@ -12,15 +12,15 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing, wkt
 
-KIND = "fixed"
-VARIANTS = ("both", "both", "only_fixed", "two_fixed", "both")
-TASKS = ("carry_next", "carry_corner", "carry_corner", "at_x", "carry_door", "carry_next")
-SHAPES: dict[str, Polygon] = {"square": box(0, 0, 3, 3), "brick": box(0, 0, 5, 2), "l_shape": ell(5, 5, 2)}
+FIXED_KIND = "fixed"
+FIXED_VARIANTS = ("both", "both", "only_fixed", "two_fixed", "both")
+FIXED_TASKS = ("carry_next", "carry_corner", "carry_corner", "at_x", "carry_door", "carry_next")
+FIXTURE_SHAPES: dict[str, Polygon] = {"square": box(0, 0, 3, 3), "brick": box(0, 0, 5, 2), "l_shape": ell(5, 5, 2)}
 
 
 def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     """Return the world of a seed; None when the things find no place by these random numbers."""
-    variant, task = VARIANTS[seed % len(VARIANTS)], TASKS[seed % len(TASKS)]
+    variant, task = FIXED_VARIANTS[seed % len(FIXED_VARIANTS)], FIXED_TASKS[seed % len(FIXED_TASKS)]
     sizes = [float(rng.integers(18, 24)) for _ in range(3)]
     if task in tasks.TO_CORNER:
         plan = one_room(box(0, 0, sizes[0] + 2, sizes[1]))
@@ -29,13 +29,15 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
         at = float(rng.integers(3, int(sizes[2] - door) - 2))
         plan = two_rooms(*_with_neck(sizes, door, at), 90.0 * int(rng.integers(2)))
     home = int(rng.integers(len(plan.rooms)))
-    shape = str(rng.choice(["square", "brick"] if task == "carry_corner" else sorted(SHAPES)))
+    shape = str(rng.choice(["square", "brick"] if task == "carry_corner" else sorted(FIXTURE_SHAPES)))
     stuck = {"both": 1, "only_fixed": 1, "two_fixed": 2}[variant]
     movable = 0 if variant == "only_fixed" else 1
     taken, things = [neck.buffer(1.5) for neck in doorways(plan)], []
     for number in range(movable + stuck):
         turn = 90.0 * int(rng.integers(4))
-        polygon = place(rng, SHAPES[shape], plan.rooms[home], [*taken, *(t.polygon for t in things)], True, turn)
+        polygon = place(
+            rng, FIXTURE_SHAPES[shape], plan.rooms[home], [*taken, *(t.polygon for t in things)], True, turn
+        )
         if polygon is None:
             return None
         fixed = number >= movable
@@ -48,7 +50,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     scene = OddScene(plan, home, tuple(things), utak, facing)
     stays = not movable and task != "at_x"
     why = "nothing of that shape can be moved" if stays else ""
-    made = tasks.given(KIND, seed, task, variant, scene, tasks.NO if stays else tasks.YES, why, compass)
+    made = tasks.given(FIXED_KIND, seed, task, variant, scene, tasks.NO if stays else tasks.YES, why, compass)
     if task != "at_x":
         return made
     any_of = wkt(tasks.beside([thing.polygon for thing in things], plan))

@@ -1,6 +1,7 @@
-"""Floors of rooms and doors with walls of any thickness and at any angle, as frozen values in the frame of the table.
+"""Floors of rooms and doors with walls of any thickness and at any angle, as frozen values in the table frame.
 
-A house is drawn in a frame of its own, two rooms beside each other along x, and then turned and laid on the table.
+A house is drawn in a frame of its own, with two rooms beside each other along x, and then rotated and placed on the
+table.
 """
 
 import math
@@ -15,7 +16,7 @@ from shapely.geometry.base import BaseGeometry
 
 GRAIN = 1e-6  # squares: the world file has so many decimals
 OVERLAP = 0.01  # squares that a neck is drawn on into its rooms, so that their union has no seams
-RIM = 3.0  # squares by which a corner must be further out than all others to be told for the furthest
+CORNER_LEAD = 3.0  # squares by which a corner must be further out than all others to be told for the furthest
 COMPASS = {"northeast": (1, 1), "northwest": (-1, 1), "southwest": (-1, -1), "southeast": (1, -1)}
 Pair = tuple[float, float]
 
@@ -36,7 +37,7 @@ class OddNeck:
 
     @property
     def gap(self) -> float:
-        """The distance between the jambs: nothing convex whose least width is greater passes."""
+        """The distance between the jambs: nothing convex of a greater least width passes."""
         return shapely.LineString([self.a0, self.b0]).distance(shapely.LineString([self.a1, self.b1]))
 
     @property
@@ -46,12 +47,12 @@ class OddNeck:
         return float(abs(x * v - y * u) / math.hypot(x, y))
 
     def half(self, second: bool) -> Polygon:
-        """The half of the neck at its first or its second room."""
+        """Return the half of the neck at its first or its second room."""
         m0, m1 = np.add(self.a0, self.b0) / 2, np.add(self.a1, self.b1) / 2
         return Polygon([m0, m1, self.b1, self.b0] if second else [self.a0, self.a1, m1, m0])
 
     def drawn_on(self, by: float) -> Polygon:
-        """The neck made longer by a length at both ends."""
+        """Return the neck made longer by a length at both ends."""
         step = np.subtract(self.b0, self.a0)
         step = by * step / np.hypot(*step)
         return Polygon([self.a0 - step, self.a1 - step, self.b1 + step, self.b0 + step])
@@ -73,18 +74,18 @@ class House:
         return box(0, 0, self.width, self.height).difference(self.floor)
 
     def beyond(self, home: int) -> BaseGeometry:
-        """The other room with the halves of the necks at it: what lies there is through the door by any reading."""
+        """Return the other room with the necks' halves at it: what lies there is through the door by any reading."""
         halves = [neck.half(home == 0).buffer(OVERLAP, join_style="mitre") for neck in self.necks]
         return union_all([self.rooms[1 - home], *halves])
 
     def furthest_corner(self, compass: str, heading: float) -> Point | None:
-        """The convex corner of the floor furthest towards a corner of the robot's frame; None when two nearly tie."""
+        """Return the convex corner of the floor furthest towards a corner of the robot's frame; None for near ties."""
         east, north = COMPASS[compass]
         c, s = math.cos(math.radians(heading)), math.sin(math.radians(heading))
         way = np.array([east * c - north * s, east * s + north * c]) / math.sqrt(2)
         ranked = sorted(convex_corners(self.floor), key=lambda corner: -float(np.dot(corner, way)))
         best, second = (float(np.dot(corner, way)) for corner in ranked[:2])
-        return Point(ranked[0]) if best - second >= RIM else None
+        return Point(ranked[0]) if best - second >= CORNER_LEAD else None
 
 
 def convex_corners(floor: Polygon) -> list[Pair]:
@@ -99,14 +100,14 @@ def convex_corners(floor: Polygon) -> list[Pair]:
 
 
 def one_room(room: Polygon, angle: float = 0.0, margin: Pair = (2, 2)) -> House:
-    """Lay a floor of one room on a table, turned by an angle in degrees, its bounding box a margin from the corner."""
+    """Place a floor of one room on a table, rotated by `angle` degrees, its bounding box `margin` from the corner."""
     return _laid([room], [], angle, margin)
 
 
 def two_rooms(
     first: Polygon, second: Polygon, necks: Sequence[OddNeck], angle: float = 0.0, margin: Pair = (2, 2)
 ) -> House:
-    """Lay a floor of two rooms with doors between them on a table."""
+    """Place a floor of two rooms with doors between them on a table."""
     return _laid([first, second], list(necks), angle, margin)
 
 
@@ -116,7 +117,7 @@ def straight(
     """Return two rectangular rooms beside each other and the door between them, in the house's own frame.
 
     depths, heights : of the rooms, across and along the wall between them. at : where the door begins along the wall.
-    shift : by how much the second room lies further along the wall than the first.
+    shift : how much further along the wall the second room lies.
     """
     far = depths[0] + wall
     first = box(0, 0, depths[0], heights[0])

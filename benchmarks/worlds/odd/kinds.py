@@ -14,21 +14,27 @@ from benchmarks.worlds.odd import circular, constraints, fixtures, offgrid, open
 from benchmarks.worlds.odd.tasks import OddWorld
 from benchmarks.worlds.scenes import write
 
-Maker = Callable[[np.random.Generator, int], OddWorld | None]
-KINDS: dict[str, Maker] = {
-    module.KIND: module.world
-    for module in (offgrid, slanted, circular, plugged, touching, openings, fixtures, constraints)
+OddWorldMaker = Callable[[np.random.Generator, int], OddWorld | None]
+ODD_KINDS: dict[str, OddWorldMaker] = {
+    offgrid.OFFGRID_KIND: offgrid.world,
+    slanted.SLANTED_KIND: slanted.world,
+    circular.ROUND_KIND: circular.world,
+    plugged.PLUGGED_KIND: plugged.world,
+    touching.TOUCHING_KIND: touching.world,
+    openings.WIDE_OPENING_KIND: openings.world,
+    fixtures.FIXED_KIND: fixtures.world,
+    constraints.CONSTRAINT_KIND: constraints.world,
 }
-TRIES = 2_000
+MAX_ODD_TRIES = 2_000
 
 
 def odd_world(kind: str, seed: int) -> OddWorld:
     """Return the world of a kind and a seed from 0 on. Raises ValueError when there is no such kind or seed."""
-    if kind not in KINDS or seed < 0:
-        raise ValueError(f"no kind {kind} with seed {seed}: kinds are {', '.join(KINDS)}, seeds from 0")
+    if kind not in ODD_KINDS or seed < 0:
+        raise ValueError(f"no kind {kind} with seed {seed}: kinds are {', '.join(ODD_KINDS)}, seeds from 0")
     rng = np.random.default_rng([zlib.crc32(kind.encode()), seed])
-    for _ in range(TRIES):
-        made = KINDS[kind](rng, seed)
+    for _ in range(MAX_ODD_TRIES):
+        made = ODD_KINDS[kind](rng, seed)
         if made is not None:
             return made
     raise RuntimeError(f"no world found of kind {kind}, seed {seed}")
@@ -39,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.worlds.odd.kinds", description="Write odd scenario folders."
     )
-    parser.add_argument("--kind", default=",".join(KINDS), help="kinds with commas between (all)")
+    parser.add_argument("--kind", default=",".join(ODD_KINDS), help="kinds with commas between (all)")
     parser.add_argument("--seed", type=int, default=0, help="the first seed (%(default)s)")
     parser.add_argument("--count", type=int, default=1, help="how many of each kind (%(default)s)")
     parser.add_argument("-o", "--output", type=Path, default=Path("odd"), help="folder (%(default)s)")

@@ -1,4 +1,4 @@
-"""Where things lie and where the robot wakes in an odd world."""
+"""The places of objects and of the robot in an odd world."""
 
 from collections.abc import Sequence
 
@@ -11,9 +11,9 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.worlds.odd.houses import GRAIN
 from benchmarks.worlds.placing import spot
 
-TRIES = 100
-GAP = 2.5  # squares from a thing to walls and other things: two free squares wherever the grid lies
-STEP = 1.5  # squares from the robot to walls and things
+MAX_LYING_TRIES = 100
+LYING_GAP = 2.5  # squares from a thing to walls and other things: two free squares wherever the grid lies
+ROBOT_GAP = 1.5  # squares from the robot to walls and things
 
 
 def rounded(shape: Polygon) -> Polygon:
@@ -28,17 +28,17 @@ def place(
     taken: Sequence[BaseGeometry],
     whole: bool,
     angle: float = 0.0,
-    gap: float = GAP,
+    gap: float = LYING_GAP,
 ) -> Polygon | None:
-    """Return an outline laid in a room, turned by an angle, clear of its walls and of what is taken; or None.
+    """Return an outline placed in a room, clear of its walls and of what is taken; None when no place is found.
 
-    whole : its bounding box begins at whole squares; else anywhere, at hundredths of a square.
+    whole : whether its bounding box begins at whole squares; else anywhere, at hundredths of a square.
     """
     inner = room.buffer(-gap)
     if inner.is_empty:
         return None
     turned = rotate(outline, angle, origin=(0, 0))
-    for _ in range(TRIES):
+    for _ in range(MAX_LYING_TRIES):
         at = spot(rng, inner)
         west, south, east, north = turned.bounds
         x, y = (round(v, 0 if whole else 2) for v in (at.x - (east - west) / 2, at.y - (north - south) / 2))
@@ -49,14 +49,14 @@ def place(
 
 
 def stand(
-    rng: np.random.Generator, room: Polygon, taken: Sequence[BaseGeometry], whole: bool, gap: float = STEP
+    rng: np.random.Generator, room: Polygon, taken: Sequence[BaseGeometry], whole: bool, gap: float = ROBOT_GAP
 ) -> Point | None:
-    """Return a place for the robot clear of walls and of what is taken; or None.
+    """Return a place for the robot clear of walls and of what is taken; None when no place is found.
 
-    whole : the middle of a square; else anywhere, at hundredths of a square.
+    whole : whether it is the middle of a square; else anywhere, at hundredths of a square.
     """
     inner = room.buffer(-gap)
-    for _ in range(TRIES if not inner.is_empty else 0):
+    for _ in range(MAX_LYING_TRIES if not inner.is_empty else 0):
         at = spot(rng, inner)
         x, y = (int(v) + 0.5 if whole else int(v) + round(float(rng.uniform(0.05, 0.95)), 2) for v in (at.x, at.y))
         if inner.covers(Point(x, y)) and all(Point(x, y).distance(other) >= gap for other in taken):

@@ -14,14 +14,36 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing
 
-KIND = "off_grid"
-TASKS = ("carry_next", "next", "carry_corner", "carry_door", "corner", "carry_next", "at_x", "slit", "circle", "both")
-MARGINS = (-1.2, -0.6, -0.3, -0.1, 0.05, 0.1, 0.3, 0.6, 0.9, 1.4)  # squares by which a door is wider than the thing
-SLIT = (0.3, 1.9)  # squares: widths of doors that only a point passes
+OFFGRID_KIND = "off_grid"
+OFFGRID_TASKS = (
+    "carry_next",
+    "next",
+    "carry_corner",
+    "carry_door",
+    "corner",
+    "carry_next",
+    "at_x",
+    "slit",
+    "circle",
+    "both",
+)
+OFFGRID_MARGINS = (
+    -1.2,
+    -0.6,
+    -0.3,
+    -0.1,
+    0.05,
+    0.1,
+    0.3,
+    0.6,
+    0.9,
+    1.4,
+)  # squares by which a door is wider than the thing
+SLIT_WIDTHS = (0.3, 1.9)  # squares: widths of doors that only a point passes
 
 
 def real(rng: np.random.Generator, low: float, high: float) -> float:
-    """Return a number of two decimals that is no whole one."""
+    """Return a number of two decimals that is not whole."""
     value = round(float(rng.uniform(low, high)), 2)
     return value if value != round(value) else value + 0.37
 
@@ -46,23 +68,23 @@ def real_rooms(rng: np.random.Generator, door: float, wall: float | None = None)
 
 def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     """Return the world of a seed; None when the things find no place by these random numbers."""
-    task = TASKS[seed % len(TASKS)]
+    task = OFFGRID_TASKS[seed % len(OFFGRID_TASKS)]
     variant = task
     shape, outline, least = load(rng, bool(rng.random() < 0.5))
-    margin = MARGINS[int(rng.integers(len(MARGINS)))]
+    margin = OFFGRID_MARGINS[int(rng.integers(len(OFFGRID_MARGINS)))]
     if task in ("carry_next", "carry_door", "both"):
         door = round(least + margin, 2)
         possible = tasks.NO if margin < 0 else tasks.YES
         variant = f"door {margin:+.2f}"
     else:
-        door, possible = real(rng, *(SLIT if task == "slit" else (2.2, 5.5))), tasks.YES
+        door, possible = real(rng, *(SLIT_WIDTHS if task == "slit" else (2.2, 5.5))), tasks.YES
     if task in ("corner", "carry_corner"):
         room = box(0, 0, real(rng, 14, 26), real(rng, 14, 26))
         plan = one_room(room, 0.0, (real(rng, 1.1, 2.4), real(rng, 1.1, 2.4)))
     else:
         plan = real_rooms(rng, door)
     task = "next" if task == "slit" else task
-    return furnished(rng, KIND, seed, task, variant, plan, shape, outline, possible)
+    return furnished(rng, OFFGRID_KIND, seed, task, variant, plan, shape, outline, possible)
 
 
 def furnished(
@@ -79,7 +101,7 @@ def furnished(
     quarter: bool = False,
     whole: bool = False,
 ) -> OddWorld | None:
-    """Return a world in which x, unless the task needs none, and the robot lie anywhere in a room of a floor."""
+    """Return a world in which x, unless the task needs none, and the robot are anywhere in a room of a floor."""
     home = int(rng.integers(len(plan.rooms)))
     room, things = plan.rooms[home], ()
     if task not in tasks.WITHOUT_THING:
@@ -103,7 +125,7 @@ def doorways(plan: House) -> list[Polygon]:
 
 
 def squeezed(neck: OddNeck, least: float) -> str:
-    """Return whether a convex thing of a least width passes a door, where that is beyond doubt."""
+    """Return whether a convex object of a least width passes a door, where that is beyond doubt."""
     if neck.gap < least - 1e-6:
         return tasks.NO
-    return tasks.YES if neck.clear > least + 0.3 else tasks.UNKNOWN
+    return tasks.YES if neck.clear > least + 0.3 else tasks.NOT_KNOWN

@@ -1,4 +1,4 @@
-"""Wide openings: those wider than half the floor on one of their sides, which are no door, and those that just are."""
+"""Wide openings: wider than half the floor on one of their sides, so that they are no doors; and narrower ones."""
 
 import numpy as np
 from shapely import box
@@ -8,15 +8,18 @@ from benchmarks.worlds.odd.houses import House, straight, two_rooms
 from benchmarks.worlds.odd.offgrid import furnished
 from benchmarks.worlds.odd.tasks import OddWorld
 
-KIND = "wide"
-TASKS = ("next", "next", "carry_next", "next", "carry_door")
-VARIANTS = ("door", "no_door", "half", "no_door")
+WIDE_OPENING_KIND = "wide"
+WIDE_OPENING_TASKS = ("next", "next", "carry_next", "next", "carry_door")
+WIDE_OPENING_VARIANTS = ("door", "no_door", "half", "no_door")
 BEYOND_DOUBT = 0.7  # squares by which an opening is wider than half the widest circle's diameter beside it
 
 
 def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     """Return the world of a seed; None when the things find no place by these random numbers."""
-    variant, task = VARIANTS[seed % len(VARIANTS)], TASKS[seed % len(TASKS)]
+    variant, task = (
+        WIDE_OPENING_VARIANTS[seed % len(WIDE_OPENING_VARIANTS)],
+        WIDE_OPENING_TASKS[seed % len(WIDE_OPENING_TASKS)],
+    )
     depths = tuple(float(rng.integers(9, 19)) for _ in range(2))
     high = float(rng.integers(12, 23))
     floor = min(*depths, high)
@@ -36,7 +39,17 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     possible = tasks.NO if variant == "no_door" else tasks.YES
     side = float(rng.integers(2, 4))
     made = furnished(
-        rng, KIND, seed, task, variant, plan, "square", box(0, 0, side, side), possible, quarter=True, whole=True
+        rng,
+        WIDE_OPENING_KIND,
+        seed,
+        task,
+        variant,
+        plan,
+        "square",
+        box(0, 0, side, side),
+        possible,
+        quarter=True,
+        whole=True,
     )
     if made is None or variant != "no_door":
         return made

@@ -1,4 +1,4 @@
-"""Doors that a thing, or two, fill from jamb to jamb, so that no way leads through until they are moved."""
+"""Doors that one or two objects fill from jamb to jamb, so that no way leads through until they are moved."""
 
 import numpy as np
 from shapely import Polygon, box, union_all
@@ -12,15 +12,15 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing
 
-KIND = "plugged"
-VARIANTS = ("flush", "recessed", "out", "two", "flush", "fixed", "two_apart", "off_grid", "anchor", "out")
-TASKS = ("next", "carry_next", "next", "at_x", "carry_door", "both", "next")
+PLUGGED_KIND = "plugged"
+PLUGGED_VARIANTS = ("flush", "recessed", "out", "two", "flush", "fixed", "two_apart", "off_grid", "anchor", "out")
+PLUGGED_TASKS = ("next", "carry_next", "next", "at_x", "carry_door", "both", "next")
 FLANGE = 1.0  # squares by which an anchor is wider than the door, on both sides of the wall
 
 
 def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     """Return the world of a seed; None when the things find no place by these random numbers."""
-    variant, task = VARIANTS[seed % len(VARIANTS)], TASKS[seed % len(TASKS)]
+    variant, task = PLUGGED_VARIANTS[seed % len(PLUGGED_VARIANTS)], PLUGGED_TASKS[seed % len(PLUGGED_TASKS)]
     whole = variant != "off_grid"
     door = float(rng.integers(3, 6)) if whole else real(rng, 2.5, 5)
     wall = float(rng.integers(2, 5)) if whole else real(rng, 1.5, 3.5)
@@ -50,7 +50,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     shut = variant in ("fixed", "anchor")
     scene = OddScene(plan, home, things + plugs, utak, tasks.heading(rng, True))
     why = "what fills the door cannot be moved out of it" if shut else ""
-    return tasks.given(KIND, seed, task, variant, scene, tasks.NO if shut else tasks.YES, why)
+    return tasks.given(PLUGGED_KIND, seed, task, variant, scene, tasks.NO if shut else tasks.YES, why)
 
 
 def _plugs(rng: np.random.Generator, plan: House, variant: str, wall: float, home: int) -> list[Polygon]:

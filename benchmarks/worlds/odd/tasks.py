@@ -1,6 +1,7 @@
-"""Tasks of odd worlds: the facts of start.lp and goal.lp, and by expect.lp what must be true on the table at the end.
+"""Tasks of odd worlds: the facts of start.lp and goal.lp, and of expect.lp for what must be true at the end.
 
-Regions of expect.lp are a little larger than the words of a goal say, never smaller: who misses them was wrong.
+Regions of expect.lp are a little larger than the words of a goal say, never smaller: a robot that
+misses them was wrong.
 """
 
 from collections.abc import Sequence
@@ -14,12 +15,12 @@ from benchmarks.worlds.odd.houses import COMPASS, House
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt, world_text
 
-NOWHERE = Polygon()
-YES, NO, UNKNOWN = "yes", "no", "unknown"
-AT_CORNER = 1.5  # squares: one in each axis, at any angle of the axes
+EMPTY_REGION = Polygon()
+YES, NO, NOT_KNOWN = "yes", "no", "unknown"
+CORNER_DISTANCE = 1.5  # squares: one in each axis, at any angle of the axes
 AT_THING = 1.05  # squares from the squares of a thing
 THING_NEAR = 3  # squares from a corner to what is within one square of both its walls, however it is turned
-GOALS = {
+ODD_GOALS = {
     "next": "in(utak, room(next)).\n",
     "corner": "at(utak, corner({compass})).\n",
     "at_x": "at(utak, x).\n",
@@ -38,8 +39,12 @@ WITHOUT_THING = ("next", "corner")
 class OddWorld:
     """An odd world with a task.
 
-    possible : whether the task can be done, by construction: "yes", "no" or "unknown". why : says why it cannot.
-    variant : what within its kind this is a world of. avoid : where the robot must never be, by the goal's constraints.
+    Attributes
+    ----------
+    possible : whether the task can be done, by construction: "yes", "no" or "unknown".
+    why : why it cannot be done.
+    variant : what the world is within its kind.
+    avoid : where the robot must never be, by the goal's constraints.
     """
 
     kind: str
@@ -52,7 +57,7 @@ class OddWorld:
     heading: int
     texts: TaskTexts
     possible: str
-    avoid: BaseGeometry = NOWHERE
+    avoid: BaseGeometry = EMPTY_REGION
 
     @property
     def name(self) -> str:
@@ -67,7 +72,7 @@ class OddWorld:
 
 @dataclass(frozen=True)
 class OddScene:
-    """What a kind has made: a floor, the room (0 or 1) where it all begins, things (the first one is x), the robot."""
+    """The scene of a world: a floor, the room (0 or 1) where all begins, objects (the first is x), the robot."""
 
     plan: House
     home: int
@@ -86,11 +91,11 @@ def given(
     why: str = "",
     compass: str = "",
 ) -> OddWorld:
-    """Return a scene as a world with one of the tasks; a corner task needs the compass corner meant."""
+    """Return a scene as a world with one of the tasks; a corner task needs the compass corner."""
     start = "" if task in WITHOUT_THING else f"object(x).\nshape(x, {scene.things[0].shape}).\n"
     start += "door(d).\n" if task == "carry_door" else ""
     expect = "fails.\n" if possible == NO else _expected(task, scene, compass)
-    texts = TaskTexts(start, GOALS[task].format(compass=compass), expect, why)
+    texts = TaskTexts(start, ODD_GOALS[task].format(compass=compass), expect, why)
     return OddWorld(kind, seed, task, variant, scene.plan, scene.things, scene.utak, scene.heading, texts, possible)
 
 
@@ -115,7 +120,7 @@ def heading(rng: np.random.Generator, quarter: bool) -> int:
 
 
 def beside(things: Sequence[Polygon], plan: House) -> BaseGeometry:
-    """Return the region that is at one of some things: within a square of the squares that it covers."""
+    """Return the region that is at one of some objects: within a square of the squares that it covers."""
     squares = []
     for thing in things:
         rows, columns = np.nonzero(digital(thing, plan.width, plan.height))
@@ -125,10 +130,10 @@ def beside(things: Sequence[Polygon], plan: House) -> BaseGeometry:
 
 def _expected(task: str, scene: OddScene, compass: str) -> str:
     plan = scene.plan
-    who = "t1" if task.startswith("carry") or task == "both" else "utak"
+    subject = "t1" if task.startswith("carry") or task == "both" else "utak"
     back = f'near(utak, "{wkt(scene.utak)}", 2).\n'
     if task in TO_OTHER_ROOM:
-        return f'inside({who}, "{wkt(plan.beyond(scene.home))}").\n' + (back if task == "both" else "")
+        return f'inside({subject}, "{wkt(plan.beyond(scene.home))}").\n' + (back if task == "both" else "")
     if task == "at_x":
         return f'inside(utak, "{wkt(beside([scene.things[0].polygon], plan))}").\n'
     if task == "circle":
@@ -137,7 +142,7 @@ def _expected(task: str, scene: OddScene, compass: str) -> str:
     if corner is None:
         raise ValueError(f"no corner is the furthest to the {compass}")
     if task == "corner":
-        return f'inside(utak, "{wkt(corner.buffer(AT_CORNER))}").\n'
+        return f'inside(utak, "{wkt(corner.buffer(CORNER_DISTANCE))}").\n'
     thing = scene.things[0].polygon
-    reach = Point(thing.centroid).hausdorff_distance(thing) * 2 + AT_CORNER
+    reach = Point(thing.centroid).hausdorff_distance(thing) * 2 + CORNER_DISTANCE
     return f'near(t1, "{wkt(corner)}", {THING_NEAR}).\ninside(t1, "{wkt(corner.buffer(reach))}").\n'

@@ -1,4 +1,4 @@
-"""Things that touch: each other, of one colour or two, the robot's square, a wall, or both walls of a corner."""
+"""Objects that touch: each other, in one colour or two, the robot's square, a wall, or both walls of a corner."""
 
 import numpy as np
 from shapely import Point, Polygon, box
@@ -13,22 +13,22 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing
 
-KIND = "touching"
-VARIANTS = ("pair", "same_colour", "row", "robot", "wall", "corner", "pair", "robot_pair")
-TASKS = ("at_x", "carry_corner", "carry_next", "carry_corner", "carry_next", "both", "carry_door")
-SIDE = 3.0  # squares: x is a square
-OTHERS = {"brick": box(0, 0, 2, 4), "l_shape": ell(5, 5, 2)}
+TOUCHING_KIND = "touching"
+TOUCHING_VARIANTS = ("pair", "same_colour", "row", "robot", "wall", "corner", "pair", "robot_pair")
+TOUCHING_TASKS = ("at_x", "carry_corner", "carry_next", "carry_corner", "carry_next", "both", "carry_door")
+SQUARE_SIDE = 3.0  # squares: x is a square
+TOUCHING_SHAPES = {"brick": box(0, 0, 2, 4), "l_shape": ell(5, 5, 2)}
 
 
 def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     """Return the world of a seed; None when the things find no place by these random numbers."""
-    variant, task = VARIANTS[seed % len(VARIANTS)], TASKS[seed % len(TASKS)]
+    variant, task = TOUCHING_VARIANTS[seed % len(TOUCHING_VARIANTS)], TOUCHING_TASKS[seed % len(TOUCHING_TASKS)]
     if variant.startswith("robot") and task == "at_x":
         task = "carry_next"  # it is at x from the start
     plan = _plan(rng, task)
     home = int(rng.integers(len(plan.rooms)))
     room = plan.rooms[home]
-    square = box(0, 0, SIDE, SIDE)
+    square = box(0, 0, SQUARE_SIDE, SQUARE_SIDE)
     x = _at_walls(rng, room, square, variant == "corner") if variant in ("wall", "corner") else None
     x = x or place(rng, square, room, doorways(plan), bool(rng.random() < 0.7), 0.0, 5.5)
     if x is None or any(x.distance(door) < 3 for door in doorways(plan)):
@@ -37,8 +37,8 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     things = [PlacedThing("t1", tint, "square", x)]
     if variant in ("pair", "same_colour", "row", "robot_pair"):
         for number, side in enumerate((1, -1) if variant == "row" else (int(rng.choice([1, -1])),), 1):
-            shape = str(rng.choice(sorted(OTHERS)))
-            other = _against(rng, x, OTHERS[shape], side)
+            shape = str(rng.choice(sorted(TOUCHING_SHAPES)))
+            other = _against(rng, x, TOUCHING_SHAPES[shape], side)
             paint = tint if variant == "same_colour" else _another(rng, tint)
             things.append(PlacedThing(f"d{number}", paint, shape, other))
     utak = _by(rng, things, room) if variant.startswith("robot") else None
@@ -50,7 +50,9 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
     compass = tasks.choose_corner(rng, plan, facing) if task in tasks.TO_CORNER else ""
     if compass is None:
         return None
-    return tasks.given(KIND, seed, task, variant, OddScene(plan, home, tuple(things), utak, facing), compass=compass)
+    return tasks.given(
+        TOUCHING_KIND, seed, task, variant, OddScene(plan, home, tuple(things), utak, facing), compass=compass
+    )
 
 
 def _plan(rng: np.random.Generator, task: str) -> House:
@@ -89,7 +91,7 @@ def _another(rng: np.random.Generator, tint: str) -> str:
 
 
 def _by(rng: np.random.Generator, things: list[PlacedThing], room: Polygon) -> Point | None:
-    """Return a place for the robot in a square that touches a thing, one of whose squares is beside it."""
+    """Return a place for the robot in a square beside one of an object's squares."""
     west, south, east, north = things[0].polygon.bounds
     ways = [(west - 0.5, south + 1.5), (east + 0.5, south + 1.5), (west + 1.5, south - 0.5), (west + 1.5, north + 0.5)]
     for n in rng.permutation(len(ways)):

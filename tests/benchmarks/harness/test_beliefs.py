@@ -1,4 +1,4 @@
-"""The comparison of beliefs with the truth sees what is right and what is wrong, whichever way Utak's lattice lies."""
+"""The comparison of beliefs with the truth finds right and wrong beliefs at any orientation of the map frame."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +16,7 @@ BRICK = box(9, 6, 13, 8)
 
 
 def truth() -> np.ndarray:
-    """The occupied squares of the table: a verge one square thick and the brick."""
+    """Return the occupied squares of the table: a verge one square thick and the brick."""
     grid = np.ones((HEIGHT, WIDTH), bool)
     grid[1:-1, 1:-1] = False
     grid[6:8, 9:13] = True
@@ -24,7 +24,7 @@ def truth() -> np.ndarray:
 
 
 def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int]:
-    """A robot who knows the whole table, on a lattice turned by so many quarters, and his heading."""
+    """Return a robot that knows the whole table, with its map frame turned by quarters, and its heading."""
     about = (WOKE[0], WOKE[1])
     turned = rotate(BRICK, -90 * quarters, origin=about)
     frame = translate(turned, 0.5 - WOKE[0], 0.5 - WOKE[1])
@@ -45,7 +45,7 @@ def robot(quarters: int, angle: int = 0, shape: str = "brick") -> tuple[Any, int
 
 
 def brick_as_truth() -> dict[str, Any]:
-    """The brick as compare wants it."""
+    """Return the brick as `compare` expects it."""
     grid = np.zeros((HEIGHT, WIDTH), bool)
     grid[6:8, 9:13] = True
     return {"d1": ("brick", BRICK, grid)}
@@ -62,14 +62,14 @@ def test_true_beliefs_are_found_right(quarters: int, angle: int) -> None:
 
 def test_a_wrong_class_and_a_wrong_square_are_found() -> None:
     mind, heading = robot(1, shape="disc")
-    mind.model.view.state[24, 24] = 1  # his own square
+    mind.model.view.state[24, 24] = 1  # the robot's own square
     score = compare(beliefs(mind, WOKE, WOKE, heading), brick_as_truth(), truth(), under_fovea([WOKE], heading))
     assert (score.met, score.known, score.wrong) == (1, 0, 1)
     assert score.mistaken == ("d1: brick taken for disc",)
 
 
 @pytest.mark.parametrize("quarters", range(4))
-def test_beliefs_are_seen_from_where_he_stands(quarters: int) -> None:
+def test_beliefs_are_placed_by_where_the_robot_stands(quarters: int) -> None:
     mind, heading = robot(quarters)
     step = [(2, 1), (1, -2), (-2, -1), (-1, 2)][quarters]  # two squares east and one north on the table
     mind.model.place = (step[0] + 0.3, step[1] + 0.8)
@@ -86,7 +86,7 @@ def test_an_object_that_is_not_in_the_model_is_missed() -> None:
     assert score.mistaken == ("d1: brick taken for nothing",)
 
 
-def test_what_was_never_under_the_fovea_does_not_count() -> None:
+def test_squares_never_under_the_fovea_do_not_count() -> None:
     mind, heading = robot(0, shape="disc")
     score = compare(beliefs(mind, WOKE, WOKE, heading), brick_as_truth(), truth(), under_fovea([(2.5, 11.5)], heading))
     assert (score.met, score.whole) == (0, 0)

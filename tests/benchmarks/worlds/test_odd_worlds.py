@@ -14,9 +14,9 @@ from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.odd import constraints, openings, plugged, touching
 from benchmarks.worlds.odd.houses import OddNeck
-from benchmarks.worlds.odd.kinds import KINDS, odd_world
+from benchmarks.worlds.odd.kinds import ODD_KINDS, odd_world
 from benchmarks.worlds.odd.lying import own_square
-from benchmarks.worlds.odd.tasks import GOALS, NO, UNKNOWN, YES, OddWorld
+from benchmarks.worlds.odd.tasks import NO, NOT_KNOWN, ODD_GOALS, YES, OddWorld
 from benchmarks.worlds.scenes import write
 from geometry.cspace.plan_motion import plan_motion
 from geometry.motion.se2 import Pose
@@ -25,10 +25,10 @@ from simulator.scenario.scenario import read_scenario
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(12)
-WORLDS = [(kind, seed) for kind in KINDS for seed in SEEDS]
+WORLDS = [(kind, seed) for kind in ODD_KINDS for seed in SEEDS]
 DIGEST = """
-from benchmarks.worlds.odd.kinds import KINDS, odd_world
-made = [odd_world(kind, seed) for kind in KINDS for seed in range(3)]
+from benchmarks.worlds.odd.kinds import ODD_KINDS, odd_world
+made = [odd_world(kind, seed) for kind in ODD_KINDS for seed in range(3)]
 print("".join(world.world + world.texts.goal + world.texts.expect for world in made), end="")
 """
 
@@ -55,8 +55,8 @@ def test_a_world_passes_utak_check_and_says_what_is_true(kind: str, seed: int, t
         assert unmet(scenario.expectations, scenario.world, [start]), "it holds before anything is done"
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_things_and_the_robot_lie_on_the_floor_beside_each_other(kind: str) -> None:
+@pytest.mark.parametrize("kind", ODD_KINDS)
+def test_objects_and_the_robot_are_apart_on_the_floor(kind: str) -> None:
     for world in worlds_of(kind):
         assert world.plan.width <= 64 and world.plan.height <= 64
         shapes = [thing.polygon for thing in world.things]
@@ -80,17 +80,17 @@ def test_the_same_seed_gives_the_same_world_under_any_hash_seed() -> None:
     assert len(said) == 1 and len(said.pop()) > 1000
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ODD_KINDS)
 def test_each_kind_has_walks_and_carries_that_can_be_done(kind: str) -> None:
     worlds = worlds_of(kind, 26)
     assert {world.world for world in worlds[:2]} != {worlds[0].world}
-    able = [world for world in worlds if world.possible == YES] + [w for w in worlds if w.possible == UNKNOWN]
+    able = [world for world in worlds if world.possible == YES] + [w for w in worlds if w.possible == NOT_KNOWN]
     assert any("(x," in world.texts.goal and "utak" not in world.texts.goal for world in able)
     assert any("utak" in world.texts.goal for world in able)
-    assert set(GOALS) >= {world.task for world in worlds} or kind == "constraint"
+    assert set(ODD_GOALS) >= {world.task for world in worlds} or kind == "constraint"
 
 
-def test_off_grid_walls_lie_between_the_squares_and_doors_about_as_wide_as_what_is_carried() -> None:
+def test_off_grid_walls_are_off_the_grid_and_doors_nearly_as_wide_as_the_load() -> None:
     worlds = worlds_of("off_grid", 40)
     for world in worlds:
         places = coordinates(world.plan.floor)
@@ -129,7 +129,7 @@ def test_a_plug_leaves_no_way_through_the_door_until_it_is_moved() -> None:
         assert len(plugs) == (2 if world.variant.startswith("two") else 1)
         assert any(thing.fixed for thing in world.things) == (world.variant == "fixed")
         seen.add(world.variant)
-    assert seen == set(plugged.VARIANTS)
+    assert seen == set(plugged.PLUGGED_VARIANTS)
 
 
 def parted(floor: BaseGeometry, start: BaseGeometry, end: BaseGeometry) -> bool:
@@ -138,7 +138,7 @@ def parted(floor: BaseGeometry, start: BaseGeometry, end: BaseGeometry) -> bool:
     return not any(part.distance(start) < 2 and part.distance(end) < 2 for part in parts)
 
 
-def test_what_touches_has_no_distance() -> None:
+def test_touching_objects_have_no_distance() -> None:
     seen = set()
     for world in worlds_of("touching", 40):
         x, others = world.things[0].polygon, [thing.polygon for thing in world.things[1:]]
@@ -146,7 +146,7 @@ def test_what_touches_has_no_distance() -> None:
         assert all(x.intersection(other).length > 0.9 for other in others)
         if world.variant in ("wall", "corner"):
             touched = x.exterior.intersection(world.plan.floor.exterior).length
-            assert touched == pytest.approx(touching.SIDE * (2 if world.variant == "corner" else 1))
+            assert touched == pytest.approx(touching.SQUARE_SIDE * (2 if world.variant == "corner" else 1))
         if world.variant.startswith("robot"):
             assert x.distance(own_square(world.utak)) < 1
         if world.variant == "same_colour":
@@ -154,10 +154,10 @@ def test_what_touches_has_no_distance() -> None:
         if world.variant == "pair":
             assert len({thing.colour for thing in world.things}) == 2
         seen.add(world.variant)
-    assert seen == set(touching.VARIANTS)
+    assert seen == set(touching.TOUCHING_VARIANTS)
 
 
-def test_wide_openings_are_no_doors_and_the_others_just_are() -> None:
+def test_wide_openings_are_no_doors_and_narrower_ones_are() -> None:
     for world in worlds_of("wide", 24):
         assert openings.is_door(world.plan) == (world.variant != "no_door") == (world.possible == YES)
         assert world.plan.necks[0].clear >= 4
@@ -179,7 +179,7 @@ def test_fixed_things_look_like_movable_ones_beside_them() -> None:
         assert all(thing.polygon.distance(world.plan.verge) > 2 for thing in world.things)
 
 
-def test_constraints_ask_every_question_and_nothing_is_square_where_nothing_is_meant() -> None:
+def test_constraint_worlds_ask_every_question_and_have_no_square_where_none_is_meant() -> None:
     worlds = worlds_of("constraint", 2 * len(constraints.QUESTIONS))
     assert {world.variant for world in worlds} == set(constraints.QUESTIONS)
     for world in worlds:
@@ -203,7 +203,7 @@ def test_unknown_kinds_are_refused() -> None:
 
 
 @pytest.mark.parametrize("kind", ["off_grid", "slanted", "round"])
-def test_motions_of_the_thing_alone_agree_with_what_is_known_of_doors(kind: str) -> None:
+def test_motions_of_the_object_alone_agree_with_the_known_doors(kind: str) -> None:
     for world in worlds_of(kind, 20):
         if world.task not in ("carry_next", "carry_door", "both"):
             continue
@@ -219,4 +219,4 @@ def test_motions_of_the_thing_alone_agree_with_what_is_known_of_doors(kind: str)
             Pose(there.x, there.y, 0),
             bounds=(0, 0, plan.width, plan.height),
         )
-        assert (motion.status, world.possible) in {("found", YES), ("impossible", NO), ("found", UNKNOWN)}, world.name
+        assert (motion.status, world.possible) in {("found", YES), ("impossible", NO), ("found", NOT_KNOWN)}, world.name

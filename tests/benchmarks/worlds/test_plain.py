@@ -9,7 +9,7 @@ import shapely
 from benchmarks.harness.knowing import knowing
 from benchmarks.harness.trial import Conditions, run_trial
 from benchmarks.worlds.makers import scenario
-from benchmarks.worlds.plain import GOALS
+from benchmarks.worlds.plain import PLAIN_GOALS
 from benchmarks.worlds.scenes import write
 from kb.mapping.occupancy import FREE
 from simulator.episode.episode import EpisodeLog
@@ -18,7 +18,7 @@ from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 
 
-@pytest.mark.parametrize("task", sorted(GOALS))
+@pytest.mark.parametrize("task", sorted(PLAIN_GOALS))
 def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) -> None:
     for seed in range(4):
         world = scenario(task, seed, kind="plain")
@@ -37,14 +37,14 @@ def test_plain_worlds_are_valid_and_on_whole_squares(task: int, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("task", [2, 5, 7])
-def test_who_knows_everything_needs_no_more_than_who_finds_out(task: int, tmp_path: Path) -> None:
+def test_an_informed_robot_needs_no_more_commands(task: int, tmp_path: Path) -> None:
     trial = run_trial(task, 1, Conditions(knowing=True, kind="plain"), tmp_path)
     assert trial.achieved
     assert 0 < trial.needed <= trial.steps
 
 
 @pytest.mark.parametrize("heading_seed", [(1, 1), (1, 4), (3, 0)])
-def test_what_the_informed_robot_knows_is_the_truth(heading_seed: tuple[int, int], tmp_path: Path) -> None:
+def test_the_knowledge_of_the_informed_robot_is_true(heading_seed: tuple[int, int], tmp_path: Path) -> None:
     world = scenario(*heading_seed)
     session = Session(read_scenario(write(world, tmp_path / world.name)), Settings(), knowing(world), EpisodeLog(None))
     session.wake()

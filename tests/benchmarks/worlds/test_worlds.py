@@ -15,14 +15,14 @@ from shapely import Point, box
 
 from benchmarks.worlds.carrying import ELLS
 from benchmarks.worlds.floorplans import is_simple_row
-from benchmarks.worlds.makers import MAKERS, scenario
+from benchmarks.worlds.makers import WORLD_MAKERS, scenario
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario, write
-from benchmarks.worlds.walking import CORNERS
+from benchmarks.worlds.walking import CORNER_DIRECTIONS
 
 ROOT = Path(__file__).resolve().parents[3]
 SEEDS = range(14)
-WORLDS = [(task, seed) for task in sorted(MAKERS["wide"]) for seed in SEEDS]
+WORLDS = [(task, seed) for task in sorted(WORLD_MAKERS["wide"]) for seed in SEEDS]
 DIGEST = """
 from benchmarks.worlds.makers import scenario
 print("".join(scenario(t, s).world + scenario(t, s).texts.expect for t in range(1, 10) for s in (0, 11)), end="")
@@ -30,14 +30,14 @@ print("".join(scenario(t, s).world + scenario(t, s).texts.expect for t in range(
 
 
 def occupied(world: RandomScenario) -> np.ndarray:
-    """All squares that something covers."""
+    """Return all squares that something covers."""
     plan = world.plan
     shapes = [plan.verge, *(thing.polygon for thing in world.things)]
     return np.logical_or.reduce([digital(shape, plan.width, plan.height) for shape in shapes])
 
 
 def wide_reach(world: RandomScenario) -> np.ndarray:
-    """Squares that a body of 2 x 2 squares can get to from near Utak: bool (height, width)."""
+    """Return the squares that a body of 2 x 2 squares reaches from near the robot: bool (height, width)."""
     free = ~occupied(world)
     blocks = free[:-1, :-1] & free[1:, :-1] & free[:-1, 1:] & free[1:, 1:]
     x, y = int(world.utak.x), int(world.utak.y)
@@ -114,7 +114,7 @@ def test_the_square_of_task_four_can_be_circled(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_corner_of_task_one_is_the_furthest_of_the_floor(seed: int) -> None:
     world = scenario(1, seed)
-    east, north = CORNERS[world.texts.goal.split("(")[2].split(")")[0]]
+    east, north = CORNER_DIRECTIONS[world.texts.goal.split("(")[2].split(")")[0]]
     angle = math.radians(world.heading)
     c, s = math.cos(angle), math.sin(angle)
     rows, columns = np.nonzero(digital(world.plan.floor, world.plan.width, world.plan.height))
@@ -135,7 +135,7 @@ def test_nothing_but_squares_looks_like_a_square(task: int, seed: int) -> None:
             assert not (high == wide and squares.sum() == high * wide), thing
 
 
-def test_the_squares_that_may_be_meant_are_those_expected() -> None:
+def test_all_squares_that_may_be_meant_are_expected() -> None:
     for seed in range(60):
         world = scenario(3, seed)
         squares = [thing for thing in world.things if thing.shape == "square"]
@@ -143,7 +143,7 @@ def test_the_squares_that_may_be_meant_are_those_expected() -> None:
         assert world.possible == ("fails." not in world.texts.expect)
 
 
-@pytest.mark.parametrize("task", sorted(MAKERS["wide"]))
+@pytest.mark.parametrize("task", sorted(WORLD_MAKERS["wide"]))
 def test_the_files_are_facts(task: int, tmp_path: Path) -> None:
     folder = write(scenario(task, 3), tmp_path)
     for name in ("world", "start", "goal", "expect"):
@@ -155,7 +155,7 @@ def test_the_files_are_facts(task: int, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("seed", [*SEEDS, 23, 35])
 @pytest.mark.parametrize("task", [5, 6, 7, 9])
-def test_doors_let_what_is_carried_through_or_lack_what_is_said(task: int, seed: int) -> None:
+def test_doors_let_the_load_through_or_are_too_narrow_by_the_stated_width(task: int, seed: int) -> None:
     world = scenario(task, seed)
     load = world.things[0].polygon
     corners = list(load.minimum_rotated_rectangle.exterior.coords)
@@ -211,7 +211,7 @@ def test_the_same_seed_gives_the_same_world_under_any_hash_seed() -> None:
     assert other == "".join(parts)
 
 
-def test_no_such_task() -> None:
+def test_an_unknown_task_is_refused() -> None:
     with pytest.raises(ValueError, match="tasks are 1 to 9"):
         scenario(10, 0)
     with pytest.raises(ValueError, match="wide, snug, plain"):

@@ -1,4 +1,4 @@
-"""Which goals cannot hold at once."""
+"""Goals that cannot hold at once are found."""
 
 import pytest
 import shapely
@@ -18,25 +18,28 @@ NORTHEAST, SOUTHWEST = InCorner(20.0, 16.0, 1, 1), InCorner(0.0, 0.0, -1, -1)
 EVERYWHERE = Inside(shapely.box(0, 0, 20, 16))
 
 
-def land(*ends: End, missing: str = "") -> Placement:
+def placement(*ends: End, missing: str = "") -> Placement:
     return Placement({f"e{number}": end for number, end in enumerate(ends)}, missing)
 
 
 @pytest.mark.parametrize(
-    ("lands", "found"),
+    ("placements", "found"),
     [
-        ([land(NORTHEAST), land(SOUTHWEST)], (0, 1)),
-        ([land(EVERYWHERE), land(NORTHEAST), land(SOUTHWEST)], (1, 2)),
-        ([land(NORTHEAST), land(EVERYWHERE)], None),
-        ([land(NORTHEAST), land(SOUTHWEST, missing="more is to be seen")], None),
-        ([land(NORTHEAST), land(SOUTHWEST, NORTHEAST)], None),  # one of its places will do
-        ([land(InCorner(6.0, 5.0, 1, 1)), land(InCorner(3.0, 3.0, -1, -1))], None),  # it fills the room
-        ([land(Inside(shapely.box(0, 0, 5, 5))), land(Inside(shapely.box(4, 0, 9, 5)))], (0, 1)),
-        ([land(At(Pose(0.0, 0.0, 0.0))), land(At(Pose(0.0, 2.5, 0.0)))], (0, 1)),
+        ([placement(NORTHEAST), placement(SOUTHWEST)], (0, 1)),
+        ([placement(EVERYWHERE), placement(NORTHEAST), placement(SOUTHWEST)], (1, 2)),
+        ([placement(NORTHEAST), placement(EVERYWHERE)], None),
+        ([placement(NORTHEAST), placement(SOUTHWEST, missing="more is to be seen")], None),
+        ([placement(NORTHEAST), placement(SOUTHWEST, NORTHEAST)], None),  # one of its places is enough
+        (
+            [placement(InCorner(6.0, 5.0, 1, 1)), placement(InCorner(3.0, 3.0, -1, -1))],
+            None,
+        ),  # the object fills the room
+        ([placement(Inside(shapely.box(0, 0, 5, 5))), placement(Inside(shapely.box(4, 0, 9, 5)))], (0, 1)),
+        ([placement(At(Pose(0.0, 0.0, 0.0))), placement(At(Pose(0.0, 2.5, 0.0)))], (0, 1)),
     ],
 )
-def test_goals_whose_places_lie_apart_are_told(lands: list[Placement], found: tuple[int, int] | None) -> None:
-    assert conflict(lands, THING) == found
+def test_goals_with_places_apart_are_in_conflict(placements: list[Placement], found: tuple[int, int] | None) -> None:
+    assert conflict(placements, THING) == found
 
 
 @given(
@@ -45,22 +48,24 @@ def test_goals_whose_places_lie_apart_are_told(lands: list[Placement], found: tu
     st.floats(-3, 13),
     st.floats(0, 360),
 )
-def test_what_meets_a_goal_lies_within_its_region(end: End, dx: float, dy: float, degrees: float) -> None:
+def test_a_shape_that_meets_an_end_lies_within_its_enclosing_region(
+    end: End, dx: float, dy: float, degrees: float
+) -> None:
     pose = end.pose if isinstance(end, At) else Pose(dx, dy, degrees)
     lying = placed(THING, pose)
     if met(end, THING, lying):
         assert enclosing_region(end, THING).buffer(1e-5).covers(lying)
 
 
-def test_opposite_corners_are_apart_whatever_else_there_is() -> None:
+def test_opposite_corners_are_too_far_apart() -> None:
     situation = situation_of(seen_whole(BESIDE_A_THING))
     both = facts_of("at(utak, corner(northeast)). at(utak, corner(southwest)).")
     assert "too far apart" in opposite_corners(both, situation)
     one_side = facts_of("at(utak, corner(northeast)). at(utak, corner(northwest)).")
-    assert opposite_corners(one_side, situation) == ""  # with more floor they may be one
+    assert opposite_corners(one_side, situation) == ""  # with more floor they may be one corner
 
 
-def test_in_a_nook_opposite_corners_are_near_enough() -> None:
+def test_opposite_corners_of_a_nook_are_near_enough() -> None:
     situation = situation_of(seen_whole(["bbbb", "b.Ub", "b..b", "bbbb"]))
     both = facts_of("at(utak, corner(northwest)). at(utak, corner(southeast)).")
     assert opposite_corners(both, situation) == ""

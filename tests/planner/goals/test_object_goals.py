@@ -1,4 +1,4 @@
-"""Where something that is carried must end."""
+"""The placements of carried objects: where a goal holds for them."""
 
 import itertools
 from dataclasses import replace
@@ -30,7 +30,7 @@ NORTHEAST = facts_of("at(x, corner(northeast)).")[0]
 
 
 def landing_of(model: WorldModel, held: bool) -> Placement:
-    """Where the ring about him must end, and whether he has hold of it."""
+    """Return the placement of a ring around the robot in the northeast corner. held : whether the robot holds it."""
     ring = shapely.box(-1, -1, 4, 2) - shapely.box(0, 0, 1, 1) - shapely.box(-1, 0, 0, 1)
     node = Node("o1", "object", 95, "part1", covered(ring), 0, polygon=ring, moved=held)
     situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
@@ -38,13 +38,13 @@ def landing_of(model: WorldModel, held: bool) -> Placement:
 
 
 @pytest.mark.parametrize("held", [True, False])
-def test_what_he_carries_does_not_shut_him_in(held: bool) -> None:
+def test_a_carried_object_does_not_shut_the_robot_in(held: bool) -> None:
     model = seen_whole(SHUT_IN)
     assert np.count_nonzero(situation_of(model).cost_maps.floor) == 1
     assert landing_of(model, held).ends
 
 
-def test_what_cannot_be_carried_away_does() -> None:
+def test_walls_do_shut_the_robot_in() -> None:
     model = seen_whole([row.replace("g", "b") for row in SHUT_IN])
     square = shapely.box(8, 0, 11, 3)
     node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
@@ -54,7 +54,7 @@ def test_what_cannot_be_carried_away_does() -> None:
 
 
 @pytest.mark.parametrize("wide", [2, 4])
-def test_what_stands_before_a_door_is_too_wide_for_it_or_may_pass_whatever_lies_behind(wide: int) -> None:
+def test_an_object_before_a_door_is_refused_only_where_it_is_too_wide(wide: int) -> None:
     door = "b" * 8 + "." * wide + "b" * (12 - wide)
     rows = ["?" * 20] * 4 + ["b" + "." * 18 + "b"] * 2 + [door] * 2
     rows += ["b" + "." * 18 + "b"] * 6 + ["b..U" + "." * 15 + "b", "b" * 20]
@@ -83,7 +83,7 @@ OPEN_ENDED = [
 ]
 
 
-def test_while_the_corner_is_not_seen_a_thing_is_brought_into_that_of_what_is() -> None:
+def test_an_object_is_brought_into_the_corner_of_the_seen_floor_while_the_true_corner_is_unseen() -> None:
     model = seen_whole(OPEN_ENDED)
     square = shapely.box(2, 0, 5, 3)
     node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
@@ -110,7 +110,7 @@ WALLED = ["b" * 22, *["b" + "." * 20 + "b"] * 9, "b.U" + "." * 18 + "b", *["b" +
     ("turned", "gap", "holds"),
     [(0.0, 0.9, True), (90.0, 0.9, True), (20.0, 0.1, True), (20.0, 0.4, False), (45.0, 0.0, False)],
 )
-def test_what_lies_askew_in_a_corner_must_not_reach_far_from_its_walls(turned: float, gap: float, holds: bool) -> None:
+def test_a_rotated_object_in_a_corner_must_not_reach_far_from_the_walls(turned: float, gap: float, holds: bool) -> None:
     model = seen_whole(WALLED)
     row, column = np.argwhere(model.space)[-1]
     east, north = model.view.west + column + 1, model.view.south + row + 1
@@ -127,7 +127,7 @@ def test_what_lies_askew_in_a_corner_must_not_reach_far_from_its_walls(turned: f
 
 
 @pytest.mark.parametrize(("gap", "inexact", "holds"), [(0.9, False, True), (0.9, True, False), (0.4, True, True)])
-def test_what_lies_only_about_there_must_be_nearer_to_its_corner_if_it_can(
+def test_an_object_at_an_inexact_place_must_be_nearer_to_the_corner_if_possible(
     gap: float, inexact: bool, holds: bool
 ) -> None:
     model = seen_whole(WALLED)
@@ -145,27 +145,27 @@ def test_what_lies_only_about_there_must_be_nearer_to_its_corner_if_it_can(
     ("gap", "short", "holds"),
     [(0, 1.0, True), (1, 1.0, False), (1, 0.0, True), (0.75, 0.25, True), (0.75, 0.3, False), (0.75, 1.0, False)],
 )
-def test_what_may_be_smaller_than_it_looks_is_in_a_corner_when_it_is_however_small(
+def test_an_object_that_may_be_smaller_is_in_a_corner_only_if_it_is_at_its_smallest(
     gap: float, short: float, holds: bool
 ) -> None:
     model = seen_whole(WALLED)
     row, column = np.argwhere(model.space)[-1]
     east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
     there = shapely.box(east - 4, north - 4, east, north)
-    sides = (1.0, short, 1.0, short)  # how small it is on the other sides does not matter
+    sides = (1.0, short, 1.0, short)  # the other sides do not matter
     node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, short=sides)
     found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
-    assert holds or not any(lands(end, shape) for end in found.ends.values())  # there is something left to do
+    assert holds or not any(lands(end, shape) for end in found.ends.values())  # an end is left to reach
 
 
 @pytest.mark.parametrize(
     ("chance", "rows_open", "further"),
     [(0.3, 1, 1), (0.3, 2, 2), (0.3, 3, 2), (0.6, 1, 0), (0.0, 0, 0)],
 )
-def test_a_corner_that_rather_lies_further_is_hoped_for_there(chance: float, rows_open: int, further: int) -> None:
-    """Some rows of the wall to the north are not settled, and rather floor or not."""
+def test_an_optimistic_corner_lies_where_the_floor_likely_goes_on(chance: float, rows_open: int, further: int) -> None:
+    """Some rows of the wall to the north are not settled; chance : their probability of being occupied."""
     model = seen_whole([*["b" * 22] * 4, *WALLED[1:]])
     top = int(np.argwhere(model.space)[-1][0])
     model = unclear(model, slice(top + 1, top + 1 + rows_open), slice(1, 21), chance)
@@ -178,17 +178,17 @@ def test_a_corner_that_rather_lies_further_is_hoped_for_there(chance: float, row
     assert list(hoped) == [name] * (further > 0)
     for other in hoped.values():
         assert (other.x - end.x, other.y - end.y) == (0, further)
-        assert other.press > 0  # on to the wall, however far it is
+        assert other.press > 0  # the object is pressed on to the wall
 
 
 @pytest.mark.parametrize("behind", ["?", "b"])
-def test_who_is_shut_in_a_corner_by_what_he_holds_sees_the_rooms_that_he_could_take_it_to(behind: str) -> None:
-    """There is a door in the south wall; what lies behind it was never seen, or is wall."""
+def test_a_robot_shut_in_by_its_held_object_must_look_into_unseen_rooms(behind: str) -> None:
+    """The room has a door in its south wall; behind it all is unseen, or is wall."""
     wall, door = "b" * 18, "b" * 12 + "..." + "b" * 3
     rows = [wall, "b" + "." * 12 + "gggUb", *["b" + "." * 12 + "ggggb"] * 3, *["b" + "." * 16 + "b"] * 6]
     rows += [door if behind == "?" else wall] * 2
     model = seen_whole([*rows, *[behind * 18] * 3])
-    there = shapely.box(-2.75, -2.75, 0.25, 0.25)  # three quarters of a square from the walls that meet about him
+    there = shapely.box(-2.75, -2.75, 0.25, 0.25)  # 0.75 squares from the two walls of the corner
     node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
     for held in ("o1", None):
         situation = situation_of(replace(model, objects=(node,), held=held), {"x": "o1"})
@@ -203,8 +203,8 @@ def test_who_is_shut_in_a_corner_by_what_he_holds_sees_the_rooms_that_he_could_t
 
 @pytest.mark.parametrize("held", [True, False])
 @pytest.mark.parametrize("behind", ["?", "b"])
-def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind: str, held: bool) -> None:
-    """There is a door in the south wall; what lies behind it was never seen, or is wall."""
+def test_unseen_rooms_are_looked_into_on_the_way_with_the_object_in_hand(behind: str, held: bool) -> None:
+    """The room has a door in its south wall; behind it all is unseen, or is wall."""
     wall, door = "b" * 18, "b" * 12 + "..." + "b" * 3
     rows = [wall, *["b" + "." * 16 + "b"] * 8, "bUggg" + "." * 12 + "b", *["b.ggg" + "." * 12 + "b"] * 2]
     rows += [door if behind == "?" else wall] * 2
@@ -217,7 +217,7 @@ def test_rooms_that_he_must_see_before_it_is_there_he_may_see_by_the_way(behind:
     assert bool(found.by_the_way.viewpoints()) == (behind == "?" and held)
 
 
-NOOK = [  # where he woke, too narrow for a thing to lie on any side of that with its middle beside it
+NOOK = [  # the start is too near to the walls for the object to be centred on any side of it
     "b" * 14,
     "b" + "." * 12 + "b",
     "bU" + "." * 11 + "b",
@@ -227,8 +227,8 @@ NOOK = [  # where he woke, too narrow for a thing to lie on any side of that wit
 
 
 @pytest.mark.parametrize("goal", ["at(x, start).", 'pose(x, "POINT (1.9 -1)", 0).'])
-def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: str) -> None:
-    """It may lie across the corner of where he woke, or nearly where its pose is."""
+def test_a_refusal_of_all_ends_proves_nothing_when_others_exist(goal: str) -> None:
+    """The object may be across the corner of the start, or nearly at its pose."""
     model = seen_whole(NOOK)
     square = shapely.box(5, -6, 10, -1)
     node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
@@ -241,14 +241,14 @@ def test_that_a_thing_can_be_brought_to_none_of_some_ends_proves_nothing(goal: s
     assert PlanExecutor().infeasibility(node, found.must_reach.ends(), situation) is None
 
 
-def test_what_lies_loosely_near_to_something_is_near_to_it() -> None:
+def test_a_loose_end_near_a_target_is_within_one_square_of_it() -> None:
     model = seen_whole(NOOK)
     square = shapely.box(5, -6, 9, -3)
     node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(facts_of("at(x, start).")[0], node, (0.0, 0.0), situation)
     (end,) = found.loose.values()
-    start = shapely.box(1, 9, 2, 10)  # on the view's arrays
+    start = shapely.box(1, 9, 2, 10)  # view frame
     near = 0
     for dx, dy in itertools.product(np.arange(-6.0, 1.0, 0.25), np.arange(2.0, 9.0, 0.25)):
         lying = shapely.affinity.translate(shapely.box(6, 4, 10, 7), dx, dy)

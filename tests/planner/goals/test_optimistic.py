@@ -1,4 +1,4 @@
-"""Floor that is hoped for, and plans that are begun over it."""
+"""Optimistic planning: the floor that is assumed, and plans over it."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ from planner.situation import Situation
 from tests.kb.drawings import seen_whole, unclear
 from tests.planner.situations import situation_of
 
-HALF_SEEN = [  # the room goes on behind what is seen of it
+HALF_SEEN = [  # the room goes on beyond its seen part
     "b" * 22 + "??",
     *["b" + "." * 21 + "??"] * 4,
     "b...gggg" + "." * 14 + "??",
@@ -27,7 +27,7 @@ HALF_SEEN = [  # the room goes on behind what is seen of it
     "b" * 22 + "??",
 ]
 
-WALLED = [  # what is seen to be next lies behind a wall that the thing must be pushed round
+WALLED = [  # the near region lies behind a wall that the object must be pushed around
     "b" * 22 + "??",
     *["b" + "." * 9 + "b" + "." * 11 + "??"] * 4,
     "b...gggg" + "." * 14 + "??",
@@ -36,7 +36,7 @@ WALLED = [  # what is seen to be next lies behind a wall that the thing must be 
     "b" * 22 + "??",
 ]
 
-JAGGED = [  # what is seen of the next room leaves no place for the thing right behind the door
+JAGGED = [  # the seen part of the next room leaves no place for the object right behind the door
     "b" * 34,
     *["b" + "." * 12 + "bb" + "." * 18 + "b"] * 4,
     *["b..gggg" + "." * 6 + "bb" + "." * 18 + "b"] * 2,
@@ -49,7 +49,7 @@ JAGGED = [  # what is seen of the next room leaves no place for the thing right 
 
 @settings(deadline=None)
 @given(st.integers(1, 10), st.integers(1, 23))
-def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column: int) -> None:
+def test_only_unseen_squares_within_the_margin_are_assumed(row: int, column: int) -> None:
     situation = situation_of(seen_whole(HALF_SEEN))
     shape = situation.model.view.seen.shape
     mask = marked(np.array([row * shape[1] + column]), shape)
@@ -62,7 +62,7 @@ def test_only_what_was_never_seen_is_hoped_for_and_not_too_far(row: int, column:
     assert len(rows) > 1 if column >= 21 else len(rows) == 1
 
 
-def test_floor_is_hoped_to_go_on_behind_its_open_edge_but_not_through_walls() -> None:
+def test_floor_is_assumed_beyond_its_open_edge_but_not_through_walls() -> None:
     situation = situation_of(seen_whole(HALF_SEEN))
     free = hoped_floor(situation)
     seen = np.pad(situation.cost_maps.free(0), BEYOND)
@@ -73,7 +73,7 @@ def test_floor_is_hoped_to_go_on_behind_its_open_edge_but_not_through_walls() ->
 
 
 def thing(model: WorldModel) -> Node:
-    """The one thing there is, with its outline."""
+    """Return the only object, with its outline."""
     (node,) = model.objects
     x0, y0 = node.patch.west, node.patch.south
     rows, columns = node.patch.mask.shape
@@ -83,7 +83,7 @@ def thing(model: WorldModel) -> Node:
 def found(
     model: WorldModel, ends: dict[str, End], hoped: dict[str, End] | None = None, open_: bool = False
 ) -> tuple[ManipulationPlan, Situation]:
-    """The way that is chosen. open_ : is it open how the lattice lies?"""
+    """Return the chosen plan. open_ : whether the orientation is uncertain."""
     model = replace(model, likely_spread=0.3) if open_ else model
     situation = situation_of(model)
     answer = ManipulationOracle().find(Request(thing(model), ends), situation, hoped=lambda: hoped or {})
@@ -92,14 +92,14 @@ def found(
 
 
 def beside_the_jamb(chance: float) -> WorldModel:
-    """JAGGED, where two squares beside the door's jamb, over which the straight way leads, are not settled."""
+    """Return JAGGED with two unsettled squares beside the jamb, on the straight way. chance : of being occupied."""
     return unclear(seen_whole(JAGGED), slice(8, 9), slice(13, 15), chance)
 
 
 THROUGH = {"r2": Inside(shapely.box(15, 1, 33, 15))}
 
 
-def test_a_push_over_what_is_hoped_to_be_free_is_taken_where_it_saves_one() -> None:
+def test_an_optimistic_push_is_taken_where_it_saves_a_command() -> None:
     model = beside_the_jamb(0.2)
     haul, situation = found(model, THROUGH)
     assert haul.hopes and haul.level == UNSEEN
@@ -109,13 +109,13 @@ def test_a_push_over_what_is_hoped_to_be_free_is_taken_where_it_saves_one() -> N
     assert not sure.hopes and sure.plan.commands > haul.plan.commands
 
 
-def test_what_is_sure_is_not_left_for_a_hope_that_saves_nothing() -> None:
+def test_a_sure_plan_is_kept_where_an_optimistic_one_saves_nothing() -> None:
     haul, _ = found(seen_whole(JAGGED), THROUGH)
     assert not haul.hopes and haul.level == 0
 
 
 @pytest.mark.parametrize("open_", [False, True])
-def test_who_does_not_know_how_the_lattice_lies_ends_in_what_he_has_seen(open_: bool) -> None:
+def test_plans_end_in_seen_squares_while_the_orientation_is_uncertain(open_: bool) -> None:
     near, far = Inside(shapely.box(11, 7, 22, 11)), Inside(shapely.box(11, 1, 27, 11))
     haul, _ = found(seen_whole(WALLED), {"r": near}, {"r": far}, open_)
     assert haul.hopes != open_

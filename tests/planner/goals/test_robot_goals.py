@@ -1,4 +1,4 @@
-"""Where the furthest corner may lie: in rooms that are not seen, as far as they are looked for."""
+"""The furthest corner may be in unseen rooms; these are looked for within limits."""
 
 import pytest
 
@@ -6,12 +6,14 @@ from planner.goals.robot_goals import DOOR_SIDEWARD_REACH, MAX_UNSEEN_REACH, ONW
 from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of
 
-DOOR = 2  # columns west of it
+DOOR = 2  # columns of wall west of the door
 
 
 def looks(wide: int, high: int, north: bool, side: str = "northeast") -> int:
-    """How many rooms are looked for towards a corner of a room with a door in its north or south wall, beyond which all
-    is unseen."""
+    """Count the unseen rooms that may go further towards a corner of a room with one door, behind which all is unseen.
+
+    wide, high : the size of the room, in squares. north : whether the door is in its north or its south wall.
+    """
     wall = "b" * (1 + DOOR) + "..." + "b" * (wide - DOOR - 2)
     inside = [*["b" + "." * wide + "b"] * (high - 1), "b....U" + "." * (wide - 5) + "b"]
     rows = ["b" * (wide + 2), *inside, wall, wall, *["?" * len(wall)] * 3]
@@ -21,10 +23,8 @@ def looks(wide: int, high: int, north: bool, side: str = "northeast") -> int:
 
 
 @pytest.mark.parametrize(("wide", "high"), [(12, 8), (16, 8), (18, 10), (19, 10), (22, 12), (34, 24)])
-def test_a_room_behind_a_door_that_leads_away_from_a_corner_may_go_further_to_its_sides_only(
-    wide: int, high: int
-) -> None:
-    short = wide - DOOR - 3 + high + 1  # from the door's near end to the corner, east and north added
+def test_a_room_behind_a_door_that_leads_away_from_a_corner_may_go_further_sideward_only(wide: int, high: int) -> None:
+    short = wide - DOOR - 3 + high + 1  # from the near end of the door to the corner, east and north added
     assert looks(wide, high, north=False) == (short <= DOOR_SIDEWARD_REACH)
 
 
@@ -35,6 +35,6 @@ def test_a_room_behind_a_door_that_leads_towards_a_corner_may_go_further(wide: i
 
 
 @pytest.mark.parametrize("north", [True, False])
-def test_what_is_looked_for_depends_on_where_the_door_leads(north: bool) -> None:
+def test_the_search_depends_on_the_direction_of_the_door(north: bool) -> None:
     for side in ("northeast", "southeast"):
         assert looks(28, 18, north, side) == (("north" in side) == north)

@@ -1,4 +1,4 @@
-"""Who carries things goes by the fewest straight moves."""
+"""A robot that carries objects walks by the fewest straight moves."""
 
 import math
 from dataclasses import replace
@@ -37,12 +37,12 @@ WALLS = [
 
 
 def flat(column: int, line: int) -> int:
-    """The flat index of a square of the drawing, its lines counted from the north."""
+    """Return the flat index of a square of the drawing; lines are counted from the north."""
     return (len(WALLS) - 1 - line) * len(WALLS[0]) + column
 
 
 def subgoal(*squares: tuple[int, int]) -> Subgoal:
-    """An aim at squares (column, line) of the drawing."""
+    """Return a subgoal at squares (column, line) of the drawing."""
     return Subgoal("explore", np.array([flat(*square) for square in squares]), "there", 50)
 
 
@@ -55,7 +55,7 @@ def cost_maps() -> CostMaps:
     return CostMaps(seen_whole(WALLS))
 
 
-def test_of_an_aim_what_one_move_leads_to_counts(cost_maps: CostMaps) -> None:
+def test_only_the_squares_of_a_subgoal_count_that_one_move_reaches(cost_maps: CostMaps) -> None:
     behind, open_ = (31, 12), (29, 15)
     assert one_move(cost_maps, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
     fewest = FewestMoves(cost_maps)
@@ -66,7 +66,7 @@ def test_of_an_aim_what_one_move_leads_to_counts(cost_maps: CostMaps) -> None:
     assert way.squares == (cost_maps.here, (29, len(WALLS) - 1 - 15))
 
 
-def test_a_move_is_saved_by_a_long_detour() -> None:
+def test_a_long_detour_that_saves_a_move_is_taken() -> None:
     rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
     cost_maps = CostMaps(seen_whole(rows))
     width = len(rows[0])
@@ -79,7 +79,7 @@ def test_a_move_is_saved_by_a_long_detour() -> None:
 
 
 @pytest.mark.parametrize(("square", "moves"), [((29, 15), 1), ((33, 9), 2), ((3, 2), ASSUMED_MOVES)])
-def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
+def test_a_subgoal_costs_its_moves_and_a_share_of_its_way(
     cost_maps: CostMaps, square: tuple[int, int], moves: int
 ) -> None:
     far = cost_maps.distances[0].ravel()[flat(*square)] / 5
@@ -87,7 +87,7 @@ def test_an_aim_costs_what_its_moves_cost_and_a_share_of_its_way(
     assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
 
 
-def test_the_first_of_two_moves_ends_where_the_second_can_begin(cost_maps: CostMaps) -> None:
+def test_the_second_move_can_begin_where_the_first_ends(cost_maps: CostMaps) -> None:
     met = subgoal((33, 9))
     way = FewestMoves(cost_maps).way(met)
     assert way is not None
@@ -99,8 +99,8 @@ def test_the_first_of_two_moves_ends_where_the_second_can_begin(cost_maps: CostM
 
 
 @pytest.mark.parametrize("unseen", ["north", "south"])
-def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
-    """A block stands between him and what he aims at; either side of it leads round as far."""
+def test_the_turn_is_where_unseen_squares_come_into_sight(unseen: str) -> None:
+    """A block stands between the robot and its subgoal; the ways on both sides are as long."""
     hall, block = "b" + "." * 58 + "b", "b" + "." * 25 + "b" * 8 + "." * 25 + "b"
     here = "b..U" + block[4:]
     model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
@@ -114,38 +114,38 @@ def test_he_turns_where_he_sees_what_he_has_not_seen(unseen: str) -> None:
 
 
 def half_seen(shown: int) -> CostMaps:
-    """A hall of which so many columns were seen, from its west, where he stands."""
+    """Return a hall of which only the first `shown` columns from the west, where the robot stands, were seen."""
     model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
     seen = model.view.seen.copy()
     seen[:, shown:] = False
     return CostMaps(replace(model, view=model.view._replace(seen=seen)))
 
 
-def test_the_best_view_is_had_where_most_comes_into_sight_for_its_way() -> None:
+def test_the_best_view_has_the_most_gain_for_its_cost() -> None:
     cost_maps = half_seen(40)
     met = one_move(cost_maps, "explore")
     (look,) = best_views(cost_maps, met, MOVE, WAY)
     columns = look.squares % met.shape[1]
     assert met.ravel()[look.squares].all()
-    assert columns.min() > 40 - VIEW_REACH  # from further west hardly anything new is seen
-    assert (columns < 39).any()  # and it need not be right beside what was not
+    assert columns.min() > 40 - VIEW_REACH  # from further west hardly anything new comes into sight
+    assert (columns < 39).any()  # and it need not border on unseen squares
     west = met & (np.arange(met.shape[1]) < columns.min())
     (nearer,) = best_views(cost_maps, west, MOVE, WAY)
     assert 1 <= nearer.chance <= look.chance
 
 
-def test_there_is_no_view_where_nothing_new_comes_into_sight() -> None:
+def test_there_is_no_best_view_where_nothing_new_comes_into_sight() -> None:
     cost_maps = half_seen(60)
-    amid = np.zeros_like(one_move(cost_maps, "explore"))
-    assert best_views(cost_maps, amid, MOVE, WAY) == []
+    nowhere = np.zeros_like(one_move(cost_maps, "explore"))
+    assert best_views(cost_maps, nowhere, MOVE, WAY) == []
     hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
     cost_maps = CostMaps(hall)
-    amid = np.zeros(hall.view.seen.shape, bool)
-    amid[20:23, 30:40] = True
-    assert best_views(cost_maps, amid, MOVE, WAY) == []
+    nowhere = np.zeros(hall.view.seen.shape, bool)
+    nowhere[20:23, 30:40] = True
+    assert best_views(cost_maps, nowhere, MOVE, WAY) == []
 
 
-def test_every_first_move_is_one_that_may_be_made() -> None:
+def test_every_first_move_is_possible() -> None:
     for spread in (0.0, math.pi):
         cost_maps = CostMaps(replace(seen_whole(WALLS), likely_spread=spread))
         reached = one_move(cost_maps, "explore")

@@ -1,4 +1,4 @@
-"""One who goes in circles notices it, and goes elsewhere."""
+"""Loops are detected, and subgoals that lead in loops become dearer."""
 
 from dataclasses import replace
 
@@ -14,35 +14,35 @@ MODEL = seen_whole(HALL)
 
 
 def test_the_same_command_in_the_same_state_is_noticed() -> None:
-    circles = LoopGuard()
-    assert not circles.noticed(MODEL, Move(1.0, 0.0))
-    assert not circles.noticed(MODEL, Move(0.0, 1.0))
-    assert circles.noticed(MODEL, Move(1.0, 0.0))
-    assert circles.noticed(MODEL, Move(1.0 + 4e-9, -4e-9))  # but for the rounding of the place
-    assert not circles.noticed(MODEL, Push(1.0, 0.0))
-    assert not circles.noticed(MODEL, Release()) and circles.noticed(MODEL, Release())
+    guard = LoopGuard()
+    assert not guard.noticed(MODEL, Move(1.0, 0.0))
+    assert not guard.noticed(MODEL, Move(0.0, 1.0))
+    assert guard.noticed(MODEL, Move(1.0, 0.0))
+    assert guard.noticed(MODEL, Move(1.0 + 4e-9, -4e-9))  # equal after rounding
+    assert not guard.noticed(MODEL, Push(1.0, 0.0))
+    assert not guard.noticed(MODEL, Release()) and guard.noticed(MODEL, Release())
 
 
-def test_who_knows_more_or_is_elsewhere_does_not_go_in_circles() -> None:
-    circles = LoopGuard()
-    circles.noticed(MODEL, Move(1.0, 0.0))
-    assert not circles.noticed(replace(MODEL, place=(1.5, 0.5)), Move(1.0, 0.0))
-    assert not circles.noticed(replace(MODEL, held="o1"), Move(1.0, 0.0))
-    assert not circles.noticed(replace(MODEL, barred=frozenset({(3, 3)})), Move(1.0, 0.0))
+def test_more_knowledge_or_another_place_makes_no_loop() -> None:
+    guard = LoopGuard()
+    guard.noticed(MODEL, Move(1.0, 0.0))
+    assert not guard.noticed(replace(MODEL, place=(1.5, 0.5)), Move(1.0, 0.0))
+    assert not guard.noticed(replace(MODEL, held="o1"), Move(1.0, 0.0))
+    assert not guard.noticed(replace(MODEL, barred=frozenset({(3, 3)})), Move(1.0, 0.0))
     state = MODEL.view.state.copy()
     state[0, 0] = -1
-    assert not circles.noticed(replace(MODEL, view=MODEL.view._replace(state=state)), Move(1.0, 0.0))
+    assert not guard.noticed(replace(MODEL, view=MODEL.view._replace(state=state)), Move(1.0, 0.0))
 
 
-def test_an_aim_in_vain_gets_dearer_and_is_given_up() -> None:
-    circles = LoopGuard()
+def test_a_subgoal_that_leads_in_loops_becomes_dearer_and_is_given_up() -> None:
+    guard = LoopGuard()
     row, column = MODEL.view.locate(2.5, 0.5)
     there = Subgoal("explore", np.array([row * MODEL.labels.shape[1] + column]), "")
     other = Subgoal("explore", there.squares + 1, "")
-    assert circles.priced([there, other], MODEL) == [there, other]
-    circles.tire(frozenset({(2, 0)}))
-    dearer, same = circles.priced([there, other], MODEL)
+    assert guard.priced([there, other], MODEL) == [there, other]
+    guard.tire(frozenset({(2, 0)}))
+    dearer, same = guard.priced([there, other], MODEL)
     assert (dearer.price, same.price) == (LOOP_COST, 0.0)
     for _ in range(9):
-        circles.tire(frozenset({(2, 0), (900, 900)}))
-    assert circles.priced([there, other], MODEL) == [other]
+        guard.tire(frozenset({(2, 0), (900, 900)}))
+    assert guard.priced([there, other], MODEL) == [other]

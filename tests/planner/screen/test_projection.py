@@ -1,4 +1,4 @@
-"""The projection is monotone; what is aimed at, looked for and walked over is what it must be."""
+"""Cost maps, subgoals, frontiers, routes and moves on the screen."""
 
 import itertools
 import math
@@ -23,7 +23,7 @@ from tests.kb.eyes import random_room
 
 
 def random_walk(seed: int) -> WorldModel:
-    """The model of one who looked two or three times in a random room."""
+    """Return the world model after two or three observations in a random room."""
     rng = np.random.default_rng(seed)
     while True:
         rows = random_room(rng, *rng.integers(10, 34, 2), things=rng.integers(1, 7))
@@ -66,7 +66,7 @@ def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
 
 
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 2**32 - 1), st.integers(0, 3))
-def test_grown_is_chebyshev(rows: int, columns: int, seed: int, squares: int) -> None:
+def test_dilation_is_by_the_chebyshev_distance(rows: int, columns: int, seed: int, squares: int) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < 0.15
     where = np.argwhere(mask)
     want = [
@@ -87,14 +87,14 @@ HALL = [
 
 
 def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
-    """The flat index of a square (x, y) relative to where Utak woke."""
+    """Return the flat index of a square (x, y) of the map frame."""
     row, column = model.view.locate(x + 0.5, y + 0.5)
     return np.array([row * model.labels.shape[1] + column])
 
 
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
-def test_a_move_sweeps_safe_squares_alone(kind: str, pace: Pace) -> None:
+def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
     model = seen_whole(HALL)
     cost_maps = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
@@ -124,7 +124,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
                 assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
 
 
-def test_ways_are_free_connected_and_distinct() -> None:
+def test_routes_are_free_connected_and_distinct() -> None:
     model = seen_whole(HALL)
     cost_maps = CostMaps(model)
     found = ways(cost_maps, 0, flat(model, 12, -1), "skeleton")
@@ -140,7 +140,7 @@ def test_ways_are_free_connected_and_distinct() -> None:
     assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
-def test_who_is_there_has_a_way_of_one_square() -> None:
+def test_the_route_to_the_own_square_has_one_square() -> None:
     model = seen_whole(HALL)
     cost_maps = CostMaps(model)
     (way,) = ways(cost_maps, 0, flat(model, 0, 0), "skeleton")
@@ -148,13 +148,13 @@ def test_who_is_there_has_a_way_of_one_square() -> None:
     assert way.length == 0
 
 
-def test_nearest_is_by_level_first() -> None:
+def test_the_surest_level_decides_what_is_nearest() -> None:
     rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
     model = seen_whole(rows)
     cost_maps = CostMaps(model)
     reached = cost_maps.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
     assert reached is not None
-    assert reached.level == 0  # the further one is floor, the nearer one was never seen
+    assert reached.level == 0  # the more distant one is floor, the nearer one is unseen
     assert reached.cost == pytest.approx(9.4)
     only = cost_maps.nearest(flat(model, 3, 0))
     assert only is not None
@@ -162,7 +162,7 @@ def test_nearest_is_by_level_first() -> None:
     assert cost_maps.nearest(flat(model, 9, 1)) is None
 
 
-def test_the_choice_of_an_aim() -> None:
+def test_the_choice_of_a_subgoal() -> None:
     model = seen_whole(HALL)
     cost_maps = CostMaps(model)
     near, far = Subgoal("explore", flat(model, 1, 0), "near"), Subgoal("explore", flat(model, 12, 0), "far")
@@ -176,7 +176,7 @@ def test_the_choice_of_an_aim() -> None:
     assert choose([], cost_maps, frozenset()) is None
 
 
-def test_frontiers_border_on_what_was_never_seen() -> None:
+def test_frontiers_border_on_unseen_squares() -> None:
     rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
     model = seen_whole(rows)
     cost_maps = CostMaps(model)
@@ -189,7 +189,7 @@ def test_frontiers_border_on_what_was_never_seen() -> None:
     assert frontiers.rooms_beyond(closed) == []
 
 
-def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
+def test_floor_seen_beyond_a_wall_is_an_unreached_room() -> None:
     rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
     cost_maps = CostMaps(seen_whole(rows))
     (room,) = frontiers.rooms_beyond(cost_maps)
@@ -199,7 +199,7 @@ def test_floor_seen_over_a_wall_is_a_room_beyond() -> None:
     assert frontiers.rooms_beyond(CostMaps(seen_whole(small))) == []
 
 
-def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
+def test_no_viewpoint_is_used_twice() -> None:
     rows = ["bbbbb????", "b.U..????", "bbbbb????"]
     model = seen_whole(rows)
     (border,) = frontiers.frontiers(CostMaps(model), 0)
@@ -210,7 +210,7 @@ def test_a_second_look_from_the_same_square_is_not_worth_it() -> None:
     assert frontiers.frontiers(beside, 2) == []
 
 
-def test_circling_winds_once() -> None:
+def test_encircling_routes_wind_once() -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
     cost_maps = CostMaps(model)
@@ -228,17 +228,17 @@ def test_circling_winds_once() -> None:
 
 
 @pytest.mark.parametrize("aside", [-0.49, -1e-12, 0.0, 0.3])
-def test_where_in_his_square_he_halts_changes_no_way_round(aside: float) -> None:
+def test_the_place_within_a_square_changes_no_encircling_route(aside: float) -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
     x, y = pivot(node)
     moved = replace(model, place=(x + 6, y + aside))
     offered = ways_round(CostMaps(moved), [model.place, (x, y + 5), moved.place], node)
-    amid = ways_round(CostMaps(moved), [model.place, (x, y + 5), (x + 6, y)], node)
-    assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in amid.items()}
+    centred = ways_round(CostMaps(moved), [model.place, (x, y + 5), (x + 6, y)], node)
+    assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in centred.items()}
 
 
-def test_half_a_turn_leaves_the_other_half() -> None:
+def test_after_half_a_turn_the_other_half_is_left() -> None:
     model = seen_whole(HALL)
     (node,) = model.objects
     x, y = pivot(node)
@@ -252,7 +252,7 @@ def test_half_a_turn_leaves_the_other_half() -> None:
         whole_turns.add(turn)
     assert whole_turns == {1, -1}
     shortest = min(offered.values(), key=lambda way: way.length)
-    assert min(r for _, r in shortest.squares) + model.view.south + 0.5 < y  # under it, not back over it
+    assert min(r for _, r in shortest.squares) + model.view.south + 0.5 < y  # south of it, not back on the north side
 
 
 def test_the_pivot_lies_within_the_object() -> None:
@@ -264,7 +264,7 @@ def test_the_pivot_lies_within_the_object() -> None:
 
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
+def test_odd_boundaries_are_part_of_the_unsettled_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
 
     def squares(odd: bool) -> set[int]:
@@ -274,18 +274,18 @@ def test_what_no_wall_explains_is_part_of_what_is_vague(seed: int) -> None:
 
 
 @pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
-def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(leeway: tuple[float, ...]) -> None:
+def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leeway: tuple[float, ...]) -> None:
     model = replace(seen_whole(HALL), leeway=leeway)
     cost_maps = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
         way = ways(cost_maps, 0, flat(model, *goal), "skeleton")[0]
         move = next_move(cost_maps, way.squares, "explore")
-        plain = next_move(cost_maps, way.squares, "attain")
-        assert (plain.east, plain.north) == (round(plain.east), round(plain.north))
+        whole = next_move(cost_maps, way.squares, "attain")
+        assert (whole.east, whole.north) == (round(whole.east), round(whole.north))
         west, south, east, north = leeway
         for gone, back, forth in ((move.east, west, east), (move.north, south, north)):
             aside = gone - round(gone)
-            assert math.floor(gone + 0.5) == round(gone)  # in the square that he goes to
+            assert math.floor(gone + 0.5) == round(gone)  # still in the square of the subgoal
             assert -0.5 < aside < 0.5
             assert (
                 aside == 0 or (aside > 0.4 and forth > LEEWAY_TOLERANCE) or (aside < -0.4 and -back > LEEWAY_TOLERANCE)
@@ -297,27 +297,27 @@ def test_he_halts_near_the_edge_of_a_square_while_he_may_have_woken_elsewhere(le
     ) == (max(leeway) > LEEWAY_TOLERANCE)
 
 
-def test_while_it_is_open_how_the_lattice_lies_no_turn_leads_to_the_line_between_two_squares() -> None:
+def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_uncertain() -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
     cost_maps = CostMaps(model)
-    plain = 0
+    whole = 0
     for goal in np.flatnonzero(cost_maps.floor).tolist():
         for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, "explore")
-            plain += (move.east, move.north) == (round(move.east), round(move.north))
+            whole += (move.east, move.north) == (round(move.east), round(move.north))
             for degrees in range(360):
                 c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
                 x = model.place[0] + c * move.east - s * move.north
                 y = model.place[1] + s * move.east + c * move.north
                 assert 1e-4 < x % 1 < 1 - 1e-4
                 assert 1e-4 < y % 1 < 1 - 1e-4
-    assert plain > 0
+    assert whole > 0
 
 
 @pytest.mark.parametrize("pace", [STROLL, HURRY])
-def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_they_are_bold(pace: Pace) -> None:
+def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_bold(pace: Pace) -> None:
     model = replace(seen_whole(HALL), likely_spread=math.pi)
     cost_maps = CostMaps(model)
     clear_of = ~grown(~cost_maps.safe, 1)
@@ -338,7 +338,7 @@ def test_while_it_is_open_how_the_lattice_lies_longer_moves_keep_clear_unless_th
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_seen(seed: int) -> None:
+def test_bold_moves_go_up_to_unsettled_squares_but_not_to_unseen_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
     view = cost_maps.model.view
     more = cost_maps.believed & ~cost_maps.safe
@@ -350,7 +350,7 @@ def test_the_bold_go_right_up_to_what_is_not_settled_but_not_to_what_was_never_s
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
-def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
+def test_only_the_carrying_pace_is_bold(spread: float) -> None:
     cost_maps = CostMaps(replace(random_walk(3), likely_spread=spread))
     for kind in STROLL.longest_by_kind:
         assert (
@@ -362,7 +362,7 @@ def test_who_hurries_is_bold_and_who_strolls_is_not(spread: float) -> None:
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 @pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
-def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: float) -> None:
+def test_one_move_reaches_exactly_the_possible_ends_of_the_next_move(kind: str, spread: float) -> None:
     cost_maps = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
     reached = one_move(cost_maps, kind)
     ended = np.zeros_like(reached)
@@ -379,7 +379,7 @@ def test_one_move_leads_just_where_the_next_move_may_end(kind: str, spread: floa
     assert (reached & cost_maps.believed == ended & cost_maps.believed).all()
 
 
-def test_he_does_not_halt_near_an_edge_where_what_lies_beyond_it_may_stop_him() -> None:
+def test_no_move_ends_near_an_edge_where_the_next_square_may_stop_it() -> None:
     model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
     cost_maps = CostMaps(model)
     for goal in np.flatnonzero(cost_maps.floor).tolist():

@@ -1,4 +1,4 @@
-"""Straight moves of a whole square, against an exact sweep of shapely."""
+"""Sweeps of a unit square, checked against exact sweeps by shapely."""
 
 import itertools
 
@@ -14,14 +14,14 @@ whole = st.integers(-9, 9)
 
 
 def sweep(columns: int, rows: int) -> shapely.Geometry:
-    """All that a unit square covers on its way from (0, 0) by (columns, rows)."""
+    """Return the area that a unit square covers on its way from (0, 0) by (columns, rows)."""
     corners = [(x + a, y + b) for x, y in ((0, 0), (columns, rows)) for a in (0, 1) for b in (0, 1)]
     return shapely.MultiPoint(corners).convex_hull
 
 
 @settings(max_examples=200, deadline=None)
 @given(whole, whole)
-def test_swept_squares_are_those_whose_interior_is_met(columns: int, rows: int) -> None:
+def test_swept_squares_are_those_with_an_interior_that_is_met(columns: int, rows: int) -> None:
     c, r = swept_offsets(columns, rows)
     found = set(zip(c.tolist(), r.tolist(), strict=True))
     covered = sweep(columns, rows)
@@ -33,7 +33,7 @@ def test_swept_squares_are_those_whose_interior_is_met(columns: int, rows: int) 
 
 @settings(max_examples=200, deadline=None)
 @given(st.integers(2, 12), st.integers(2, 12), st.integers(0, 2**32 - 1))
-def test_clear_is_an_exact_sweep(rows: int, columns: int, seed: int) -> None:
+def test_a_sweep_is_free_exactly_when_it_meets_no_blocked_square(rows: int, columns: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     free = rng.random((rows, columns)) < 0.85
     a, b = ((int(rng.integers(columns)), int(rng.integers(rows))) for _ in range(2))
@@ -45,7 +45,7 @@ def test_clear_is_an_exact_sweep(rows: int, columns: int, seed: int) -> None:
 
 @settings(max_examples=200, deadline=None)
 @given(st.integers(3, 12), st.integers(3, 12), st.integers(0, 2**32 - 1), st.booleans())
-def test_a_line_is_clear_when_a_unit_square_sweeps_free_squares_alone(
+def test_a_line_sweep_is_free_exactly_when_it_meets_no_blocked_square(
     rows: int, columns: int, seed: int, straight: bool
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -57,7 +57,7 @@ def test_a_line_is_clear_when_a_unit_square_sweeps_free_squares_alone(
     walls = [shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(~np.pad(free, 2)).tolist()]
     blocked = shapely.transform(shapely.union_all(walls), lambda p: p - 2)
     overlap = float(shapely.area(shapely.intersection(covered, blocked)))
-    assume(not 0.0 < overlap < 1e-9)  # they hardly meet: shapely rounds
+    assume(not 0.0 < overlap < 1e-9)  # too small an overlap for the rounding of shapely
     assert line_sweep_is_free(free, a, b) == (overlap == 0.0)
 
 

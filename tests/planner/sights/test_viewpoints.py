@@ -1,4 +1,4 @@
-"""From where what may be a thing is looked at, and where he goes to take it."""
+"""The squares from which an object is inspected or taken."""
 
 from dataclasses import replace
 
@@ -23,19 +23,19 @@ ROOM = [row[:4] + "U" + row[5:] if k == 38 else row for k, row in enumerate(draw
 
 
 def distance_from(squares: np.ndarray, mask: np.ndarray) -> np.ndarray:
-    """Rows or columns from each square (flat) to the nearest of a mask."""
+    """Return the Chebyshev distance of each square (flat indices) to the nearest square of a mask."""
     at = np.stack(np.divmod(squares, mask.shape[1]), axis=1)
     apart = np.abs(at[:, None] - np.argwhere(mask)[None]).max(2)
     return np.asarray(apart.min(1))
 
 
 def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[CostMaps, np.ndarray]:
-    """CostMaps of a room with one thing, and the squares of that. looked_from : squares of the lattice."""
+    """Return the cost maps of a room with one object, and its mask. looked_from : squares of the map frame."""
     model = replace(seen_whole(ROOM), looked_from=looked_from)
     return CostMaps(model), model.mask(model.objects[0].patch)
 
 
-def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
+def test_an_unlikely_object_is_seen_from_a_distance_first() -> None:
     cost_maps, mask = room()
     away = distance_from(inspection_squares(cost_maps, mask, 0.2, ARRIVE), mask)
     assert away.max() == MIDDLE_ZONE_RANGE > CLOSE
@@ -48,17 +48,17 @@ def test_what_is_hardly_what_is_looked_for_is_seen_from_afar_first() -> None:
 
 
 @pytest.mark.parametrize("to", [ARRIVE, TAKE])
-def test_what_is_likely_looked_for_is_gone_up_to(to: Approach) -> None:
+def test_a_likely_object_is_approached(to: Approach) -> None:
     cost_maps, mask = room()
     squares = inspection_squares(cost_maps, mask, 0.8, to)
     assert (distance_from(squares, mask) == 1).all()
     assert edged(mask).ravel()[squares].all()
 
 
-def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
+def test_an_object_to_take_is_approached_where_it_surely_is() -> None:
     cost_maps, mask = room()
     column = int(np.argwhere(mask)[:, 1].min())
-    rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the thing, and may be floor
+    rim = mask & (np.arange(mask.shape[1]) == column)[None]  # may be part of the object, and may be floor
     view = cost_maps.model.view
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
     cost_maps = CostMaps(replace(cost_maps.model, view=view._replace(probability=doubtful)))
@@ -69,7 +69,7 @@ def test_what_he_shall_take_is_gone_up_to_where_it_surely_is() -> None:
 
 
 def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
-    """The same, but for squares that are occupied with another probability, and settled or open."""
+    """Return cost maps with another probability and state for some squares."""
     view = cost_maps.model.view
     chance = np.where(squares, probability, view.probability).astype(np.float32)
     states = np.where(squares, state, view.state).astype(view.state.dtype)
@@ -77,7 +77,7 @@ def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state:
 
 
 def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
-    """The squares at each side of a thing, that of its containing rectangle."""
+    """Return the squares at each side of the bounding box of a mask."""
     (south, west), (north, east) = np.argwhere(mask).min(0), np.argwhere(mask).max(0)
     rows, columns = np.indices(mask.shape)
     across, up = (columns >= west) & (columns <= east), (rows >= south) & (rows <= north)
@@ -98,7 +98,7 @@ def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
         ((-1, -1), {"east", "north"}),
     ],
 )
-def test_he_does_not_stand_between_a_thing_and_the_corner_it_is_for(corner: tuple[int, int], wanted: set[str]) -> None:
+def test_the_robot_does_not_stand_between_an_object_and_its_corner(corner: tuple[int, int], wanted: set[str]) -> None:
     cost_maps, mask = room()
     squares = inspection_squares(cost_maps, mask, 1.0, TAKE._replace(corner=corner))
     by_side = sides(mask)
@@ -106,7 +106,7 @@ def test_he_does_not_stand_between_a_thing_and_the_corner_it_is_for(corner: tupl
     assert np.logical_or.reduce([by_side[name] for name in wanted]).ravel()[squares].all()
 
 
-def test_he_stands_in_its_way_where_no_other_side_is_floor() -> None:
+def test_the_robot_stands_in_the_way_where_no_other_side_is_floor() -> None:
     cost_maps, mask = room()
     by_side = sides(mask)
     cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, FULL)
@@ -115,7 +115,7 @@ def test_he_stands_in_its_way_where_no_other_side_is_floor() -> None:
     assert (by_side["east"] | by_side["north"]).ravel()[squares].all()
 
 
-def test_of_the_sides_of_a_thing_one_is_taken_that_a_straight_move_leads_to() -> None:
+def test_a_side_that_one_straight_move_reaches_is_preferred() -> None:
     cost_maps, mask = room()
     met = one_move(cost_maps, "inspect").ravel()
     at_sides = np.flatnonzero(edged(mask) & cost_maps.floor)
@@ -126,7 +126,7 @@ def test_of_the_sides_of_a_thing_one_is_taken_that_a_straight_move_leads_to() ->
     assert sorted(all_round.tolist()) == at_sides.tolist()
 
 
-def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> None:
+def test_an_approach_crosses_squares_beside_an_object_that_may_be_floor() -> None:
     cost_maps, mask = room()
     ring = grown(mask, 1) & ~mask
     cost_maps = looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[1], OPEN)
@@ -145,7 +145,7 @@ def test_who_goes_up_to_a_thing_goes_over_what_may_well_be_floor_beside_it() -> 
     assert not looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[2], OPEN).approachable[ring].any()
 
 
-def test_nothing_is_gone_up_to_so_beside_the_verge() -> None:
+def test_no_such_approach_leads_beside_the_verge() -> None:
     cost_maps, _ = room()
     verge = cost_maps.model.verge & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     assert (edged(verge) & cost_maps.believed).any()
@@ -154,7 +154,7 @@ def test_nothing_is_gone_up_to_so_beside_the_verge() -> None:
     assert not cost_maps.approachable[beside].any()
 
 
-def test_how_far_a_square_is_no_way_leads_to_is_told_as_it_lies() -> None:
+def test_the_distance_of_an_unreachable_square_is_straight() -> None:
     cost_maps, mask = room()
     inside = np.flatnonzero(mask)[:1]
     row, column = divmod(int(inside[0]), mask.shape[1])
@@ -163,7 +163,7 @@ def test_how_far_a_square_is_no_way_leads_to_is_told_as_it_lies() -> None:
     assert (cost_maps.far(some) == cost_maps.distances[0].ravel()[some] / 5).all()
 
 
-def test_what_is_for_a_corner_is_gone_up_to_from_away_of_its_walls() -> None:
+def test_an_object_for_a_corner_is_approached_from_the_side_away_from_its_walls() -> None:
     cost_maps, _ = room()
     corners = {"northeast": Corner((9.0, 5.0), (8, 5)), "southwest": Corner((2.0, 3.0), (2, 3))}
     goals = {name: facts_of(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
