@@ -35,17 +35,17 @@ class Frame:
         self.origin = origin
 
     def turned(self, east: float, north: float) -> Point:
-        """A vector."""
+        """Return a vector of the robot's frame in the table's frame, in squares."""
         return east * self.cosine - north * self.sine, east * self.sine + north * self.cosine
 
     def point(self, east: str, north: str) -> Point:
-        """A point in hundredths."""
+        """Return a point, given in hundredths of squares as text, in squares of the table."""
         x, y = self.turned(int(east) / 100, int(north) / 100)
         return x + self.origin[0], y + self.origin[1]
 
 
 def fields() -> list[tuple[int, int, int]]:
-    """East, north and side of the 160 fields, in the order of an impression."""
+    """Return east, north and side of the 160 fields, in the order of an impression, in squares."""
     found, inner = [], 0
     for reach, side in ZONES:
         for north in range(reach - side, -reach - 1, -side):
@@ -59,13 +59,13 @@ def fields() -> list[tuple[int, int, int]]:
 
 
 def path(rings: Iterable[Sequence[Sequence[float]]], height: int) -> str:
-    """SVG data of rings in table squares."""
+    """Return the SVG path data of rings, given in squares of the table."""
     moves = [" L".join(f"{x * SCALE:.1f} {(height - y) * SCALE:.1f}" for x, y in ring) for ring in rings]
     return " ".join(f"M{move} Z" for move in moves)
 
 
 def truth(header: Line, step: Line) -> list[str]:
-    """The table, and where things are."""
+    """Draw the table, and where things are."""
     width, height = header["world"]["table"]
     parts = [f'<rect class="floor" width="{width * SCALE}" height="{height * SCALE}"/>']
     for rings in header["world"]["verge"]:
@@ -75,7 +75,7 @@ def truth(header: Line, step: Line) -> list[str]:
 
 
 def impression(step: Line, frame: Frame, height: int) -> list[str]:
-    """The fields of the retina that show something."""
+    """Draw the fields of the retina that show something."""
     parts = []
     x, y = (math.floor(v) + 0.5 for v in step["utak"])
     for (east, north, side), level in zip(fields(), step["retina"], strict=True):
@@ -87,7 +87,7 @@ def impression(step: Line, frame: Frame, height: int) -> list[str]:
 
 
 def belief(step: Line, frame: Frame, height: int) -> list[str]:
-    """The boundaries that are believed."""
+    """Draw the boundaries that are believed."""
     parts = []
     for fact in step["belief"]["facts"]:
         if fact.startswith("segment("):
@@ -102,7 +102,7 @@ def belief(step: Line, frame: Frame, height: int) -> list[str]:
 
 
 def panel(lines: Sequence[Line], number: int) -> str:
-    """One moment."""
+    """Draw one moment of a run."""
     header, steps = lines[0], lines[1:-1]
     step, height = steps[number], header["world"]["table"][1]
     frame = Frame(header["world"]["heading"], tuple(steps[0]["utak"]))
@@ -117,7 +117,7 @@ def panel(lines: Sequence[Line], number: int) -> str:
 
 
 def picture(lines: Sequence[Line]) -> str:
-    """The SVG of an episode: its first step, one amid, and its last."""
+    """Return the SVG of an episode: its first step, one in the middle, and its last."""
     width, height = (side * SCALE for side in lines[0]["world"]["table"])
     last = len(lines) - 3
     panels = [

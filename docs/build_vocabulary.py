@@ -36,13 +36,13 @@ class Entry(NamedTuple):
 
 
 def encodings() -> list[Path]:
-    """All encodings, the world model's own vocabulary first."""
+    """Return all encodings, the world model's own vocabulary first."""
     paths = [*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "asp").glob("*.lp")]
     return sorted(paths, key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
 
 
 def entries(text: str) -> list[Entry]:
-    """The documented predicates of an encoding, in its order."""
+    """Return the documented predicates of an encoding, in its order."""
     inputs, shown = _signatures(text, "#defined"), _signatures(text, "#show")
     found = []
     for block in BLOCK.findall(text):
@@ -67,7 +67,7 @@ def _items(text: str) -> Iterator[str]:
 
 
 def title(text: str) -> str:
-    """The comment at the top of an encoding."""
+    """Return the comment at the top of an encoding."""
     lines = []
     for line in text.splitlines():
         if not line.startswith("% "):
@@ -77,12 +77,12 @@ def title(text: str) -> str:
 
 
 def undocumented(text: str) -> set[tuple[str, int]]:
-    """Inputs and answers of an encoding without a documentation block."""
+    """Return inputs and answers of an encoding that have no documentation block."""
     return (_signatures(text, "#defined") | _signatures(text, "#show")) - {e.signature for e in entries(text)}
 
 
 def section(path: Path) -> str:
-    """One encoding's part of the page."""
+    """Return one encoding's part of the page."""
     text = path.read_text()
     lines = [f"## {path.relative_to(ROOT)}", "", title(text), ""]
     for entry in entries(text):
@@ -93,7 +93,7 @@ def section(path: Path) -> str:
 
 
 def files_section() -> str:
-    """The declared vocabulary of the four kinds of fact files."""
+    """Return the part about the declared vocabulary of the four kinds of fact files."""
     sys.path.insert(0, str(ROOT))
     from kb.language.vocabulary import EXPECT, GOAL, START, WORLD
 
@@ -111,7 +111,7 @@ def files_section() -> str:
 
 
 def questions_section() -> str:
-    """What of the world model is open, and how its arguments are spelt."""
+    """Return the part about which predicates of the world model are open."""
     sys.path.insert(0, str(ROOT))
     from kb.language.vocabulary import BELIEF, Open
 
@@ -131,7 +131,7 @@ def questions_section() -> str:
 
 
 def rules_section() -> str:
-    """What stands in the arguments of the predicates that rules of users may derive."""
+    """Return the part about the predicates that rules of users may derive."""
     sys.path.insert(0, str(ROOT))
     from kb.reasoning.interfaces import REACHED, READ_ONLY
 
@@ -152,7 +152,7 @@ def _form(predicate: str, slots: Sequence[object]) -> str:
 
 
 def page() -> str:
-    """The whole page."""
+    """Return the whole page."""
     sections = [*(section(path) for path in encodings()), questions_section(), rules_section(), files_section()]
     return "\n".join([HEAD, *sections])
 

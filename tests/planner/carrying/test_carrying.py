@@ -96,7 +96,7 @@ def test_a_square_is_carried_into_a_corner(tmp_path: Path, heading: int) -> None
     done = run(folder)
     assert done.result.verdict == "done", done.result.reason
     lies_as_believed(done.session)
-    assert {load.colour for load in done.session.robot.knowledge.memory.held_objects.values()} == {"g"}  # as it was felt
+    assert {load.colour for load in done.session.robot.knowledge.memory.held_objects.values()} == {"g"}
     west, south, east, north = done.session.table.polygons["t"].bounds
     corners = {0: (30 - east, 20 - north), 90: (west - 2, 20 - north), 217: (west - 2, south - 2)}
     assert max(corners[heading]) <= 1.0 + 1e-6
