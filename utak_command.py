@@ -19,7 +19,7 @@ PROJECT_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH
 # The packages that are imported from that folder only.
 OUR_PACKAGES = frozenset({"geometry", "kb", "planner", "simulator", "benchmarks"})
 # The packages of others on which ours depend.
-OTHERS = ("clingo", "numpy", "shapely", "networkx", "numba")
+DEPENDENCIES = ("clingo", "numpy", "shapely", "networkx", "numba")
 
 
 class OurPackageFinder:
@@ -43,7 +43,7 @@ def install_package_finder() -> None:
         sys.meta_path.insert(0, OurPackageFinder)
 
 
-def beside(module: str, *arguments: str) -> list[str]:
+def isolated_command(module: str, *arguments: str) -> list[str]:
     """Return the command line that runs one of our modules in an isolated process with this Python.
 
     module : the name of the module. arguments : its command line.
@@ -58,7 +58,7 @@ def _places() -> str:
     """
     from importlib.util import find_spec
 
-    origins = [spec.origin for spec in map(find_spec, OTHERS) if spec is not None and spec.origin]
+    origins = [spec.origin for spec in map(find_spec, DEPENDENCIES) if spec is not None and spec.origin]
     return os.pathsep.join(sorted({os.path.dirname(os.path.dirname(origin)) for origin in origins}))  # noqa: PTH120
 
 
@@ -91,7 +91,7 @@ def run_module(places: str, module: str, *arguments: str) -> None:
     from runpy import run_module as run
 
     install_package_finder()
-    if any(PathFinder.find_spec(name) is None for name in OTHERS):  # as with `pip install --user`
+    if any(PathFinder.find_spec(name) is None for name in DEPENDENCIES):  # as with `pip install --user`
         sys.path += [place for place in places.split(os.pathsep) if place and place not in sys.path]
     sys.argv = [module, *arguments]
     run(module, run_name="__main__", alter_sys=True)

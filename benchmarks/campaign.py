@@ -31,7 +31,7 @@ from benchmarks.harness.judging import judge_path
 from benchmarks.harness.tally import faults, narrowness, table, verdicts
 from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial
 from benchmarks.worlds.makers import add_kinds, scenario, seeds
-from simulator.episode.output_files import is_rows, opened
+from simulator.episode.output_files import is_json_lines, open_for_writing
 from simulator.run.session import Session
 
 
@@ -87,7 +87,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def _results(path: Path) -> TextIO:
     """Return the path of a file for results; refuse one that holds anything else, so that it is not overwritten."""
-    stream = opened(path, is_rows, "file of results")
+    stream = open_for_writing(path, is_json_lines, "file of results")
     stream.truncate()
     return TextIOWrapper(stream, encoding="ascii")
 

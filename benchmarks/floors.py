@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.engine.exact import Exact, clearances, labels
 from geometry import Route, Screen
 from geometry.kernels.arrays import XY, Bools
-from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.pathfinders.visibility_graph import visibility_path
 
 HALF_DIAGONAL = 0.7075  # squares: of a square, and what the polygons that stand for circles lack (derived)
 LENGTH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)
@@ -156,7 +156,7 @@ def shortest(case: Case) -> Iterator[str]:
     best = case.screen.shortest(case.start, case.goal)
     if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > LENGTH_TOLERANCE):
         yield f"shortest says {best and best.length}, not {least}"
-    seen = visibility_way(case.free, case.start, case.goal)
+    seen = visibility_path(case.free, case.start, case.goal)
     long = np.inf if seen is None else float(np.hypot(*np.diff(seen, axis=0).T).sum())
     if abs(long - least) > LENGTH_TOLERANCE and long != least:
         yield f"the visibility graph says {long}, not {least}"

@@ -23,10 +23,10 @@ from pathlib import Path
 from types import FrameType
 
 from geometry.io.movingai import MapError, parse_map
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.reasoning.query import QueryEngine, QueryLimitError
-from kb.reasoning.solver import KB, solve
-from kb.reasoning.user_rules import checked_rules
+from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.user_rules import read_tested_rules
 from simulator.scenario.scenario import read_scenario
 from simulator.world.physics import Tabletop
 
@@ -268,8 +268,10 @@ def rules(count: int, seed: int, keep: Path) -> Counter[str]:
         path.write_bytes(raw)
 
         def tried(path: Path = path) -> None:
-            checked_rules([path])
-            solve([KB / "interpretation.lp", path], ["region(a,zero,90)", "region(c,nonzero,80)", "extent(c,3)"])
+            read_tested_rules([path])
+            solve(
+                [KB_ENCODINGS / "interpretation.lp", path], ["region(a,zero,90)", "region(c,nonzero,80)", "extent(c,3)"]
+            )
 
         _count(outcomes, came_out(tried), repr(raw))
         path.unlink()
@@ -286,7 +288,7 @@ def maps(count: int, seed: int) -> Counter[str]:
             try:
                 parse_map(raw)
             except MapError as error:
-                span = Span(error.line, error.column, error.end)
+                span = SourceSpan(error.line, error.column, error.end)
                 raise BadInputError([Problem("map", span, error.what)]) from None
 
         _count(outcomes, came_out(read), repr(raw))

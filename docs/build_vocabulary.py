@@ -95,13 +95,13 @@ def section(path: Path) -> str:
 def files_section() -> str:
     """Return the part about the declared vocabulary of the four kinds of fact files."""
     sys.path.insert(0, str(ROOT))
-    from kb.language.vocabulary import EXPECT, GOAL, START, WORLD
+    from kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, WORLD_VOCABULARY
 
     parts: Mapping[str, Mapping[str, Sequence[object]]] = {
-        "world.lp": WORLD,
-        "start.lp": START,
-        "goal.lp": GOAL,
-        "expect.lp": EXPECT,
+        "world.lp": WORLD_VOCABULARY,
+        "start.lp": START_VOCABULARY,
+        "goal.lp": GOAL_VOCABULARY,
+        "expect.lp": EXPECTATION_VOCABULARY,
     }
     lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/language/vocabulary.py).", ""]
     for name, vocabulary in parts.items():
@@ -113,17 +113,17 @@ def files_section() -> str:
 def questions_section() -> str:
     """Return the part about which predicates of the world model are open."""
     sys.path.insert(0, str(ROOT))
-    from kb.language.vocabulary import BELIEF, Open
+    from kb.language.vocabulary import BELIEF_PREDICATES, Openness
 
     words = {
-        Open.NEVER: "nothing: it is known completely",
-        Open.UNSEEN: "things not seen yet",
-        Open.UNTOLD: "things not seen yet, and things of which it says nothing",
+        Openness.NEVER: "nothing: it is known completely",
+        Openness.UNSEEN: "things not seen yet",
+        Openness.UNTOLD: "things not seen yet, and things of which it says nothing",
     }
     lines = ["## What may hold besides what is believed", ""]
     lines += ["Questions are answered by this table (kb/language/vocabulary.py; docs/files.md says how).", ""]
     lines += ["| predicate | more of it may hold of | its confidence |", "|---|---|---|"]
-    for (name, arity), declared in BELIEF.items():
+    for (name, arity), declared in BELIEF_PREDICATES.items():
         but = f", but for {', '.join(sorted(declared.settled))}" if declared.settled else ""
         turns = "between 0 and 100 it may turn out otherwise" if declared.confident else ""
         lines.append(f"| `{name}/{arity}` | {words[declared.open]}{but} | {turns} |")
@@ -133,15 +133,19 @@ def questions_section() -> str:
 def rules_section() -> str:
     """Return the part about the predicates that rules of users may derive."""
     sys.path.insert(0, str(ROOT))
-    from kb.reasoning.interfaces import REACHED, READ_ONLY
+    from kb.reasoning.interfaces import READ_ONLY_PREDICATES, USER_RULE_INTERFACES
 
     lines = ["## What rules of users may derive", ""]
     lines += [
         "The encodings that rules of `--kb` reach, and what stands in the arguments (kb/reasoning/interfaces.py).",
         "",
     ]
-    for name, interface in REACHED.items():
-        forms = [_form(p, [s.name for s in slots]) for (p, n), slots in interface.items() if (p, n) not in READ_ONLY]
+    for name, interface in USER_RULE_INTERFACES.items():
+        forms = [
+            _form(p, [s.name for s in slots])
+            for (p, n), slots in interface.items()
+            if (p, n) not in READ_ONLY_PREDICATES
+        ]
         lines.append(f"- **{name}.lp**: " + ", ".join(f"`{form}`" for form in forms))
     return "\n".join(lines) + "\n"
 

@@ -16,13 +16,13 @@ from geometry.homotopy.portals import word_of_line
 from geometry.incremental.update import change_squares
 from geometry.kernels.arrays import Bools, Ints, Labels
 from geometry.passages.narrow_stretches import narrow_squares
-from geometry.passages.necks import DOOR, Passage, find_passages
+from geometry.passages.necks import DOOR_RATIO, Passage, find_passages
 from geometry.passages.partition import find_parts
 from geometry.passages.walls import Walls, find_walls
-from geometry.raster.distance_transform import type_of_squares
+from geometry.raster.distance_transform import smallest_distance_type
 from geometry.routes.goal_routes import routes_to_area
 from geometry.routes.goal_sets import checked_goal
-from geometry.routes.layer import Layer, find_bones, find_layer, level_of, new_state
+from geometry.routes.layer import Layer, build_layer, find_pathgraph, least_squared_clearance, new_state
 from geometry.routes.queries import LayerQueries
 from geometry.routes.route import Route
 from geometry.routes.tighten import word_of_crossings
@@ -78,7 +78,7 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._rent(type_of_squares(grid))
+        self._rent(smallest_distance_type(grid))
         self._skeletons: dict[int, tuple[States, Words, SkeletonGraph]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
         self._layers: dict[tuple[int, bool], Layer] = {}
@@ -232,7 +232,7 @@ class Screen:
 
     def _new_arrays(self, radius: float) -> PathgraphArrays:
         """Return the pathgraph of a body in new, writable arrays."""
-        state, _, bones = self._skeleton_at(level_of(radius))
+        state, _, bones = self._skeleton_at(least_squared_clearance(radius))
         return build_pathgraph_arrays(self._square, state, bones)
 
     def routes(
@@ -403,7 +403,7 @@ class Screen:
         start, goal = (self._checked(route.points[k].tolist(), "the route's end") for k in (0, -1))
         return questions.of_word(start, goal, word)
 
-    def passages(self, pinch: float = DOOR) -> list[Passage]:
+    def passages(self, pinch: float = DOOR_RATIO) -> list[Passage]:
         """Return the necks of free space, ordered by place.
 
         A neck is a straight line from wall to wall that is shorter than all near it (see necks.py).
@@ -486,7 +486,7 @@ class Screen:
         """Return the same as ``_survey`` with some squares changed, all measured anew."""
         grid = self.free
         grid[rows, columns] = values
-        kind = type_of_squares(grid)
+        kind = smallest_distance_type(grid)
         if self._square.dtype < kind:
             self._rent(kind)
         return self._survey(grid)
@@ -496,7 +496,7 @@ class Screen:
         found = self._skeletons.get(level)
         if found is None:
             state, words = new_state(self._square.shape)
-            found = state, words, find_bones(self._square, level, state, words)
+            found = state, words, find_pathgraph(self._square, level, state, words)
             self._skeletons[level] = found
         return found
 
@@ -512,10 +512,10 @@ class Screen:
         """Return the object that answers questions for a body of that radius (squares)."""
         found = self._questions.get(radius)
         if found is None:
-            key = level_of(radius), radius > 0.0
+            key = least_squared_clearance(radius), radius > 0.0
             if key not in self._layers:
                 state, chains = self._skeleton_at(key[0])[0], self._chains_at(key[0])
-                self._layers[key] = find_layer(self._square, key[0], key[1], state, chains)
+                self._layers[key] = build_layer(self._square, key[0], key[1], state, chains)
             found = self._questions[radius] = LayerQueries(self._layers[key], key[0], radius)
         return found
 

@@ -23,7 +23,7 @@ from kb.objects.shape_fit import ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
-from kb.world.model import SPACE, Node, WorldModel
+from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from kb.world.object_names import ObjectNames
 from kb.world.objects import (
     MapRegions,
@@ -178,7 +178,7 @@ class Knowledge:
 
     def _regions(self, view: MapView) -> MapRegions:
         """Return the regions of the map and what each of them is, as seen and as felt."""
-        occupied = view.seen & (view.probability > SPACE)
+        occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         felt = self._touches.colours
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(felt.items())]

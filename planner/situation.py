@@ -12,7 +12,7 @@ from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
-from kb.world.rooms import LIKELY_DOOR, SURE, Door, Rooms, rooms_of, went_through
+from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
 from planner.screen.projection import CostMaps, grown
 from planner.sights.frontiers import Viewpoint, sight_of
 from planner.stages import constraints
@@ -73,8 +73,8 @@ class Situation:
         tuple[Bools, tuple[Viewpoint, ...]]
             (rows, columns); and viewpoints, none when the answer is reliable or no room is next.
         """
-        mask = self.next_to(place, self.rooms, SURE)
-        both = mask & self.next_to(place, self.rooms_by_sure_walls, LIKELY_DOOR)
+        mask = self.next_to(place, self.rooms, MIN_DOOR_CONFIDENCE)
+        both = mask & self.next_to(place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
         if both.any() or not mask.any():
             return both, ()
         return mask, doubtful_wall_ends(self)
@@ -85,7 +85,7 @@ class Situation:
         Returns the partition into rooms that was used, and (rows, columns).
         """
         for rooms in (self.rooms, self.rooms_by_sure_walls):
-            mask = self.next_to(place, rooms, LIKELY_DOOR)
+            mask = self.next_to(place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
             if mask.any():
                 break
         return rooms, mask

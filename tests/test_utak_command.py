@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import utak_command
-from utak_command import beside
+from utak_command import isolated_command
 
 ROOT = Path(__file__).resolve().parents[1]
 UTAK = [
@@ -74,7 +74,7 @@ def cold_cache(place: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_nothing_in_the_working_directory_is_executed(command: str, folder: Path) -> None:
-    arguments = UTAK + COMMANDS[command] if command != "warming" else beside("simulator.run.warming")
+    arguments = UTAK + COMMANDS[command] if command != "warming" else isolated_command("simulator.run.warming")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     environment["PYTHONSTARTUP"] = str(folder / "json.py")
     done = subprocess.run(
@@ -159,7 +159,9 @@ def test_an_isolated_process_ends_with_its_input_while_it_works(module: str, tmp
     names = ["search", "carry"] if module == "simulator.run.warming" else []
     environment = os.environ | cold_cache(tmp_path)
     pipe = subprocess.PIPE
-    with subprocess.Popen(beside(module, *names), stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as worker:
+    with subprocess.Popen(
+        isolated_command(module, *names), stdin=pipe, stdout=pipe, stderr=pipe, env=environment
+    ) as worker:
         assert worker.stdin is not None
         assert worker.stdout is not None
         if not names:
@@ -186,13 +188,15 @@ def test_an_isolated_process_finds_packages_installed_for_one_user(
     monkeypatch.setattr(sys, "argv", list(sys.argv))
     utak_command.run_module(str(tmp_path), "kb.language.terms")
     assert str(tmp_path) not in sys.path
-    monkeypatch.setattr(utak_command, "OTHERS", ("of_the_user",))
+    monkeypatch.setattr(utak_command, "DEPENDENCIES", ("of_the_user",))
     utak_command.run_module(str(tmp_path), "kb.language.terms")
     assert find_spec("of_the_user") is not None
-    assert str(ROOT) not in beside("kb.reasoning.query_worker")[3].split(os.pathsep)
+    assert str(ROOT) not in isolated_command("kb.reasoning.query_worker")[3].split(os.pathsep)
 
 
 def test_an_isolated_process_ends_with_exit_code_0_after_its_work() -> None:
     """Its input is still open at that time, and a thread waits for it."""
-    with subprocess.Popen(beside("simulator.run.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE) as worker:
+    with subprocess.Popen(
+        isolated_command("simulator.run.warming"), stdin=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as worker:
         assert worker.wait(30) == 0, worker.stderr and worker.stderr.read().decode()

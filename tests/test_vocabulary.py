@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 from kb.language.reader import parse_facts
-from kb.language.source_text import decode
-from kb.reasoning.query import VOCABULARY
+from kb.language.source_text import source_from_bytes
+from kb.reasoning.query import QUERY_PREDICATES
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
 from kb.world.rooms import rooms_of
@@ -46,7 +46,7 @@ def declared() -> set[tuple[str, int]]:
 
 
 def test_queries_know_the_declared_facts() -> None:
-    assert set(VOCABULARY) - {("object", 1)} == declared()
+    assert set(QUERY_PREDICATES) - {("object", 1)} == declared()
 
 
 def test_the_world_model_writes_declared_facts_alone() -> None:
@@ -54,7 +54,9 @@ def test_the_world_model_writes_declared_facts_alone() -> None:
     rows = [wall, *[left + right] * 5, *["b" + "." * 30 + "b"] * 4, *["b..ggg" + left[6:] + right] * 2]
     rows += ["b.....U" + left[7:] + right, left + right, wall]
     model = seen_whole(rows)
-    facts = parse_facts(decode("facts", "".join(f"{fact}.\n" for fact in model_facts(model, places(model))).encode()))
+    facts = parse_facts(
+        source_from_bytes("facts", "".join(f"{fact}.\n" for fact in model_facts(model, places(model))).encode())
+    )
     written = {fact.signature for fact in facts}
     assert written <= declared()
     assert {("door", 1), ("connects", 3), ("segment", 7), ("corner", 3), ("in", 2)} <= written

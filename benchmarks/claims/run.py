@@ -17,7 +17,7 @@ from benchmarks.claims.refute import Countersearch, refuted, searched, trespasse
 from benchmarks.claims.row import ERROR, TIME, ClaimRow
 from benchmarks.harness.judging import CHECKOUT, judge_path
 from simulator.run.warming import warm_all
-from utak_command import beside
+from utak_command import isolated_command
 
 WARMING_TASKS = (5, 9)  # tasks: walking, and carrying
 WALL_CLOCK_FACTOR = (
@@ -50,7 +50,7 @@ def run_child(place: Path, limits: Limits) -> str:
         "--megabytes": limits.megabytes,
     }
     given = [part for name, value in options.items() for part in (name, str(value))]
-    call = beside("benchmarks.claims.child", str(place.resolve()), *given)
+    call = isolated_command("benchmarks.claims.child", str(place.resolve()), *given)
     with (place / ERRORS).open("w") as errors:
         try:
             done = subprocess.run(

@@ -8,8 +8,8 @@ from typing import Any
 import shapely
 from ompl import base, geometric, util
 
-from geometry.motion.body import new_mover
-from geometry.motion.cell_clearance import distance_at
+from geometry.motion.body import new_moving_body
+from geometry.motion.cell_clearance import clearance_at
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
@@ -73,14 +73,14 @@ def _solve(scene: Any, name: str, limit: float) -> float:
 
 def _search(scene: Any, name: str, limit: float) -> tuple[Any, float]:
     """Return OMPL's set-up after a search, and how many seconds the search took."""
-    mover = new_mover(scene.body)
+    mover = new_moving_body(scene.body)
     ground = ObstacleField(scene.obstacles, scene.bounds).ground(mover)
     ox, oy = (float(v) for v in mover.reference)
 
     def is_valid(state: Any) -> bool:
         x, y, angle = state.getX(), state.getY(), state.getYaw()
         c, s = math.cos(angle), math.sin(angle)
-        return bool(distance_at(mover, ground, x - c * ox + s * oy, y - s * ox - c * oy, c, s) >= 0.0)
+        return bool(clearance_at(mover, ground, x - c * ox + s * oy, y - s * ox - c * oy, c, s) >= 0.0)
 
     space = base.SE2StateSpace()
     box = base.RealVectorBounds(2)

@@ -27,7 +27,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from utak_command import beside
+from utak_command import isolated_command
 
 TIMED_KINDS = ("corner", "square", "brick", "l_shape", "pose")
 STAGES = ("start", "import", "read", "model", "decide", "thinking", "all", "cpu", "thought")
@@ -71,7 +71,7 @@ def _timed(kind: str, seed: int, loops: bool, folder: Path) -> dict[str, Any]:
     world = six_room_world(kind, seed, loops)
     place = write(world, folder / f"{kind}-{seed}")
     (place / "truth.pickle").write_bytes(pickle.dumps(world))
-    command = beside("benchmarks.timing.sixrooms_child", str(place), repr(time.perf_counter()))
+    command = isolated_command("benchmarks.timing.sixrooms_child", str(place), repr(time.perf_counter()))
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     row: dict[str, Any] = json.loads(done.stdout)
     row["thinking"] = row["read"] + row["model"] + row["decide"]

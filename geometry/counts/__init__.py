@@ -8,6 +8,6 @@ uncover  Squares that an object covers, taken out of the fields of an observatio
 gibbs  Gibbs sampling of simple rasters that agree with counts (Geman and Geman 1984).
 moments  The connected parts of a raster, and their moments.
 
-Public names: `settle`, `remaining_counts`, `misfits`, `count_contradictions`, `remove_covered_squares`, `Counts`,
+Public names: `settle`, `remaining_counts`, `misfits`, `total_contradictions`, `remove_covered_squares`, `Counts`,
 `pictures`, `costs`, `Blobs`, `blobs`.
 """

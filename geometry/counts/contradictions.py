@@ -12,7 +12,7 @@ SAID_FREE, SAID_OCCUPIED = 1, 2  # bits: what some field says of a square
 
 
 @compiled
-def contradicting(
+def total_contradictions(
     columns: NDArray[np.int32],
     rows: NDArray[np.int32],
     weight: NDArray[np.int16],

@@ -1,6 +1,6 @@
 """Gibbs sampling of rasters that agree with counts: samples of a map of which only counts under fields are known.
 
-A raster costs EDGE for each edge between an occupied and a free square, CORNER for each corner of their
+A raster costs EDGE_COST for each edge between an occupied and a free square, CORNER_COST for each corner of their
 outline, and COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability
 that falls with their cost: each is changed a little, many times over, and a change is kept with the probability that
 its cost allows.
@@ -22,12 +22,12 @@ from geometry.kernels.jit import bare
 
 # Values of the ground, besides FREE and FULL, which settle.py fixes for the squares that counts settle.
 DRAWN = 2  # a square whose state is drawn
-UNSEEN = 3  # a square that is no part of the raster; drawn as 0
+UNSEEN_SQUARE = 3  # a square that is no part of the raster; drawn as 0
 
-# Costs are negative log probabilities at the inverse temperature 1. EDGE and CORNER: docs/benchmarks-worlds.md;
+# Costs are negative log probabilities at the inverse temperature 1. EDGE_COST and CORNER_COST: docs/results/tuning.md;
 # of the other numbers no measurement is on record.
-EDGE = 0.3  # of an edge between an occupied and a free square
-CORNER = 1.5  # of a corner of their outline
+EDGE_COST = 0.3  # of an edge between an occupied and a free square
+CORNER_COST = 1.5  # of a corner of their outline
 COUNT_ERROR_COST = 4.0  # of each square by which a field's count is wrong
 FINAL_INVERSE_TEMPERATURE = 2.5  # at which a sample is taken
 
@@ -102,14 +102,14 @@ def pictures(
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN (outside the raster, drawn as 0).
+    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN_SQUARE (outside the raster, drawn as 0).
     counts : counts under fields, of squares of the ground.
     first : (m, rows, columns) int8, the rasters with which the m samples begin.
     sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
     hot : the inverse temperature of the first sweep.
     seed : from 1 to 2^31 - 2. The same arguments give the same samples.
     """
-    framed = np.pad(ground, 1, constant_values=UNSEEN)
+    framed = np.pad(ground, 1, constant_values=UNSEEN_SQUARE)
     raster = _raster(framed, counts)
     images_framed = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
     images = images_framed.reshape(len(first), -1)
@@ -122,7 +122,7 @@ def pictures(
 
 
 def costs(
-    images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge_cost: float = EDGE
+    images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
     """Return the cost of each raster, (m,): its edges, its corners, and the squares by which counts are wrong.
 
@@ -133,7 +133,7 @@ def costs(
     edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
         that goes on straight is what is to be expected.
     """
-    seen = ground != UNSEEN
+    seen = ground != UNSEEN_SQUARE
     all_seen = seen[:-1, :-1] & seen[1:, :-1] & seen[:-1, 1:] & seen[1:, 1:]
     points = (
         _corner_cost(images[:, :-1, :-1], images[:, :-1, 1:], images[:, 1:, :-1], images[:, 1:, 1:], edge_cost)
@@ -157,12 +157,12 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     field, entry = field[order], entry[order]
     squares = np.flatnonzero(flat == DRAWN)
     ends = np.searchsorted(where[field, entry], np.append(squares, len(flat)))
-    rank = np.where(flat == UNSEEN, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
+    rank = np.where(flat == UNSEEN_SQUARE, np.int32(RANK_UNSEEN), np.int32(RANK_FIXED))
     rank[squares] = np.arange(len(squares))
     return _Raster(
         squares,
         rank,
-        _shown_corners(flat != UNSEEN, squares, columns),
+        _shown_corners(flat != UNSEEN_SQUARE, squares, columns),
         np.array([rows * columns + across for rows, across in NEIGHBOUR_STEPS]),
         ends.astype(np.int32),
         field.astype(np.int32),
@@ -203,12 +203,12 @@ def _flip_costs() -> NDArray[np.float32]:
 
 
 def _corner_cost(
-    square: Bits, horizontal: Bits, vertical: Bits, diagonal: Bits, edge_cost: float = EDGE
+    square: Bits, horizontal: Bits, vertical: Bits, diagonal: Bits, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
     """Return the cost of four squares about a point: half of each edge between two of them, and each corner."""
     edges = (square ^ horizontal) + (vertical ^ diagonal) + (square ^ vertical) + (horizontal ^ diagonal)
     corners = np.where(edges == 4, 2, (square + horizontal + vertical + diagonal) % 2)
-    result: NDArray[np.float64] = edge_cost * edges / 2 + CORNER * corners
+    result: NDArray[np.float64] = edge_cost * edges / 2 + CORNER_COST * corners
     return result
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.gibbs import UNSEEN
+from geometry.counts.gibbs import UNSEEN_SQUARE
 from geometry.kernels.jit import compiled
 
 
@@ -37,7 +37,7 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
     Parameters
     ----------
     image : (rows, columns) int8, 1 where a square is occupied.
-    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`; only UNSEEN matters.
+    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`; only UNSEEN_SQUARE matters.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def _label_parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
                 sums[number, 4] += r * r
                 sums[number, 5] += c * r
                 for p, q in ((r + 1, c), (r - 1, c), (r, c + 1), (r, c - 1)):
-                    if p < 0 or q < 0 or p >= rows or q >= columns or ground[p, q] == UNSEEN:
+                    if p < 0 or q < 0 or p >= rows or q >= columns or ground[p, q] == UNSEEN_SQUARE:
                         sums[number, 6] += 1
                     elif image[p, q] == 1 and labels[p, q] == 0:
                         labels[p, q] = number

@@ -25,7 +25,7 @@ Numbers = NDArray[np.int16]
 
 
 @compiled
-def residue(
+def remaining_counts(
     state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.

@@ -8,7 +8,7 @@ from geometry.kernels.jit import compiled
 
 
 @compiled
-def uncover(
+def remove_covered_squares(
     columns: NDArray[np.int32],
     rows: NDArray[np.int32],
     weight: NDArray[np.int16],

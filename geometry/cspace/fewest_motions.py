@@ -16,7 +16,7 @@ from geometry.cspace.local_planner import BLOCKED, MIN_MOTION, HopContext, hop, 
 from geometry.cspace.smoothing import motions_along
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at
 from geometry.motion.se2 import Motion
 
 PUSH_PER_MOTION = 40.0  # squares pushed that cost as much as one motion more; tuned on random worlds
@@ -39,7 +39,7 @@ def fewest_motions(context: HopContext, path: Floats, edge: float) -> tuple[Moti
     return motions_along(context, candidates[order]) if len(order) else ()
 
 
-def slant(shape: Any) -> float:
+def longest_edge_angle(shape: Any) -> float:
     """Return the direction of the longest edge of a polygon's outer ring, in radians from -pi to pi."""
     corners = shapely.get_coordinates(shape.exterior)
     along = np.diff(corners, axis=0)
@@ -47,14 +47,14 @@ def slant(shape: Any) -> float:
     return math.atan2(y, x)
 
 
-def askew(shape: Any) -> float:
+def longest_edge_tilt(shape: Any) -> float:
     """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90."""
-    return math.degrees(slant(shape)) % 90.0
+    return math.degrees(longest_edge_angle(shape)) % 90.0
 
 
 def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
     """Return poses on and near a path: (n, 3), the first its start, the last its end."""
-    along = evenly(path, body.radius, CANDIDATE_POSES)
+    along = resample_evenly(path, body.radius, CANDIDATE_POSES)
     straight = along[::2].copy()
     straight[:, 2] = np.round((straight[:, 2] + edge) / (math.pi / 2)) * (math.pi / 2) - edge
     with_clearance = np.vstack([along[1:-1], straight])
@@ -63,7 +63,7 @@ def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float
     return np.vstack([path[:-1], along[1:-1], with_clearance, straight, path[-1:]])
 
 
-def evenly(path: Floats, radius: float, count: int) -> Floats:
+def resample_evenly(path: Floats, radius: float, count: int) -> Floats:
     """Return `count` poses at even distances along a path: (count, 3) x, y, radians (unwrapped).
 
     Parameters
@@ -83,13 +83,13 @@ def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> No
     """Move a pose, in place and without turning it, to where the body has more clearance: steps in eight directions."""
     c, s = math.cos(pose[2]), math.sin(pose[2])
     enough = ENOUGH_CLEARANCE * body.radius
-    best = distance_at(body, nearby, pose[0], pose[1], c, s)
+    best = clearance_at(body, nearby, pose[0], pose[1], c, s)
     step = 0.1 * body.radius
     while step > 1e-4 * body.radius and best < enough:
         better = False
         for k in range(8):
             x, y = pose[0] + step * math.cos(k * math.pi / 4), pose[1] + step * math.sin(k * math.pi / 4)
-            room = distance_at(body, nearby, x, y, c, s)
+            room = clearance_at(body, nearby, x, y, c, s)
             if room > best + 1e-9:
                 best, better = room, True
                 pose[0], pose[1] = x, y

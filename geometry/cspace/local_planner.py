@@ -34,7 +34,7 @@ class HopContext(NamedTuple):
     placed: Floats
 
 
-def new_scene(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
+def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
     """Return a context with scratch memory of its own."""
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 

@@ -22,10 +22,10 @@ import shapely
 from geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, widening_suffices
 from geometry.cspace.solver import Inside, MotionSolver
 from geometry.kernels.arrays import Floats
-from geometry.motion.body import new_mover
+from geometry.motion.body import new_moving_body
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion, Pose, Translate
-from geometry.motion.validation import check
+from geometry.motion.validation import require_bounded
 
 __all__ = ["Inside", "MotionPlan", "plan_motion"]
 
@@ -189,10 +189,10 @@ def plan_motion(
     """
     for name, pose in (("start", start), ("goal", goal)):
         if isinstance(pose, Pose):
-            check(pose[:2], name)
+            require_bounded(pose[:2], name)
             if not math.isfinite(pose.degrees):
                 raise ValueError(f"{name} must be finite")
-    body = new_mover(shape, points, pivot)
+    body = new_moving_body(shape, points, pivot)
     field = (
         obstacles
         if isinstance(obstacles, ObstacleField)

@@ -8,7 +8,7 @@ import numpy as np
 from geometry.cspace.local_planner import BLOCKED, MIN_MOTION, TURN_FIRST, HopContext, copy_pose, hop, shorter_turn
 from geometry.kernels.arrays import Floats
 from geometry.kernels.jit import bare, compiled
-from geometry.motion.cell_clearance import distance_at
+from geometry.motion.cell_clearance import clearance_at
 from geometry.motion.se2 import Motion, Rotate, Translate
 
 TOUCHING_CLEARANCE = 0.01  # part of the body's radius: with less clearance a pose counts as touching; a convention
@@ -108,7 +108,7 @@ def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
 def _clearance(context: HopContext, pose: Floats) -> float:
     """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius."""
     body, c, s = context.body, math.cos(pose[2]), math.sin(pose[2])
-    return min(distance_at(body, context.nearby, pose[0], pose[1], c, s), 0.3 * body.radius)
+    return min(clearance_at(body, context.nearby, pose[0], pose[1], c, s), 0.3 * body.radius)
 
 
 @compiled

@@ -13,7 +13,7 @@ import shapely
 from geometry.cspace.cell_tree import CellTree, new_cell_tree
 from geometry.cspace.channel import NODE_SETTLED, ChannelSearch, new_channel_search
 from geometry.cspace.disc_bounds import disc_cannot_pass, find_disc_path
-from geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_scene
+from geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_hop_context
 from geometry.cspace.refine import new_hop_sequence
 from geometry.cspace.rounds import SEARCH_FOUND, SEARCH_UNFINISHED, next_channel, run_rounds
 from geometry.cspace.smoothing import motions_along, pose_with_room, shorten_path
@@ -22,7 +22,7 @@ from geometry.motion.body import centre_pose
 from geometry.motion.cell_clearance import CELL_CENTRE_FREE, MovingBody, NearbyEdges
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion, Pose
-from geometry.motion.validation import sound
+from geometry.motion.validation import valid_polygons
 
 SMALL_BODY_CELLS = 20  # cells: a body of fewer across is decided by its discs if the cells do not decide; a convention
 ROUNDS_PER_CALL = 64  # rounds in one kernel call; between two calls the user may interrupt; a convention
@@ -48,7 +48,7 @@ class Inside:
         ValueError : a coordinate is not finite or too large.
         """
         several = self.polygons if isinstance(self.polygons, list | tuple) else [self.polygons]
-        parts = [part for each in several for part in shapely.get_parts(sound(each, "the goal"))]
+        parts = [part for each in several for part in shapely.get_parts(valid_polygons(each, "the goal"))]
         return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
@@ -186,7 +186,7 @@ class MotionSolver:
 
     def _hop_context(self) -> HopContext:
         """Return the body among the obstacles, for exact first contact."""
-        return new_scene(self.body, self.nearby, self.field.surface)
+        return new_hop_context(self.body, self.nearby, self.field.surface)
 
     def _disc_centre_at(self, pose: Floats) -> tuple[float, float]:
         """Return where the centre of the largest inscribed disc is at a pose of the body's centre: x, y in squares."""

@@ -10,8 +10,15 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import greatest
-from geometry.raster.distance_transform import Gaps, Sites, count_columns, count_steps, measure_run, roof_of
+from geometry.raster.distance_rows import largest_distance
+from geometry.raster.distance_transform import (
+    ColumnSteps,
+    Sites,
+    count_steps_south,
+    count_steps_to_nearest,
+    fill_run_distances,
+    largest_value_of,
+)
 
 Span = tuple[int, int]
 """First and last column."""
@@ -37,21 +44,21 @@ def measure_within(
         First and last column of ``square`` between which walls count; ``ALL_SITES`` when all may count.
     """
     steps, width = square.view(np.int16), square.shape[1]
-    count_columns(free, steps)
+    count_steps_south(free, steps)
     scratch = np.empty((2, width + 1), np.int64)
     return measure_parts(steps, bounds, low, west, square, *sites, np.zeros(width, np.int16), *scratch)
 
 
 @bare
 def measure_parts(
-    steps: Gaps,
+    steps: ColumnSteps,
     bounds: Ints,
     low: int,
     west: int,
     square: SquaredDistances,
     first: int,
     last: int,
-    gap: Gaps,
+    gap: ColumnSteps,
     sites: Sites,
     heights: Sites,
 ) -> bool:
@@ -60,9 +67,9 @@ def measure_parts(
     ``first`` and ``last`` are the columns between which walls count; when ``first`` is greater, all may count. ``gap``
     (width,) is 0, as it is north of the block; ``sites`` and ``heights`` are scratch.
     """
-    roof, fits, restricted = roof_of(square), True, first <= last
+    roof, fits, restricted = largest_value_of(square), True, first <= last
     for row in range(square.shape[0] - 2, 0, -1):
-        count_steps(steps[row], gap)
+        count_steps_to_nearest(steps[row], gap)
         out, column, end = square[row], bounds[row + low, 0] - west, bounds[row + low, 1] - west + 1
         while column < end:
             if gap[column] == 0:
@@ -74,13 +81,13 @@ def measure_parts(
                 column += 1
             if not restricted:
                 first, last = outermost(gap, begin, -1), outermost(gap, column - 1, 1)
-            measure_run(gap, out, first, last + 1, begin, column, roof, sites, heights)
-            fits &= greatest(out[begin:column]) < roof
+            fill_run_distances(gap, out, first, last + 1, begin, column, roof, sites, heights)
+            fits &= largest_distance(out[begin:column]) < roof
     return fits
 
 
 @bare
-def outermost(gap: Gaps, column: int, step: int) -> int:
+def outermost(gap: ColumnSteps, column: int, step: int) -> int:
     """Return the furthest column whose site counts for a free column, or for columns on its other side.
 
     ``step`` is the direction of the search: 1 to the east, -1 to the west. The site is the edge behind that column.
@@ -99,7 +106,7 @@ def outermost(gap: Gaps, column: int, step: int) -> int:
 
 
 @bare
-def site_of(gap: Gaps, one: int, other: int) -> int:
+def site_of(gap: ColumnSteps, one: int, other: int) -> int:
     """Return the squared distance (half squares) from the edge between two columns to the nearest wall along it."""
     lower = gap[one] if gap[one] < gap[other] else gap[other]
     edge = 2 * np.int64(lower) - 1 if lower > 0 else np.int64(0)

@@ -62,7 +62,7 @@ def draw(
         parts += draw_pathgraph(screen, 1.0 / scale)
     parts += [_passage_line(passage, scale) for passage in passages]
     for number, route in _below_first(routes):
-        parts.append(_line(number, route, width_of(number, len(routes), scale)))
+        parts.append(_line(number, route, route_line_width(number, len(routes), scale)))
     parts.append("</g>")
     if ends is not None:
         parts += _marks([_pixel(end, rows, scale) for end in ends])
@@ -94,7 +94,7 @@ def _passage_line(passage: Passage, scale: float) -> str:
     return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
 
 
-def width_of(number: int, count: int, scale: float) -> float:
+def route_line_width(number: int, count: int, scale: float) -> float:
     """Return the width at which a route is drawn, in squares: at most a quarter, as long as that can be seen.
 
     Where routes run together, those beneath are a little wider, up to twice the width of the first.

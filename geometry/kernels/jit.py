@@ -157,7 +157,7 @@ def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> Non
 
     def compile_with_notice(*args: Any) -> Any:
         _link(module_globals)
-        notice = Timer(NOTICE_DELAY, tell)
+        notice = Timer(NOTICE_DELAY, announce_compiling)
         notice.daemon = True
         notice.start()
         try:
@@ -217,13 +217,13 @@ class _Progress:
 _progress = _Progress()
 
 
-def ready() -> tuple[int, bool]:
+def kernel_status() -> tuple[int, bool]:
     """Return how many kernels this process can call, and whether they are cached on disk for the next process."""
     return sum(bool(dispatcher.overloads) for dispatcher in _progress.dispatchers), _progress.has_cache
 
 
 @cache
-def tell() -> None:
+def announce_compiling() -> None:
     """Print, once in a process, that kernels are being compiled; start the reports of progress."""
     once = "once per installation"
     if not _progress.has_cache:

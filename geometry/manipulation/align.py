@@ -10,7 +10,7 @@ from itertools import product
 
 import shapely
 
-from geometry.cspace.fewest_motions import askew
+from geometry.cspace.fewest_motions import longest_edge_tilt
 from geometry.kernels.arrays import XY
 from geometry.manipulation.grasps import grasp_candidates
 from geometry.manipulation.lattice_planner import plan_on_lattice
@@ -40,7 +40,7 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
     """Yield the legs that align the body, those with short walks first."""
-    tilt = askew(query.shape)
+    tilt = longest_edge_tilt(query.shape)
     for candidate in grasp_candidates(query):
         relative = query.grasp_offset(candidate.place)
         square = direction_to_grasp(query.shape, candidate.place)

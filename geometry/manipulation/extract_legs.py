@@ -6,7 +6,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from geometry.kernels.arrays import XY, Floats, Longs
-from geometry.manipulation.goals import At, placed
+from geometry.manipulation.goals import At, shape_at_pose
 from geometry.manipulation.legs import Leg, PushSegment, direction_to_grasp, round_motion, with_pivots_at_robot
 from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.workspace import padded_shape
@@ -105,7 +105,7 @@ class LegExtraction:
         stops, corners = self._stops(before, steps)
         goal = self.query.goal
         if last and isinstance(goal, At):
-            end, here = placed(self.query.shape, goal.pose).centroid, self.shape.centroid
+            end, here = shape_at_pose(self.query.shape, goal.pose).centroid, self.shape.centroid
             final = stops[0] + np.array([end.x - here.x, end.y - here.y])
             if np.abs(final - stops[-1]).max() > 1e-9:
                 corners = np.append(corners, len(stops))

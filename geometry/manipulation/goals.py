@@ -10,9 +10,9 @@ import shapely
 
 from geometry.cspace.solver import Inside
 from geometry.motion.se2 import Pose, turned
-from geometry.raster.rasterize import areas
-from geometry.state_lattice.footprints import DIRECTIONS, Footprints, quarter
-from geometry.state_lattice.lattice import COMMAND, Costs, Grid, StateLattice
+from geometry.raster.rasterize import covered_areas
+from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
+from geometry.state_lattice.lattice import COMMAND_COST, Costs, Grid, StateLattice
 
 __all__ = ["At", "Between", "End", "InCorner", "Inside"]
 
@@ -20,7 +20,7 @@ Extent = TypeVar("Extent", float, npt.NDArray[np.float64])
 
 GOAL_TOLERANCE = 1e-6  # squares; rounding by which an end may miss a region's border
 ROOMY_RADIUS = 10.0  # squares; convention: a roomy place further than this from the wished one does not count
-TIGHT_END_COST = 2 * COMMAND // 5  # of an end that only just meets the goal; chosen, no measurement on record
+TIGHT_END_COST = 2 * COMMAND_COST // 5  # of an end that only just meets the goal; chosen, no measurement on record
 
 
 @dataclass(frozen=True)
@@ -120,7 +120,7 @@ class Roomy:
 End = At | Inside | InCorner | Between | Roomy
 
 
-def met(goal: End, shape: Any, now: Any) -> bool:
+def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
     """Return whether a shape meets the goal as it lies now.
 
     Parameters
@@ -137,10 +137,10 @@ def met(goal: End, shape: Any, now: Any) -> bool:
         return max(goal.gaps(now)) <= goal.slack + GOAL_TOLERANCE
     if isinstance(goal, Roomy):
         return False
-    return bool(shapely.hausdorff_distance(placed(shape, goal.pose), now) <= GOAL_TOLERANCE)
+    return bool(shapely.hausdorff_distance(shape_at_pose(shape, goal.pose), now) <= GOAL_TOLERANCE)
 
 
-def placed(shape: Any, pose: Pose) -> Any:
+def shape_at_pose(shape: Any, pose: Pose) -> Any:
     """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares."""
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
@@ -189,9 +189,9 @@ def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLa
     Squares outside the region count as blocked unless they are free.
     """
     cost = np.full(len(lattice.solid), -1, np.int32)
-    grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in DIRECTIONS)]), axis=0)
+    grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
     for part in shapely.get_parts(goal.polygon):
-        outside = grid.padded(areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
+        outside = grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
         inside, easy = grid.clear(outside, offsets), grid.clear(outside & ~lattice.solid, grown)
         cost[inside & (cost != 0)] = TIGHT_END_COST
         cost[inside & easy] = 0
@@ -210,7 +210,7 @@ def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLatt
         return np.where(roomy, 0, -1).astype(np.int32)
     row, column = np.divmod(np.arange(len(roomy)), grid.stride)
     far = np.hypot(column - grid.pad + 0.5 - goal.near[0], row - grid.pad + 0.5 - goal.near[1])
-    return np.where(roomy & (far <= ROOMY_RADIUS), np.round(far * COMMAND / 10), -1).astype(np.int32)
+    return np.where(roomy & (far <= ROOMY_RADIUS), np.round(far * COMMAND_COST / 10), -1).astype(np.int32)
 
 
 def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
@@ -254,7 +254,7 @@ def _costs_at_pose(pose: Pose, shape: Any, footprints: Footprints, grid: Grid) -
     k = round(pose.degrees / 90.0)
     if abs(pose.degrees - 90.0 * k) > 1e-7:
         return found
-    there, here = placed(shape, pose).centroid, shape_in_pose(shape, footprints, k, footprints.home).centroid
+    there, here = shape_at_pose(shape, pose).centroid, shape_in_pose(shape, footprints, k, footprints.home).centroid
     dx, dy = there.x - here.x + footprints.home[0], there.y - here.y + footprints.home[1]
     for x in {math.floor(dx + GOAL_TOLERANCE), math.ceil(dx - GOAL_TOLERANCE)}:
         for y in {math.floor(dy + GOAL_TOLERANCE), math.ceil(dy - GOAL_TOLERANCE)}:

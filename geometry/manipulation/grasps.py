@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from geometry.cspace.fewest_motions import evenly
+from geometry.cspace.fewest_motions import resample_evenly
 from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.query import ManipulationQuery
 from geometry.raster.geodesic import reach
 from geometry.raster.rasterize import squares
-from geometry.state_lattice.footprints import DIRECTIONS
+from geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_TRACK_SAMPLES = 60  # poses of a track that are looked at; convention, for time
 FIFTHS_PER_SQUARE = 5  # derived: the unit of distances in geometry.raster.geodesic is a fifth of a square
@@ -47,7 +47,7 @@ def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
     distances = reach(walk, *at)
     beside = np.zeros_like(covered)
     framed = np.pad(covered, 1)
-    for dx, dy in DIRECTIONS:
+    for dx, dy in PUSH_DIRECTIONS:
         beside |= framed[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns]
     found = np.argwhere(beside & ~covered & query.workspace.free & (distances >= 0))
     candidates = [
@@ -72,7 +72,7 @@ def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Float
     """
     in_walls = 0
     if len(track):
-        way = evenly(track, 1.0, MAX_TRACK_SAMPLES)
+        way = resample_evenly(track, 1.0, MAX_TRACK_SAMPLES)
         away = np.array(candidate.place) - way[0, :2]
         turn = way[:, 2] - way[0, 2]
         x = way[:, 0] + np.cos(turn) * away[0] - np.sin(turn) * away[1]

@@ -16,15 +16,22 @@ from geometry.manipulation.legs import Leg, commands, may_push, only_pushes, rou
 from geometry.manipulation.query import ManipulationQuery, query_after
 from geometry.manipulation.workspace import padded_shape
 from geometry.motion.se2 import Rotate, Translate
-from geometry.state_lattice.astar import CALM, first_walk, haul
-from geometry.state_lattice.footprints import DIRECTIONS, Footprints, new_stencil
-from geometry.state_lattice.heuristic import NEVER, STILL, guess
-from geometry.state_lattice.lattice import AWKWARD, COMMAND, REGRASP, Costs, new_board, new_grid
+from geometry.state_lattice.astar import ADMISSIBLE_WEIGHT, costs_to_first_grasp, find_carrying_path
+from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, new_footprints
+from geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION, cost_to_go
+from geometry.state_lattice.lattice import (
+    COMMAND_COST,
+    CORNER_GRASP_COST,
+    REGRASP_COST,
+    Costs,
+    new_lattice_grid,
+    new_state_lattice,
+)
 
 PLACE_DIGITS = 8  # decimal digits of places; rounding of motions moves a body by less than the last one
 # Weight of the heuristic and greatest number of nodes of each stage; bounds on time, no measurement on record.
-SEARCH_STAGES = ((CALM, 60_000), (2 * CALM, 400_000))
-BEND_COSTS = (COMMAND, COMMAND // 2)  # of a bend within a push: as much as a push, or half of it
+SEARCH_STAGES = ((ADMISSIBLE_WEIGHT, 60_000), (2 * ADMISSIBLE_WEIGHT, 400_000))
+BEND_COSTS = (COMMAND_COST, COMMAND_COST // 2)  # of a bend within a push: as much as a push, or half of it
 MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, for time
 
 
@@ -45,8 +52,8 @@ def _footprints_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> 
     `own` is the robot's square relative to that square when it holds the shape, else None.
     """
     shape = shapely.from_wkb(wkb)
-    body = new_stencil(shape, own)
-    return body, new_stencil(padded_shape(shape, margin), holds=body.holds) if margin > 0.0 else body
+    body = new_footprints(shape, own)
+    return body, new_footprints(padded_shape(shape, margin), holds=body.holds) if margin > 0.0 else body
 
 
 def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
@@ -138,25 +145,25 @@ class _LatticeSearch:
         self.on_grid = 0 <= x < columns and 0 <= y < rows
         if not self.on_grid:
             return
-        self.grid, free = new_grid(query.walk, self.body, with_margin), query.workspace.free
+        self.grid, free = new_lattice_grid(query.walk, self.body, with_margin), query.workspace.free
         grips, allowed = _grasp_costs(query, self.body), _allowed_pushes(query, self.body)
-        self.lattice = new_board(
-            self.grid, free, query.walk, self.body, with_margin, grips, allowed, round(COMMAND * query.turn)
+        self.lattice = new_state_lattice(
+            self.grid, free, query.walk, self.body, with_margin, grips, allowed, round(COMMAND_COST * query.turn)
         )
         self.place = self.grid.number(x, y)
         self.ends = end_costs(query.goal, query.shape, self.body, self.lattice, self.grid)
-        walk = first_walk(self.lattice, self.place, self.grid.number(*query.square))
+        walk = costs_to_first_grasp(self.lattice, self.place, self.grid.number(*query.square))
         self.first_costs = _first_grasp_costs(query, self.body, walk)
 
     def legs(self, bend_cost: int) -> list[Leg] | None:
         """Return the cheapest legs, given the cost of another direction within one push; None when none are found."""
-        to_go = guess(self.lattice, self.ends, bend_cost)
-        if not 0 <= to_go[0, STILL, self.place] < NEVER:
+        to_go = cost_to_go(self.lattice, self.ends, bend_cost)
+        if not 0 <= to_go[0, NO_DIRECTION, self.place] < COST_UNREACHABLE:
             return None
         count = 36 * len(self.first_costs) * len(self.lattice.solid)
         for weight, max_nodes in SEARCH_STAGES:
             cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
-            nodes = haul(
+            nodes = find_carrying_path(
                 self.lattice, to_go, self.ends, self.first_costs, self.place, bend_cost, weight, max_nodes, cost, parent
             )
             if len(nodes):
@@ -168,7 +175,7 @@ def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) 
     """Return the cost of the first grasp at each place: 0 for the present one; any other needs a release first."""
     if not query.held:
         return walk
-    first_costs = np.where(walk >= 0, walk + REGRASP, -1).astype(np.int32)
+    first_costs = np.where(walk >= 0, walk + REGRASP_COST, -1).astype(np.int32)
     first_costs[(body.holds + body.home == query.square).all(axis=1)] = 0
     return first_costs
 
@@ -178,9 +185,9 @@ def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
     lying = {(int(x), int(y)) for x, y in body.lying}
     grips = []
     for x, y in body.holds.tolist():
-        beside = any((x + dx, y + dy) in lying for dx, dy in DIRECTIONS[::2])
+        beside = any((x + dx, y + dy) in lying for dx, dy in PUSH_DIRECTIONS[::2])
         away = query.grasp_offset((x + body.home[0] + 0.5, y + body.home[1] + 0.5))
-        grips.append(-1 if query.is_avoided(*away) else 0 if beside else AWKWARD)
+        grips.append(-1 if query.is_avoided(*away) else 0 if beside else CORNER_GRASP_COST)
     return np.array(grips, np.int32)
 
 
@@ -191,7 +198,7 @@ def _allowed_pushes(query: ManipulationQuery, body: Footprints) -> Bools:
         return allowed
     for n, (x, y) in enumerate(body.holds.tolist()):
         utak = (x + body.home[0] + 0.5, y + body.home[1] + 0.5)
-        for d, (dx, dy) in enumerate(DIRECTIONS):
+        for d, (dx, dy) in enumerate(PUSH_DIRECTIONS):
             fine = may_push(query.shape, utak, dx, dy)
             for k in range(4):
                 allowed[k, n, (d + 2 * k) % 8] = fine

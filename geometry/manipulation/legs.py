@@ -16,8 +16,8 @@ import shapely
 from geometry.kernels.arrays import XY, Bools, Floats, Longs
 from geometry.manipulation.workspace import Workspace, widened_body
 from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.raster.rasterize import areas
-from geometry.state_lattice.footprints import DIRECTIONS
+from geometry.raster.rasterize import covered_areas
+from geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_STOPS = 40  # stops of a push that are tried as its corners, besides those where it turns; convention, for time
 COMMAND_DIGITS = 9  # decimal digits of the numbers in commands; convention
@@ -62,8 +62,8 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
     """
     column, row = math.floor(place[0]) - 1, math.floor(place[1]) - 1
     near = shapely.transform(shape, lambda p: p - np.array([column, row]))
-    covered = areas(near, 3, 3)
-    best = max(DIRECTIONS, key=lambda d: (round(float(covered[d[1] + 1, d[0] + 1]), 6), d[0] * d[1] == 0))
+    covered = covered_areas(near, 3, 3)
+    best = max(PUSH_DIRECTIONS, key=lambda d: (round(float(covered[d[1] + 1, d[0] + 1]), 6), d[0] * d[1] == 0))
     return best if covered[best[1] + 1, best[0] + 1] > 1e-9 else None
 
 

@@ -22,7 +22,7 @@ from geometry.cspace.plan_motion import MotionPlan
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.align import plan_aligned
 from geometry.manipulation.free_body import plan_body_alone
-from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, met
+from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, is_goal_met
 from geometry.manipulation.lattice_planner import plan_on_lattice
 from geometry.manipulation.legs import Leg, commands, shifted, verified
 from geometry.manipulation.press import press_into_corner
@@ -31,7 +31,7 @@ from geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_gr
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
-from geometry.motion.validation import check, sound
+from geometry.motion.validation import require_bounded, valid_polygons
 
 MIN_CORNER_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
 # Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.RING.
@@ -161,7 +161,7 @@ def plan_carrying(
     """
     free = np.ascontiguousarray(free, dtype=bool)
     _check(free, utak, margin, avoid, walk, turn)
-    shape, walls = _body(shape), sound(walls, "walls")
+    shape, walls = _body(shape), valid_polygons(walls, "walls")
     _check_goal(goal)
     x0, y0, x1, y1 = shape.bounds
     if x0 <= -1.0 or y0 <= -1.0 or x1 >= free.shape[1] + 1.0 or y1 >= free.shape[0] + 1.0:
@@ -170,7 +170,7 @@ def plan_carrying(
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
     query = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
-    if met(goal, shape, shape):
+    if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
     return replace(_first_plan(query), held=held)
 
@@ -198,7 +198,7 @@ def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bool
     """Raise ValueError for arguments that make no sense."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
-    check([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
+    require_bounded([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
     if not math.isfinite(margin) or margin < 0.0:
         raise ValueError("the margin must be finite and not negative")
     if not 1.0 <= turn <= MAX_TURN_COST:
@@ -207,7 +207,7 @@ def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bool
 
 def _body(shape: Any) -> Any:
     """Return the body as a valid polygon with an area, or raise ValueError."""
-    body = sound(shape, "the body")
+    body = valid_polygons(shape, "the body")
     if body is None or body.geom_type != "Polygon" or not len(boundary_edges(body)):
         raise ValueError("the body must be a polygon with an area")
     return body
@@ -216,15 +216,15 @@ def _body(shape: Any) -> Any:
 def _check_goal(goal: End) -> None:
     """Raise ValueError for a goal that makes no sense."""
     if isinstance(goal, At):
-        check(goal.pose, "the goal")
+        require_bounded(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
-        check([goal.x, goal.y, goal.slack, goal.press], "the goal")
+        require_bounded([goal.x, goal.y, goal.slack, goal.press], "the goal")
         if abs(goal.sx) != 1 or abs(goal.sy) != 1 or min(goal.slack, goal.press) < 0.0:
             raise ValueError("a corner's sx and sy must be 1 or -1, its slack and press not negative")
         if not goal.within[0] <= goal.within[1]:
             raise ValueError("within must be the lesser and the greater distance in this order")
     elif isinstance(goal, Between):
-        check([goal.x, goal.y, goal.slack, *goal.walls[0], *goal.walls[1]], "the goal")
+        require_bounded([goal.x, goal.y, goal.slack, *goal.walls[0], *goal.walls[1]], "the goal")
         if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < MIN_CORNER_SINE:
             raise ValueError("two walls must meet at an angle, and the slack must not be negative")
     elif not isinstance(goal, Inside | Roomy):
@@ -235,7 +235,7 @@ def _plan_of(query: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPl
     """Return the plan of some legs when they are free and lead to the goal; else None."""
     shape = query.shape
     end = None if legs is None else verified(query.workspace, shape, legs)
-    if legs is None or end is None or not met(query.goal, shape, end):
+    if legs is None or end is None or not is_goal_met(query.goal, shape, end):
         return None
     degrees = math.fsum(m.degrees for leg in legs for m in leg.motions if isinstance(m, Rotate))
     dx, dy = end.centroid.x - shape.centroid.x, end.centroid.y - shape.centroid.y

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import At, End, placed
+from geometry.manipulation.goals import At, End, shape_at_pose
 from geometry.manipulation.legs import Leg
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Pose, Rotate, Translate, turned
@@ -101,7 +101,7 @@ def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
     """Return the same goal for a shape that has been moved."""
     if not isinstance(goal, At):
         return goal
-    there, here = placed(before, goal.pose).centroid, now.centroid
+    there, here = shape_at_pose(before, goal.pose).centroid, now.centroid
     return At(Pose(there.x - here.x, there.y - here.y, round(goal.pose.degrees - degrees, 7)))
 
 

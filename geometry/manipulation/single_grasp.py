@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.cspace.fewest_motions import askew, fewest_motions, slant
-from geometry.cspace.local_planner import new_scene
+from geometry.cspace.fewest_motions import fewest_motions, longest_edge_angle, longest_edge_tilt
+from geometry.cspace.local_planner import new_hop_context
 from geometry.cspace.plan_motion import plan_motion
 from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.align import plan_aligned
 from geometry.manipulation.free_body import plan_body_alone
-from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, placed
+from geometry.manipulation.goals import At, Between, InCorner, Inside, Roomy, shape_at_pose
 from geometry.manipulation.grasps import GraspCandidate, grasp_candidates, grasp_rank
 from geometry.manipulation.lattice_planner import plan_on_lattice
 from geometry.manipulation.legs import (
@@ -34,7 +34,7 @@ from geometry.manipulation.legs import (
 )
 from geometry.manipulation.query import ManipulationQuery, join_legs, query_after
 from geometry.manipulation.workspace import ROBOT_CLEARANCE, padded_shape
-from geometry.motion.body import centre_pose, new_mover
+from geometry.motion.body import centre_pose, new_moving_body
 from geometry.motion.se2 import Motion, Pose
 
 # Bounds on time; no measurement on record.
@@ -80,7 +80,7 @@ def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
     """
     near = None
     if isinstance(query.goal, At):
-        there = placed(query.shape, query.goal.pose).centroid
+        there = shape_at_pose(query.shape, query.goal.pose).centroid
         near = (there.x, there.y)
     on_the_way = replace(query, goal=Roomy(near))
     first = plan_on_lattice(on_the_way) or plan_aligned(on_the_way)
@@ -105,13 +105,13 @@ def goal_poses(query: ManipulationQuery) -> list[Pose | Inside]:
         return []
     if isinstance(goal, Between):
         return [_pose_between_walls(goal, query.shape, degrees) for degrees in _flush_rotations(goal, query.shape)]
-    tilt = askew(query.shape) if math.isfinite(goal.within[0]) else 0.0
+    tilt = longest_edge_tilt(query.shape) if math.isfinite(goal.within[0]) else 0.0
     return [_pose_in_corner(goal, query.shape, degrees - tilt) for degrees in (0.0, 90.0, -90.0, 180.0)]
 
 
 def _pose_in_corner(goal: InCorner, shape: Any, degrees: float) -> Pose:
     """Return the pose of the centroid in which a shape, turned by `degrees`, lies near both walls of a corner."""
-    x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, degrees)).bounds
+    x0, y0, x1, y1 = shape_at_pose(shape, Pose(0.0, 0.0, degrees)).bounds
     away = min(CORNER_GAP, goal.slack / 2)
     dx = goal.x - goal.sx * away - (x1 if goal.sx > 0 else x0)
     dy = goal.y - goal.sy * away - (y1 if goal.sy > 0 else y0)
@@ -133,7 +133,7 @@ def _flush_rotations(goal: Between, shape: Any) -> list[float]:
 
 def _pose_between_walls(goal: Between, shape: Any, degrees: float) -> Pose:
     """Return the pose of the centroid in which a shape, turned by `degrees`, lies near two walls."""
-    one, two = goal.gaps(placed(shape, Pose(0.0, 0.0, degrees)))
+    one, two = goal.gaps(shape_at_pose(shape, Pose(0.0, 0.0, degrees)))
     away = max(goal.slack - CORNER_GAP, goal.slack / 2)  # walls at an angle appear as stairs that stand out
     dx, dy = goal.move((one - away, two - away))
     return Pose(shape.centroid.x + dx, shape.centroid.y + dy, degrees)
@@ -173,9 +173,9 @@ def _motions(
     plan = plan_motion(body, floor, start, goal, points=[utak], cells=cells, pivot=utak)
     if plan.status != "found":
         return (), plan.cells
-    mover = new_mover(body, [utak], utak)
+    mover = new_moving_body(body, [utak], utak)
     way = np.array([centre_pose(mover, pose) for pose in plan.poses])
-    scene = new_scene(mover, floor.ground(mover), floor.surface)
-    fewest = fewest_motions(scene, way, slant(query.shape))
+    scene = new_hop_context(mover, floor.ground(mover), floor.surface)
+    fewest = fewest_motions(scene, way, longest_edge_angle(query.shape))
     motions = fewest if fewest and len(fewest) < len(plan.motions) else plan.motions
     return with_pivots_at_robot(place, [round_motion(motion) for motion in motions]), plan.cells

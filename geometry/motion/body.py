@@ -12,14 +12,14 @@ from geometry.kernels.arrays import XY, Floats
 from geometry.motion.cell_clearance import MovingBody
 from geometry.motion.first_contact import boundary_edges, with_normals
 from geometry.motion.se2 import Pose
-from geometry.motion.validation import check, sound
+from geometry.motion.validation import require_bounded, valid_polygons
 
 MAX_DISCS = 16  # inscribed discs of a body at most; tuned on random worlds (benchmarks.campaign)
 CANDIDATES_PER_SIDE = 16  # candidate disc centres along the longer side of a body's bounding box; tuned likewise
 POINT_HALF_DIAGONAL = 1e-3  # squares: half the diagonal of the square that stands for a point; a convention
 
 
-def new_mover(
+def new_moving_body(
     shape: Any, points: Iterable[tuple[float, float]] = (), pivot: tuple[float, float] | None = None
 ) -> MovingBody:
     """Return a body for planning, made from its shape and from points that move with it.
@@ -37,9 +37,9 @@ def new_mover(
     """
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
     specks = tuple((float(x), float(y)) for x, y in points)
-    check([*specks, *([] if at is None else [at])], "points and pivot")
+    require_bounded([*specks, *([] if at is None else [at])], "points and pivot")
     # Normalised, so that the cache knows a shape again when its rings start elsewhere or come in another order.
-    normalised = shapely.normalize(shapely.simplify(sound(shape, "the body"), 0))
+    normalised = shapely.normalize(shapely.simplify(valid_polygons(shape, "the body"), 0))
     return _moving_body(shapely.to_wkb(normalised), specks, at)
 
 

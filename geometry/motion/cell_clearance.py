@@ -130,7 +130,7 @@ def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> floa
 
 
 @bare
-def distance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
+def clearance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
     """Return the distance in squares between the placed body and the obstacles; -1.0 if they overlap.
 
     Distances are capped at nearby.reach.
@@ -221,7 +221,7 @@ def classify_cell(
     slack = spread + swing * body.radius
     if slack > nearby.reach:
         return CELL_UNDECIDED
-    distance = distance_at(body, nearby, x, y, c, s)
+    distance = clearance_at(body, nearby, x, y, c, s)
     if distance > slack:
         return where
     if distance >= 0.0:

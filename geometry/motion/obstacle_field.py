@@ -18,10 +18,10 @@ from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, distance_at, is_inside, squared_distance_to_edge
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at, is_inside, squared_distance_to_edge
 from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Pose
-from geometry.motion.validation import MAX_COORDINATE, sound
+from geometry.motion.validation import MAX_COORDINATE, valid_polygons
 
 RASTER_PIXELS = 128  # pixels along the longer side of the raster; tuned on random worlds (benchmarks.campaign)
 BLOCK_PIXELS = 8  # pixels along the side of a block; tuned likewise
@@ -56,7 +56,7 @@ class ObstacleField:
 
     def __init__(self, obstacles: Any, bounds: Sequence[float] | None = None) -> None:
         several = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]
-        self.polygons = [part for each in several for part in shapely.get_parts(sound(each, "obstacles"))]
+        self.polygons = [part for each in several for part in shapely.get_parts(valid_polygons(each, "obstacles"))]
         if bounds is None:
             bounds = shapely.total_bounds(self.polygons).tolist() if self.polygons else None
         if bounds is None or len(bounds) != 4 or not (np.abs(bounds) <= MAX_COORDINATE).all():
@@ -125,7 +125,7 @@ class ObstacleField:
         ):
             return False
         x, y, angle = centre_pose(body, pose).tolist()
-        if distance_at(body, self.ground(body), x, y, math.cos(angle), math.sin(angle)) > OVERLAP_TOLERANCE:
+        if clearance_at(body, self.ground(body), x, y, math.cos(angle), math.sin(angle)) > OVERLAP_TOLERANCE:
             return True
         inner = shapely.buffer(pose.place(shape), -OVERLAP_TOLERANCE, join_style="mitre")
         points_placed = [pose.place(shapely.Point(p)) for p in points]

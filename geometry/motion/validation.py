@@ -9,7 +9,7 @@ import shapely
 MAX_COORDINATE = 1e7  # squares; derived: beyond it, rounding of coordinates exceeds the skin of first contact, 1e-8
 
 
-def sound(shape: Any, what: str) -> Any:
+def valid_polygons(shape: Any, what: str) -> Any:
     """Return a geometry's polygons as one valid shapely geometry.
 
     Parameters
@@ -26,7 +26,7 @@ def sound(shape: Any, what: str) -> Any:
     ------
     ValueError : a coordinate is not finite, or its magnitude is above MAX_COORDINATE.
     """
-    check(shapely.get_coordinates(shape), what)
+    require_bounded(shapely.get_coordinates(shape), what)
     if shape is None or (shape.geom_type in ("Polygon", "MultiPolygon") and shapely.is_valid(shape)):
         return shape
     parts = [part for part in shapely.get_parts(shapely.make_valid(shape)) if part.geom_type.endswith("Polygon")]
@@ -34,7 +34,7 @@ def sound(shape: Any, what: str) -> Any:
     return polygons[0] if len(polygons) == 1 else shapely.MultiPolygon(polygons)
 
 
-def check(numbers: Any, what: str) -> None:
+def require_bounded(numbers: Any, what: str) -> None:
     """Raise ValueError unless all numbers are finite and of a magnitude of at most MAX_COORDINATE.
 
     Parameters

@@ -20,7 +20,7 @@ from geometry.kernels.jit import compiled
 from geometry.passages.walls import Walls
 
 Segment = tuple[XY, XY]
-DOOR = 2.0  # ratio; convention: the floor on both sides of a door is at least so many times as wide as the door
+DOOR_RATIO = 2.0  # ratio; convention: the floor on both sides of a door is at least so many times as wide as the door
 GATE_OFFSET = 1e-6  # share of a mouth's length; convention: the step across the mouth that tells its two sides apart
 SQUARED_WIDTH_TOLERANCE = 1e-9  # square units; rounding by which squared widths may differ
 
@@ -102,7 +102,7 @@ class _Doorway(NamedTuple):
     between: tuple[tuple[int, int], ...]
 
 
-def find_passages(walls: Walls, pinch: float = DOOR) -> list[Passage]:
+def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
     """Return all passages, ordered by place: row, then column.
 
     Parameters

@@ -15,7 +15,7 @@ STRAIGHT_STEPS = ((1, 0, 1.0), (0, 1, 1.0), (-1, 0, 1.0), (0, -1, 1.0))
 STEPS = (*STRAIGHT_STEPS, *((dx, dy, DIAGONAL) for dx, dy in ((1, 1), (-1, 1), (-1, -1), (1, -1))))
 
 
-def grid_way(free: Bools, start: tuple[float, float], goal: tuple[float, float]) -> Floats | None:
+def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]) -> Floats | None:
     """Return the shortest path over squares from start to goal; None when there is none.
 
     Parameters

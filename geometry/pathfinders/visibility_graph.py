@@ -25,7 +25,7 @@ def extreme_points(free: Bools) -> Floats:
     return np.stack([columns, rows], axis=1).astype(np.float64)
 
 
-def visibility_way(free: Bools, start: XY, goal: XY) -> Floats | None:
+def visibility_path(free: Bools, start: XY, goal: XY) -> Floats | None:
     """Return the shortest path along open lines between start, extreme points and goal; None when there is none.
 
     Parameters

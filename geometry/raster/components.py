@@ -43,7 +43,7 @@ def components(mask: Bools) -> Components:
     )
 
 
-def edged(mask: Bools) -> Bools:
+def with_edge_neighbours(mask: Bools) -> Bools:
     """Return a (rows, columns) mask dilated by one square: all its squares, and those that share an edge with one."""
     edges = mask.copy()
     edges[1:] |= mask[:-1]
@@ -53,7 +53,7 @@ def edged(mask: Bools) -> Bools:
     return edges
 
 
-def boxes(labels: Labels, number: int) -> NDArray[np.int64]:
+def bounding_boxes(labels: Labels, number: int) -> NDArray[np.int64]:
     """Return the bounding rectangle of each label.
 
     Parameters
@@ -68,7 +68,7 @@ def boxes(labels: Labels, number: int) -> NDArray[np.int64]:
 
     Examples
     --------
-    >>> boxes(np.array([[1, 0, 2], [1, 2, 2]], np.int32), 2)[1:].tolist()
+    >>> bounding_boxes(np.array([[1, 0, 2], [1, 2, 2]], np.int32), 2)[1:].tolist()
     [[0, 0, 1, 0], [0, 1, 1, 2]]
     """
     box_of = np.empty((number + 1, 4), np.int64)

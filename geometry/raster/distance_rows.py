@@ -12,7 +12,13 @@ import numpy as np
 
 from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_transform import Gaps, Sites, count_steps, measure_run, roof_of
+from geometry.raster.distance_transform import (
+    ColumnSteps,
+    Sites,
+    count_steps_to_nearest,
+    fill_run_distances,
+    largest_value_of,
+)
 
 COLUMNS_PER_STRETCH = 128  # columns that share one reach; tuned for speed (benchmarks.screens)
 MAX_SITE_STEPS = 60  # columns: how far sites are looked at one by one before the envelope takes over; tuned likewise
@@ -32,15 +38,15 @@ class RowWindow(NamedTuple):
     sites, heights : (width + 1,) of an envelope.
     """
 
-    gap: Gaps
-    own: Gaps
-    value: Gaps
+    gap: ColumnSteps
+    own: ColumnSteps
+    value: ColumnSteps
     reach: Ints
     sites: Sites
     heights: Sites
 
 
-def new_window(width: int) -> RowWindow:
+def new_row_window(width: int) -> RowWindow:
     """Return scratch memory for rows of a padded width, as it is north of all rows."""
     own, reach = np.zeros(width + 2 * ROW_PADDING, np.int16), np.zeros(-(-width // COLUMNS_PER_STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
@@ -48,7 +54,7 @@ def new_window(width: int) -> RowWindow:
 
 
 @bare
-def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, window: RowWindow) -> bool:
+def fill_distance_rows(square: SquaredDistances, steps: ColumnSteps, south: int, north: int, window: RowWindow) -> bool:
     """Fill rows of squared distances from `north` down to `south`, inclusive; return whether their type holds them all.
 
     Parameters
@@ -59,7 +65,7 @@ def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, 
     south, north : padded rows.
     window : scratch, as the row north of `north` left it.
     """
-    width, roof, fits = square.shape[1], roof_of(square), True
+    width, roof, fits = square.shape[1], largest_value_of(square), True
     gap, own, value, reach, sites, heights = window
     for row in range(north, south - 1, -1):
         out = square[row]
@@ -76,16 +82,16 @@ def measure_rows(square: SquaredDistances, steps: Gaps, south: int, north: int, 
                 first, last = k * COLUMNS_PER_STRETCH, (k + 1) * COLUMNS_PER_STRETCH
                 last = last if last < width else width
                 done_up_to = fill_by_envelope(gap, out, first, last, done_up_to, roof, sites, heights)
-                largest = greatest(out[first:last])
+                largest = largest_distance(out[first:last])
                 reach[k] = steps_needed_for(largest)
                 fits &= largest < roof  # which no square is: they are 1 or 2 beyond a multiple of 8
     return fits
 
 
 @bare
-def add_column_distances(steps: Gaps, gap: Gaps, own: Gaps) -> None:
+def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps) -> None:
     """Update `gap` for the next row to the south, and write the squared column distances, in half squares, to `own`."""
-    count_steps(steps, gap)
+    count_steps_to_nearest(steps, gap)
     for j in range(gap.shape[0]):
         nearest = gap[j]
         edge = np.int16(2 * (nearest if nearest < MAX_COLUMN_STEPS else MAX_COLUMN_STEPS) - 1)
@@ -93,7 +99,7 @@ def add_column_distances(steps: Gaps, gap: Gaps, own: Gaps) -> None:
 
 
 @bare
-def minimise_over_sites(own: Gaps, value: Gaps, steps: int) -> None:
+def minimise_over_sites(own: ColumnSteps, value: ColumnSteps, steps: int) -> None:
     """Fill `value` with the least squared distance over the sites up to `steps` columns off.
 
     `own` starts ROW_PADDING columns before `value`.
@@ -106,7 +112,7 @@ def minimise_over_sites(own: Gaps, value: Gaps, steps: int) -> None:
 
 
 @bare
-def minimise_over_four(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
+def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: ColumnSteps) -> None:
     """Lower `value` by the sites t to t + 3 columns off.
 
     `west` starts t + 3 columns before `value`, `east` t columns behind it.
@@ -125,7 +131,7 @@ def minimise_over_four(west: Gaps, east: Gaps, t: int, value: Gaps) -> None:
 
 
 @bare
-def copy_row(value: Gaps, out: SquaredDistances) -> int:
+def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
     """Copy the values to `out` and return the largest."""
     largest = np.int16(0)
     for j in range(value.shape[0]):
@@ -135,7 +141,7 @@ def copy_row(value: Gaps, out: SquaredDistances) -> int:
 
 
 @bare
-def greatest(out: SquaredDistances) -> int:
+def largest_distance(out: SquaredDistances) -> int:
     """Return the largest of some squared distances."""
     largest = 0 * out[0]
     for j in range(out.shape[0]):
@@ -151,7 +157,7 @@ def steps_needed_for(largest: int) -> int:
 
 @bare
 def fill_by_envelope(
-    gap: Gaps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
+    gap: ColumnSteps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
 ) -> int:
     """Measure by envelopes the runs that meet columns first..last, but for columns below `done`; return their end."""
     column = first if first > done else done
@@ -165,5 +171,5 @@ def fill_by_envelope(
             begin -= 1
         while gap[column] != 0:
             column += 1
-        measure_run(gap, out, begin, column, begin, column, roof, sites, heights)
+        fill_run_distances(gap, out, begin, column, begin, column, roof, sites, heights)
     return column if column > done else done

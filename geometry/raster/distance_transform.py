@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
 
-Gaps = NDArray[np.int16]  # numbers of steps along columns to a blocked square
+ColumnSteps = NDArray[np.int16]  # numbers of steps along columns to a blocked square
 Sites = NDArray[np.int64]  # sites, or heights, of an envelope of parabolas, in half squares
 
 TILE_SIDE = 16  # squares; derived: 7 x 7 whole tiles fit every window of 129 x 129 squares
 
 
-def type_of_squares(free: Bools) -> type[np.int16] | type[np.int32]:
+def smallest_distance_type(free: Bools) -> type[np.int16] | type[np.int32]:
     """Return the smaller integer type that holds all squared distances of a raster; on wide floor perhaps a larger one.
 
     `free` : (rows, columns). 16 bits hold clearances up to 90.5 squares. Any larger one has 129 x 129 free squares
@@ -53,7 +53,7 @@ def has_open_block(tiles: Bools) -> bool:
 
 
 @bare
-def count_columns(free: Bools, steps: Gaps) -> None:
+def count_steps_south(free: Bools, steps: ColumnSteps) -> None:
     """Fill `steps` with the steps from each square south to the nearest blocked one in its column; 0 if it is blocked.
 
     `free` : (rows, columns). `steps` : (rows + 1, columns + 2 or more), padded.
@@ -70,7 +70,7 @@ def count_columns(free: Bools, steps: Gaps) -> None:
 
 
 @bare
-def count_steps(steps: Gaps, gap: Gaps) -> None:
+def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
     """Update `gap` from the row to the north: steps to the nearest blocked square of the column, to the south or north.
 
     `steps` : (width,) of this row, to the south. `gap` : (width,) of the row to the north; overwritten with this row's.
@@ -81,14 +81,14 @@ def count_steps(steps: Gaps, gap: Gaps) -> None:
 
 
 @bare
-def roof_of(square: SquaredDistances) -> int:
+def largest_value_of(square: SquaredDistances) -> int:
     """Return the greatest value that the integer type of an array holds."""
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
 @bare
-def measure_run(
-    gap: Gaps,
+def fill_run_distances(
+    gap: ColumnSteps,
     square: SquaredDistances,
     first: int,
     last: int,
@@ -124,7 +124,7 @@ def measure_run(
 
 
 @bare
-def lower_envelope(gap: Gaps, first: int, last: int, sites: Sites, heights: Sites) -> int:
+def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """Write the sites, relative to `first`, whose parabolas are lowest somewhere; return the index of the last one."""
     top = -1
     before = np.int64(gap[first - 1])

@@ -9,7 +9,7 @@ from geometry.kernels.arrays import XY, Floats, SquaredDistances
 CLEARANCE_TOLERANCE = 1e-9  # squares: a disc may be this much too near to a wall; bounds rounding
 
 
-def keeps_clear(square: SquaredDistances, start: XY, goal: XY, radius: float) -> bool:
+def disc_stays_clear(square: SquaredDistances, start: XY, goal: XY, radius: float) -> bool:
     """Return whether a disc moved straight from one point to another of the same square stays clear of blocked squares.
 
     Parameters

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geometry.kernels.jit import compiled
 
-UNREACHED = -1  # the distance of a square that no path leads to
+GEODESIC_UNREACHED = -1  # the distance of a square that no path leads to
 GEODESIC_STEP, GEODESIC_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
@@ -23,7 +23,7 @@ def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
 
     Returns
     -------
-    (rows, columns) int32; UNREACHED (-1) where no path leads.
+    (rows, columns) int32; GEODESIC_UNREACHED (-1) where no path leads.
 
     Raises
     ------
@@ -37,14 +37,14 @@ def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
     rows, columns = free.shape
     if not (0 <= row < rows and 0 <= column < columns and free[row, column]):
         raise ValueError(f"the start ({column}, {row}) is not a free square")
-    distance = np.full(free.shape, UNREACHED, np.int32)
+    distance = np.full(free.shape, GEODESIC_UNREACHED, np.int32)
     _fill_distances(np.ascontiguousarray(free), column, row, distance)
     return distance
 
 
 @compiled
 def _fill_distances(free, column, row, distance):  # type: ignore[no-untyped-def]
-    """Fill `distance`, all UNREACHED before, with the lengths of shortest paths in fifths of squares."""
+    """Fill `distance`, all GEODESIC_UNREACHED before, with the lengths of shortest paths in fifths of squares."""
     rows, columns = free.shape
     ring = GEODESIC_DIAGONAL + 1
     first = np.full(ring, -1, np.int64)  # per distance modulo the ring: the last entry that was put there

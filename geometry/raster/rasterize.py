@@ -43,7 +43,7 @@ def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
     array([[0, 1, 1, 0],
            [0, 0, 0, 0]])
     """
-    return areas(shape, width, height) > MIN_COVERED_AREA
+    return covered_areas(shape, width, height) > MIN_COVERED_AREA
 
 
 def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int) -> npt.NDArray[np.bool_]:
@@ -75,7 +75,7 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
     return covered
 
 
-def areas(shape: Any, width: int, height: int) -> Floats:
+def covered_areas(shape: Any, width: int, height: int) -> Floats:
     """Return the area that a shape covers in every square of a table: (height, width) float64, squares squared.
 
     Parameters

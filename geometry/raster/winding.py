@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Square
 from geometry.kernels.jit import compiled
 
-MOST = 2  # largest magnitude of a crossing number: one sheet for each number; a convention
+MAX_CROSSING_NUMBER = 2  # largest magnitude of a crossing number: one sheet for each number; a convention
 WINDING_STEP, WINDING_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
-def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
+def crossing_number(points: NDArray[np.float64], about: tuple[float, float]) -> int:
     """Return how often a polyline crosses the ray from a point towards +x: upwards counts +1, downwards -1.
 
     Parameters
@@ -29,7 +29,7 @@ def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
 
     Examples
     --------
-    >>> crossings(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
+    >>> crossing_number(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
     1
     """
     x, y = np.asarray(points, float).T - np.array(about)[:, None]
@@ -40,7 +40,7 @@ def crossings(points: NDArray[np.float64], about: tuple[float, float]) -> int:
     return int(rise[where > 0].sum())
 
 
-def winding_way(
+def shortest_path_with_crossing_number(
     free: NDArray[np.bool_], start: Square, goal: Square, about: tuple[float, float], number: int
 ) -> list[Square] | None:
     """Return the shortest path over free squares (eight neighbours, no corners cut) with a given crossing number.
@@ -63,20 +63,20 @@ def winding_way(
     Examples
     --------
     >>> free = np.ones((3, 3), bool); free[1, 1] = False
-    >>> len(winding_way(free, (0, 0), (0, 0), (1.5, 1.5), 1))
+    >>> len(shortest_path_with_crossing_number(free, (0, 0), (0, 0), (1.5, 1.5), 1))
     9
     """
-    if abs(number) > MOST:
-        raise ValueError(f"crossing numbers go from -{MOST} to {MOST}, not {number}")
+    if abs(number) > MAX_CROSSING_NUMBER:
+        raise ValueError(f"crossing numbers go from -{MAX_CROSSING_NUMBER} to {MAX_CROSSING_NUMBER}, not {number}")
     rows, columns = free.shape
     for column, row in (start, goal):
         if not (0 <= row < rows and 0 <= column < columns and free[row, column]):
             raise ValueError(f"({column}, {row}) is not a free square")
-    parent = np.full((2 * MOST + 1) * rows * columns, -1, np.int64)
+    parent = np.full((2 * MAX_CROSSING_NUMBER + 1) * rows * columns, -1, np.int64)
     ray = np.arange(columns) + 0.5 > about[0]
     first = int(np.ceil(about[1] - 0.5))  # the lowest row whose centres count as above the ray
-    origin = (MOST * rows + start[1]) * columns + start[0]
-    end = ((MOST + number) * rows + goal[1]) * columns + goal[0]
+    origin = (MAX_CROSSING_NUMBER * rows + start[1]) * columns + start[0]
+    end = ((MAX_CROSSING_NUMBER + number) * rows + goal[1]) * columns + goal[0]
     if not _search_sheets(np.ascontiguousarray(free), origin, end, first, ray, parent):
         return None
     cells = [end]

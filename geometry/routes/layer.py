@@ -53,13 +53,13 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
     return words.view(np.uint8)[:cells].reshape(shape), words
 
 
-def find_bones(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
+def find_pathgraph(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
     """Return the pathgraph of the cells whose squared clearance is at least `level` (half squares); fill `state`."""
     grow_all(square, level, state, words)
     return contract(square, state, words)
 
 
-def find_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
+def build_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
     """Return the layer of a pathgraph: find its strips and landmarks.
 
     Parameters
@@ -73,7 +73,7 @@ def find_layer(square: SquaredDistances, level: int, body: bool, state: States, 
     return Layer(square, state, chains, runs, compute_landmarks(square, chains, runs, body), body)
 
 
-def level_of(radius: float) -> int:
+def least_squared_clearance(radius: float) -> int:
     """Return the least squared clearance, in half squares, of a cell at whose centre a body of that radius may be.
 
     The centres of squares decide for all places between them: seen from one coordinate, the distance to a blocked

@@ -14,7 +14,7 @@ from geometry.homotopy.strips import find_strips
 from geometry.kernels.arrays import XY, Bools, Ints
 from geometry.passages.necks import Passage
 from geometry.pathfinders.polyanya import NO_PATH, SEARCH_OVERFLOW, PolyanyaSearch, new_polyanya_search, shortest_line
-from geometry.raster.exact_clearance import keeps_clear
+from geometry.raster.exact_clearance import disc_stays_clear
 from geometry.routes.barrier import Barrier, build_barrier, path_over_cells, path_to_skeleton
 from geometry.routes.goal_sets import word_of_cells
 from geometry.routes.layer import Layer
@@ -40,7 +40,7 @@ LENGTH_TOLERANCE = 1e-9  # squares; lengths that differ by less are equal but fo
 NO_CLOSED_STEPS: Ints = np.zeros((0, 2), np.int32)
 
 
-def rehearse() -> None:
+def compile_route_kernels() -> None:
     """Compile the routing kernels, which take longest, for the array types of screens, before there is a screen."""
     ints, ends_of, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32), np.full((1, 4), -1, np.int16)
     chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0])  # one node, no chain
@@ -84,7 +84,7 @@ class LayerQueries:
         """Return whether the body may be at a point, at the centre of its square, and on the line between them."""
         if self.layer.square.item(int(point[1]) + 1, int(point[0]) + 1) < self.level:
             return False
-        return not self.layer.body or keeps_clear(self.layer.square, point, self.snap(point), self.radius)
+        return not self.layer.body or disc_stays_clear(self.layer.square, point, self.snap(point), self.radius)
 
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...] = ()) -> list[Route]:
         """Return at most k routes between two points, shortest first.
@@ -265,7 +265,7 @@ class LayerQueries:
     def with_ends(self, route: Route, start: XY, goal: XY) -> Route:
         """Return a body's route extended to its true ends, if they are not centres of squares."""
         line = [(x, y) for x, y in route.points.tolist()]
-        if len(line) == 1 and keeps_clear(self.layer.square, start, goal, self.radius):
+        if len(line) == 1 and disc_stays_clear(self.layer.square, start, goal, self.radius):
             line = [start, goal]  # within one square
         line = [start, *line, goal]
         line = line[:1] + [q for p, q in pairwise(line) if p != q]

@@ -9,8 +9,8 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, SquaredDistances
 from geometry.kernels.jit import bare
-from geometry.raster.distance_rows import RowWindow, measure_rows, new_window
-from geometry.raster.distance_transform import Gaps, count_columns
+from geometry.raster.distance_rows import RowWindow, fill_distance_rows, new_row_window
+from geometry.raster.distance_transform import ColumnSteps, count_steps_south
 from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, grow
 
 BAND_CELLS = 1 << 16  # about so many cells in a band: of 3 to 5 bytes each, which fit into a core's own cache
@@ -31,11 +31,11 @@ def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -
         The memory of ``state`` by eights, 0 beyond its last cell.
     """
     width, steps = square.shape[1], square.view(np.int16)
-    count_columns(free, steps)
+    count_steps_south(free, steps)
     square[0], square[-1], state[0], state[-1] = 0, 0, 0, 0
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
     flat = square.reshape(-1), state.reshape(-1), words
-    sweep(square, steps, *flat, max(1, BAND_CELLS // width), new_window(width), flags, waiting)
+    sweep(square, steps, *flat, max(1, BAND_CELLS // width), new_row_window(width), flags, waiting)
 
 
 def grow_all(square: SquaredDistances, level: int, state: States, words: Words) -> None:
@@ -59,7 +59,7 @@ def grow_all(square: SquaredDistances, level: int, state: States, words: Words) 
 @bare
 def sweep(
     square: SquaredDistances,
-    steps: Gaps,
+    steps: ColumnSteps,
     heights: Heights,
     states: Flags,
     words: Words,
@@ -74,6 +74,6 @@ def sweep(
     for north in range(last, 0, -band):
         south = north - band + 1 if north > band else 1
         edge = south - 1 if south > 1 else 1
-        measure_rows(square, steps, edge, measured - 1, window)
+        fill_distance_rows(square, steps, edge, measured - 1, window)
         waits = grow(heights, states, words, width, 1, south, north, flags, waiting, waits)
         measured = edge

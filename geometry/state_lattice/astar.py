@@ -12,14 +12,22 @@ import numpy as np
 
 from geometry.kernels.arrays import Longs
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.heuristic import NEVER, STILL
-from geometry.state_lattice.lattice import COMMAND, REGRASP, WALK_COST, Costs, StateLattice, place_after_turn, turn_cost
+from geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION
+from geometry.state_lattice.lattice import (
+    COMMAND_COST,
+    REGRASP_COST,
+    WALK_COST,
+    Costs,
+    StateLattice,
+    place_after_turn,
+    turn_cost,
+)
 
-CALM = 4  # the weight of the heuristic, in quarters, with which A* finds the cheapest path
+ADMISSIBLE_WEIGHT = 4  # the weight of the heuristic, in quarters, with which A* finds the cheapest path
 
 
 @compiled
-def haul(
+def find_carrying_path(
     lattice: StateLattice,
     remaining: Costs,
     end_costs: Costs,
@@ -34,7 +42,7 @@ def haul(
     """Return the nodes of the cheapest path from the first grasp to the goal, in order; empty if there is none.
 
     A node is ((hold * 4 + quarter turn) * 9 + direction) * squares + place.
-    The direction is STILL while the body lies.
+    The direction is NO_DIRECTION while the body lies.
 
     Parameters
     ----------
@@ -44,7 +52,7 @@ def haul(
     grasp_costs : (holds,) cost of having walked to each hold and grasped the body; -1 where the robot cannot.
     place : where the body lies, unturned.
     redirect_cost : cost of going on in another direction in the same push.
-    weight : weight of the heuristic in quarters. CALM finds the cheapest path.
+    weight : weight of the heuristic in quarters. ADMISSIBLE_WEIGHT finds the cheapest path.
         A larger weight finds a path sooner that may cost more by the same factor.
     max_settled : number of nodes that are settled at most.
     cost, parent : scratch, a number for each node; all costs 0.
@@ -59,15 +67,20 @@ def haul(
     walked = np.zeros((4 * squares, holds), np.bool_)  # which holds of a pose have been walked to or from
     walk_cost, seen = np.empty(holds, np.int32), np.zeros(squares, np.int32)
     successor, step_cost = np.empty(16, np.int64), np.empty(16, np.int64)
-    final, final_cost = -1, NEVER
+    final, final_cost = -1, COST_UNREACHABLE
     heap = [(0, 0, 0)]
     heap.pop()
     for hold in range(holds):
-        if grasp_costs[hold] >= 0 and remaining[0, STILL, place] < NEVER:
-            node = (hold * 36 + STILL) * squares + place
+        if grasp_costs[hold] >= 0 and remaining[0, NO_DIRECTION, place] < COST_UNREACHABLE:
+            node = (hold * 36 + NO_DIRECTION) * squares + place
             cost[node], parent[node] = grasp_costs[hold] + 1, -1
             heapq.heappush(
-                heap, (grasp_costs[hold] + remaining[0, STILL, place] * weight // CALM, -grasp_costs[hold], node)
+                heap,
+                (
+                    grasp_costs[hold] + remaining[0, NO_DIRECTION, place] * weight // ADMISSIBLE_WEIGHT,
+                    -grasp_costs[hold],
+                    node,
+                ),
             )
     settled = 0
     while len(heap) > 0 and settled < max_settled:
@@ -88,24 +101,26 @@ def haul(
             for other in range(holds):
                 if walk_cost[other] >= 0:
                     walked[k * squares + p, other] = True
-                    after = ((other * 4 + k) * 9 + STILL) * squares + p
-                    then = spent + REGRASP + walk_cost[other] + lattice.grasp_cost[other]
+                    after = ((other * 4 + k) * 9 + NO_DIRECTION) * squares + p
+                    then = spent + REGRASP_COST + walk_cost[other] + lattice.grasp_cost[other]
                     if cost[after] == 0 or then < cost[after] - 1:
                         cost[after], parent[after] = then + 1, node
-                        heapq.heappush(heap, (then + remaining[k, STILL, p] * weight // CALM, -then, after))
+                        heapq.heappush(
+                            heap, (then + remaining[k, NO_DIRECTION, p] * weight // ADMISSIBLE_WEIGHT, -then, after)
+                        )
             continue
-        if m == STILL:
+        if m == NO_DIRECTION:
             if end_costs[k, p] >= 0 and spent + end_costs[k, p] < final_cost:
                 final, final_cost = node, spent + end_costs[k, p]
-            ahead = remaining[k, STILL, p] * weight // CALM
-            heapq.heappush(heap, (spent + REGRASP + COMMAND + ahead, -spent, node + total))
+            ahead = remaining[k, NO_DIRECTION, p] * weight // ADMISSIBLE_WEIGHT
+            heapq.heappush(heap, (spent + REGRASP_COST + COMMAND_COST + ahead, -spent, node + total))
         count = _write_successors(lattice, hold, k, m, p, redirect_cost, successor, step_cost)
         for n in range(count):
             after, then = successor[n], spent + step_cost[n]
             ahead = remaining[after // squares // 9 % 4, after // squares % 9, after % squares]
-            if ahead < NEVER and (cost[after] == 0 or then < cost[after] - 1):
+            if ahead < COST_UNREACHABLE and (cost[after] == 0 or then < cost[after] - 1):
                 cost[after], parent[after] = then + 1, node
-                heapq.heappush(heap, (then + ahead * weight // CALM, -then, after))
+                heapq.heappush(heap, (then + ahead * weight // ADMISSIBLE_WEIGHT, -then, after))
     return _path_to(parent, final)
 
 
@@ -134,11 +149,11 @@ def _write_successors(
     squares = len(lattice.solid)
     base = (hold * 4 + k) * 9
     robot = p + lattice.holds[k, hold]
-    if m < STILL:
-        successor[0], step_cost[0] = (base + STILL) * squares + p, 0
+    if m < NO_DIRECTION:
+        successor[0], step_cost[0] = (base + NO_DIRECTION) * squares + p, 0
         count = 1
         for d in range(8):
-            if d != m and (redirect_cost == COMMAND or not lattice.push_allowed[k, hold, d]):
+            if d != m and (redirect_cost == COMMAND_COST or not lattice.push_allowed[k, hold, d]):
                 continue
             if lattice.push_cost[k, d, p] > 0 and lattice.robot_can_step[d, robot]:
                 successor[count] = (base + d) * squares + p + lattice.steps[d]
@@ -149,19 +164,22 @@ def _write_successors(
     for d in range(8):
         if lattice.push_allowed[k, hold, d] and lattice.push_cost[k, d, p] > 0 and lattice.robot_can_step[d, robot]:
             successor[count] = (base + d) * squares + p + lattice.steps[d]
-            step_cost[count] = COMMAND + lattice.push_cost[k, d, p]
+            step_cost[count] = COMMAND_COST + lattice.push_cost[k, d, p]
             count += 1
     for sense in (1, -1):
         extra = turn_cost(lattice, hold, k, p, sense)
         if extra < 0:
             continue
         p1, k1 = place_after_turn(lattice, hold, k, p, sense), (k + sense) % 4
-        successor[count], step_cost[count] = ((hold * 4 + k1) * 9 + STILL) * squares + p1, lattice.turn_price + extra
+        successor[count], step_cost[count] = (
+            ((hold * 4 + k1) * 9 + NO_DIRECTION) * squares + p1,
+            lattice.turn_price + extra,
+        )
         count += 1
         more = turn_cost(lattice, hold, k1, p1, sense)
         if more >= 0:
             p2, k2 = place_after_turn(lattice, hold, k1, p1, sense), (k + 2) % 4
-            successor[count] = ((hold * 4 + k2) * 9 + STILL) * squares + p2
+            successor[count] = ((hold * 4 + k2) * 9 + NO_DIRECTION) * squares + p2
             step_cost[count] = lattice.turn_price + max(extra, more)
             count += 1
     return count
@@ -199,7 +217,7 @@ def _flood_walk_costs(
             here = queue[n]
             for h in range(len(targets)):
                 if targets[h] == here and lattice.grasp_cost[h] >= 0 and not lattice.solid[here]:
-                    walk_cost[h] = steps_walked * WALK_COST + (COMMAND if steps_walked > 0 else 0)
+                    walk_cost[h] = steps_walked * WALK_COST + (COMMAND_COST if steps_walked > 0 else 0)
                     waiting -= 1
             for step in (1, stride, -1, -stride):
                 if lattice.walkable[here + step] and seen[here + step] != mark:
@@ -209,7 +227,7 @@ def _flood_walk_costs(
 
 
 @compiled
-def first_walk(lattice: StateLattice, place: int, start: int) -> Costs:
+def costs_to_first_grasp(lattice: StateLattice, place: int, start: int) -> Costs:
     """Return the cost of walking from square `start` to each hold of the body, where it lies unturned, and grasping it.
 
     `place` : the body's place. Returns (holds,) int32; -1 where no path leads.

@@ -24,7 +24,7 @@ from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.time_of_impact import first_turn_skin_hit
 from geometry.raster.rasterize import squares
 
-DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
+PUSH_DIRECTIONS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 """Steps (columns, rows) of a push, counter-clockwise from the east: a quarter turn is two further in this order."""
 
 
@@ -49,7 +49,7 @@ class Footprints:
     turns: tuple[Longs, ...]
 
 
-def new_stencil(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
+def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
     """Return the footprints of a shape whose centroid lies in the square (0, 0).
 
     Parameters
@@ -61,7 +61,7 @@ def new_stencil(shape: Any, own_square: tuple[int, int] | None = None, holds: Lo
     lying = _covered_offsets(shape)
     holds = _squares_about(lying, own_square) if holds is None else holds
     body = ContactBody(shape)
-    steps = tuple(_squares_of_push(shape, lying, dx, dy) for dx, dy in DIRECTIONS)
+    steps = tuple(_squares_of_push(shape, lying, dx, dy) for dx, dy in PUSH_DIRECTIONS)
     return Footprints((0, 0), holds, lying, steps, tuple(_squares_of_turn(body, lying, hold) for hold in holds))
 
 
@@ -83,7 +83,7 @@ def _covered_offsets(shape: Any) -> Longs:
 def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
     """Return the squares that touch the given ones by an edge or a corner, and `own_square`: sorted offsets (n, 2)."""
     covered = {(int(x), int(y)) for x, y in lying}
-    about = {(x + dx, y + dy) for x, y in covered for dx, dy in DIRECTIONS} - covered
+    about = {(x + dx, y + dy) for x, y in covered for dx, dy in PUSH_DIRECTIONS} - covered
     return np.array(sorted(about | ({own_square} if own_square else set())), dtype=np.int64).reshape(-1, 2)
 
 

@@ -11,15 +11,15 @@ import numpy as np
 
 from geometry.kernels.bucket_queue import new_queue, put, take
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.lattice import COMMAND, Costs, StateLattice, place_after_turn, turn_cost
+from geometry.state_lattice.lattice import COMMAND_COST, Costs, StateLattice, place_after_turn, turn_cost
 
-STILL = 8  # stands for the direction of a body that lies, in place of 0..7
-NEVER = 2**30  # above every cost to go
+NO_DIRECTION = 8  # stands for the direction of a body that lies, in place of 0..7
+COST_UNREACHABLE = 2**30  # above every cost to go
 QUEUE_ENTRIES_PER_POSE = 64  # bounds the queue: far more than occur, and memory that is not touched costs nothing
 
 
 @compiled
-def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
+def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
     """Return the least cost to go from every pose, by quarter turn, direction of the push under way, and place.
 
     Parameters
@@ -27,24 +27,24 @@ def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
     lattice : the state lattice.
     end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
     redirect_cost : cost of going on in another direction in the same push.
-        COMMAND stands for starting another push.
+        COMMAND_COST stands for starting another push.
 
     Returns
     -------
-    (4, 9, squares) int32, with direction STILL for a body that lies.
-    NEVER where the goal cannot be reached; -1 where a body that lies would overlap something.
+    (4, 9, squares) int32, with direction NO_DIRECTION for a body that lies.
+    COST_UNREACHABLE where the goal cannot be reached; -1 where a body that lies would overlap something.
     """
     squares = end_costs.shape[1]
-    remaining = np.full((4, 9, squares), NEVER, np.int32)
+    remaining = np.full((4, 9, squares), COST_UNREACHABLE, np.int32)
     size = QUEUE_ENTRIES_PER_POSE * 4 * squares
     queue = new_queue(size)
     for k in range(4):
         for p in range(squares):
             if not lattice.lies[k, p]:
-                remaining[k, STILL, p] = -1
+                remaining[k, NO_DIRECTION, p] = -1
             elif end_costs[k, p] >= 0:
-                remaining[k, STILL, p] = end_costs[k, p]
-                put(queue, end_costs[k, p], (p << 8) + (STILL << 4) + k)
+                remaining[k, NO_DIRECTION, p] = end_costs[k, p]
+                put(queue, end_costs[k, p], (p << 8) + (NO_DIRECTION << 4) + k)
     now = 0
     while queue.used[1] > 0:
         node = take(queue, now)
@@ -54,9 +54,9 @@ def guess(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> Costs:
         p, m, k = node >> 8, (node >> 4) & 15, node & 15
         if remaining[k, m, p] != now:
             continue
-        if m < STILL:
+        if m < NO_DIRECTION:
             for d in range(8):
-                if redirect_cost < COMMAND and now + redirect_cost < remaining[k, d, p]:
+                if redirect_cost < COMMAND_COST and now + redirect_cost < remaining[k, d, p]:
                     remaining[k, d, p] = now + redirect_cost
                     put(queue, now + redirect_cost, (p << 8) + (d << 4) + k)
             _relax_push_step(lattice, remaining, queue, k, m, p, now)
@@ -81,19 +81,19 @@ def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[
         for sense in (1, -1):
             p1, p2 = place_after_turn(lattice, hold, k, p, sense), place_after_turn(lattice, hold, k, p, 2 * sense)
             k1, k2 = (k + sense) % 4, (k + 2) % 4
-            if cost_before >= remaining[k1, STILL, p1] and cost_before >= remaining[k2, STILL, p2]:
+            if cost_before >= remaining[k1, NO_DIRECTION, p1] and cost_before >= remaining[k2, NO_DIRECTION, p2]:
                 continue
             extra = turn_cost(lattice, hold, k, p, sense)
             if extra < 0:
                 continue
-            if cost_before + extra < remaining[k1, STILL, p1]:
-                remaining[k1, STILL, p1] = cost_before + extra
-                put(queue, cost_before + extra, (p1 << 8) + (STILL << 4) + k1)
-            if cost_before + extra < remaining[k2, STILL, p2]:
+            if cost_before + extra < remaining[k1, NO_DIRECTION, p1]:
+                remaining[k1, NO_DIRECTION, p1] = cost_before + extra
+                put(queue, cost_before + extra, (p1 << 8) + (NO_DIRECTION << 4) + k1)
+            if cost_before + extra < remaining[k2, NO_DIRECTION, p2]:
                 more = turn_cost(lattice, hold, k1, p1, sense)
-                if more >= 0 and cost_before + max(extra, more) < remaining[k2, STILL, p2]:
-                    remaining[k2, STILL, p2] = cost_before + max(extra, more)
-                    put(queue, cost_before + max(extra, more), (p2 << 8) + (STILL << 4) + k2)
+                if more >= 0 and cost_before + max(extra, more) < remaining[k2, NO_DIRECTION, p2]:
+                    remaining[k2, NO_DIRECTION, p2] = cost_before + max(extra, more)
+                    put(queue, cost_before + max(extra, more), (p2 << 8) + (NO_DIRECTION << 4) + k2)
 
 
 @compiled
@@ -110,6 +110,6 @@ def _relax_push_step(lattice, remaining, queue, k, m, p, now):  # type: ignore[n
     if cost_before < remaining[k, m, place_before]:
         remaining[k, m, place_before] = cost_before
         put(queue, cost_before, (place_before << 8) + (m << 4) + k)
-    if cost_before + COMMAND < remaining[k, STILL, place_before]:
-        remaining[k, STILL, place_before] = cost_before + COMMAND
-        put(queue, cost_before + COMMAND, (place_before << 8) + (STILL << 4) + k)
+    if cost_before + COMMAND_COST < remaining[k, NO_DIRECTION, place_before]:
+        remaining[k, NO_DIRECTION, place_before] = cost_before + COMMAND_COST
+        put(queue, cost_before + COMMAND_COST, (place_before << 8) + (NO_DIRECTION << 4) + k)

@@ -11,16 +11,16 @@ import numpy.typing as npt
 
 from geometry.kernels.arrays import Bools, Longs
 from geometry.kernels.jit import compiled
-from geometry.state_lattice.footprints import DIRECTIONS, Footprints, quarter
+from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
-# Costs are whole numbers. COMMAND is a convention, the others are tuned on random worlds (benchmarks.campaign).
-COMMAND = 500  # one command: a push or a turn
+# Costs are whole numbers. COMMAND_COST is a convention, the others are tuned on random worlds (benchmarks.campaign).
+COMMAND_COST = 500  # one command: a push or a turn
 PUSH_SIDE_COST, PUSH_DIAGONAL_COST = 5, 7  # a push by one square; 7 / 5 approximates sqrt(2)
 TIGHT_PUSH_COST, TIGHT_TURN_COST = 25, 600  # added to a push by one square, and to a turn, with less than the margin
-WALK_COST = COMMAND // 12  # a square walked
-REGRASP = 2 * COMMAND  # letting go and grasping again, without the walk between
-AWKWARD = COMMAND // 5  # added to a grasp across a corner of the robot's square
+WALK_COST = COMMAND_COST // 12  # a square walked
+REGRASP_COST = 2 * COMMAND_COST  # letting go and grasping again, without the walk between
+CORNER_GRASP_COST = COMMAND_COST // 5  # added to a grasp across a corner of the robot's square
 
 
 class OffsetLists(NamedTuple):
@@ -110,13 +110,13 @@ class Grid(NamedTuple):
         return _mark_clear(solid, self.table_squares(), self.offsets(offsets))
 
 
-def new_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
+def new_lattice_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
     """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body."""
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
 
-def new_board(
+def new_state_lattice(
     grid: Grid,
     free: Bools,
     walkable: Bools,
@@ -148,14 +148,17 @@ def new_board(
         grasp_cost,
         push_cost,
         np.array(
-            [_mark_clear(solid, table_squares, grid.offsets(_squares_of_robot_step(dx, dy))) for dx, dy in DIRECTIONS]
+            [
+                _mark_clear(solid, table_squares, grid.offsets(_squares_of_robot_step(dx, dy)))
+                for dx, dy in PUSH_DIRECTIONS
+            ]
         ),
         np.array([_mark_clear(solid, table_squares, grid.offsets(lying)) for lying in quarters]),
         covered,
         turns,
         turns if wide is body else _turn_footprints(grid, wide),
         push_allowed,
-        grid.offsets(np.array(DIRECTIONS)),
+        grid.offsets(np.array(PUSH_DIRECTIONS)),
         turn_price,
     )
 

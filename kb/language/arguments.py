@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from kb.language.diagnostics import Span, did_you_mean
+from kb.language.diagnostics import SourceSpan, did_you_mean
 from kb.language.terms import Number, Symbol, Term, Text
 
 
@@ -18,7 +18,7 @@ class Complaint(NamedTuple):
     hint : a remedy, or '' for none.
     """
 
-    span: Span
+    span: SourceSpan
     what: str
     hint: str = ""
 
@@ -118,7 +118,7 @@ def wkt_argument(name: str, *kinds: str) -> ArgumentType:
         except WktError as error:
             start = min(term.span.start + 1 + error.at, term.span.end)
             whole_text = error.at == 0
-            span = term.span if whole_text else Span(term.span.line, start, start)
+            span = term.span if whole_text else SourceSpan(term.span.line, start, start)
             return Complaint(span, f"{name}: {error.what}")
         return None
 

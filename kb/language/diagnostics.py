@@ -8,7 +8,7 @@ MAX_PROBLEMS_PER_FILE = 100  # the search for more problems in a file ends here;
 MAX_SOURCE_LINE_WIDTH = 120  # characters of a source line that a message shows; a convention
 
 
-class Span(NamedTuple):
+class SourceSpan(NamedTuple):
     """A range of columns on one line of a source; lines and columns count from 1, in characters.
 
     Attributes
@@ -36,7 +36,7 @@ class Problem(NamedTuple):
     """
 
     file: str
-    span: Span
+    span: SourceSpan
     what: str
     source: str = ""
     hint: str = ""

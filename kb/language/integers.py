@@ -6,7 +6,7 @@ clingo's integers have 32 bits, and it wraps greater ones without a message. So 
 import re
 from collections.abc import Iterator
 
-from kb.language.diagnostics import Problem, Span
+from kb.language.diagnostics import Problem, SourceSpan
 from kb.language.source_text import Source
 from kb.language.tokens import tokenize
 
@@ -39,7 +39,7 @@ def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
             assert match is not None
             lowest = before == "-" and (ahead in TOKENS_BEFORE_A_TERM or ahead.startswith("#"))
             if _magnitude(match.group()) > MAX_INT32 + lowest:
-                span = Span(token.span.line, token.span.start, match.end())
+                span = SourceSpan(token.span.line, token.span.start, match.end())
                 yield source.problem(span, "a number beyond 32 bits", "-2147483648 .. 2147483647")
         ahead, before = before, token.text
 

@@ -15,8 +15,8 @@ latter can be nested.
 import re
 from pathlib import Path
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, Span
-from kb.language.source_text import Source, decode, read_source
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
+from kb.language.source_text import Source, read_source, source_from_bytes
 from kb.language.terms import Fact, Number, Symbol, Term, Text
 from kb.language.tokens import Token, tokenize
 
@@ -48,7 +48,7 @@ def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
     return source, parse_facts(source)
 
 
-def facts_of(text: str, file: str = "input") -> tuple[Fact, ...]:
+def facts_from_text(text: str, file: str = "input") -> tuple[Fact, ...]:
     """Return the facts that a text states.
 
     Parameters
@@ -66,10 +66,10 @@ def facts_of(text: str, file: str = "input") -> tuple[Fact, ...]:
 
     Examples
     --------
-    >>> [str(fact) for fact in facts_of('object(x). shape(x, square).  % a claim')]
+    >>> [str(fact) for fact in facts_from_text('object(x). shape(x, square).  % a claim')]
     ['object(x)', 'shape(x,square)']
     """
-    return parse_facts(decode(file, text.encode("utf-8", errors="surrogateescape")))
+    return parse_facts(source_from_bytes(file, text.encode("utf-8", errors="surrogateescape")))
 
 
 def parse_facts(source: Source) -> tuple[Fact, ...]:
@@ -188,7 +188,7 @@ class _Reader:
             raise self.not_closed(close)
         self.take()
         end = close.span.end if close.span.line == name.span.line else name.span.end
-        return Symbol(name.text, tuple(args), Span(name.span.line, name.span.start, end))
+        return Symbol(name.text, tuple(args), SourceSpan(name.span.line, name.span.start, end))
 
     def string(self) -> Text:
         """Read a quoted string and replace its escapes."""
@@ -204,7 +204,7 @@ class _Reader:
         token = self.take()
         if token.kind != "number":
             raise self.refuse(token, "a minus sign must be followed by a number")
-        span = Span(token.span.line, sign.span.start if sign else token.span.start, token.span.end)
+        span = SourceSpan(token.span.line, sign.span.start if sign else token.span.start, token.span.end)
         digits = token.text.lstrip("0") or "0"
         value = int(digits) if len(digits) <= 10 else 2**31
         value = -value if sign else value

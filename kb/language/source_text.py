@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.operating_system import READ_FLAGS
 
 MAX_FILE_BYTES = 4_000_000  # bytes of a user's file (docs/files.md)
@@ -25,7 +25,7 @@ class Source:
     Attributes
     ----------
     file : the file's name as the user gave it.
-    text : the text; ASCII when `decode` accepted it.
+    text : the text; ASCII when `source_from_bytes` accepted it.
     hide_text : the file is a link that leads out of its folder. Then messages show none of its text, because the author
         of
         the link may have no right to read the file.
@@ -40,7 +40,7 @@ class Source:
         """The lines of the text, without line ends."""
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
-    def problem(self, span: Span, what: str, hint: str = "") -> Problem:
+    def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
         """Return the problem `what` at `span`, with the source line; a general problem when the text is hidden."""
         if self.hide_text:
             return Problem(
@@ -49,9 +49,9 @@ class Source:
         source = self.lines[span.line - 1] if span.line <= len(self.lines) else ""
         return Problem(self.file, span, what, source, hint)
 
-    def start(self) -> Span:
+    def start(self) -> SourceSpan:
         """Return the first column of the file, the place of problems that concern the whole file."""
-        return Span(1, 1, 1)
+        return SourceSpan(1, 1, 1)
 
 
 def read_source(path: Path | str) -> Source:
@@ -71,7 +71,7 @@ def read_source(path: Path | str) -> Source:
     BadInputError : the file has more than `MAX_FILE_BYTES` bytes, or other characters than printable ASCII, tabs, line
         ends.
     """
-    return decode(str(path), read_bytes(str(path), MAX_FILE_BYTES), lies_outside(path))
+    return source_from_bytes(str(path), read_bytes(str(path), MAX_FILE_BYTES), lies_outside(path))
 
 
 def lies_outside(path: Path | str, folder: Path | str | None = None) -> bool:
@@ -87,7 +87,7 @@ def lies_outside(path: Path | str, folder: Path | str | None = None) -> bool:
     return not os.path.realpath(named).startswith(os.path.join(home, ""))  # noqa: PTH118
 
 
-def decode(file: str, raw: bytes, hide_text: bool = False) -> Source:
+def source_from_bytes(file: str, raw: bytes, hide_text: bool = False) -> Source:
     """Return the text of a file's bytes, checked to be ASCII.
 
     Parameters
@@ -105,11 +105,11 @@ def decode(file: str, raw: bytes, hide_text: bool = False) -> Source:
     BadInputError : there are too many bytes, or characters that are not allowed; names each of them.
     """
     if len(raw) > MAX_FILE_BYTES:
-        raise BadInputError([Problem(file, Span(1, 1, 1), f"the file is larger than {MAX_FILE_BYTES} bytes")])
+        raise BadInputError([Problem(file, SourceSpan(1, 1, 1), f"the file is larger than {MAX_FILE_BYTES} bytes")])
     for mark, name in UNSUPPORTED_ENCODINGS.items():
         if raw.startswith(mark):
             hint = "save the file as plain ASCII (or UTF-8 without byte order mark)"
-            raise BadInputError([Problem(file, Span(1, 1, 1), f"the file begins with {name}", hint=hint)])
+            raise BadInputError([Problem(file, SourceSpan(1, 1, 1), f"the file begins with {name}", hint=hint)])
     source = Source(file, raw.decode("utf-8", errors="surrogateescape"), hide_text)
     problems = _disallowed_characters(source)
     if problems:
@@ -166,7 +166,7 @@ def _disallowed_characters(source: Source) -> list[Problem]:
             end = column
             while end < len(line) and line[end] == char:
                 end += 1
-            problems.append(source.problem(Span(number, column, end), *_character_and_remedy(char)))
+            problems.append(source.problem(SourceSpan(number, column, end), *_character_and_remedy(char)))
             column = end + 1
     return problems
 

@@ -5,7 +5,7 @@ Two terms are equal when their content is equal; their places are not compared.
 
 from dataclasses import dataclass, field
 
-from kb.language.diagnostics import Span
+from kb.language.diagnostics import SourceSpan
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class Number:
     """
 
     value: int
-    span: Span = field(compare=False)
+    span: SourceSpan = field(compare=False)
 
     def __str__(self) -> str:
         """Return the integer in decimal digits."""
@@ -37,7 +37,7 @@ class Text:
     """
 
     value: str
-    span: Span = field(compare=False)
+    span: SourceSpan = field(compare=False)
 
     def __str__(self) -> str:
         """Return the string in quotes, with escapes."""
@@ -58,7 +58,7 @@ class Symbol:
 
     name: str
     args: tuple["Term", ...]
-    span: Span = field(compare=False)
+    span: SourceSpan = field(compare=False)
 
     @property
     def signature(self) -> tuple[str, int]:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kb.language.diagnostics import Problem, Span
+from kb.language.diagnostics import Problem, SourceSpan
 from kb.language.source_text import Source
 
 # Every character of a text belongs to exactly one match; the name of its group is its kind.
@@ -38,7 +38,7 @@ class Token(NamedTuple):
 
     kind: str
     text: str
-    span: Span
+    span: SourceSpan
 
     @property
     def in_words(self) -> str:
@@ -58,7 +58,7 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
         match = TOKEN_PATTERN.match(text, at)
         assert match is not None  # every character but a line end is at least a mark, and line ends are spaces
         kind, end = match.lastgroup or "", match.end()
-        span = Span(line, at - begin + 1, end - begin)
+        span = SourceSpan(line, at - begin + 1, end - begin)
         if kind == "block":
             end = _block_end(text, at)
             if end < 0:
@@ -73,7 +73,7 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
         if breaks:
             line, begin = line + breaks, text.rindex("\n", at, end) + 1
         at = end
-    yield Token("end", "", Span(line, max(1, at - begin), max(1, at - begin)))
+    yield Token("end", "", SourceSpan(line, max(1, at - begin), max(1, at - begin)))
 
 
 def _block_end(text: str, start: int) -> int:

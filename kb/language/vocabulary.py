@@ -31,7 +31,7 @@ DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)  # cou
 MAX_TABLE_SIDE = 4096  # squares along each side of a table (docs/files.md)
 
 # The predicates of world.lp.
-WORLD: Vocabulary = {
+WORLD_VOCABULARY: Vocabulary = {
     "table": (
         integer_argument("a table's width", 1, MAX_TABLE_SIDE),
         integer_argument("a table's height", 1, MAX_TABLE_SIDE),
@@ -44,7 +44,7 @@ WORLD: Vocabulary = {
 
 WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
 # The predicates of expect.lp.
-EXPECT: Vocabulary = {
+EXPECTATION_VOCABULARY: Vocabulary = {
     "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
     "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, integer_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
     "visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
@@ -93,7 +93,7 @@ CLAIMS: Vocabulary = {
     "colour": (NAME_ARGUMENT, COLOUR_ARGUMENT),
 }
 # The predicates of start.lp.
-START: Vocabulary = {
+START_VOCABULARY: Vocabulary = {
     "object": (NAME_ARGUMENT,),
     "door": (NAME_ARGUMENT,),
     "room": (NAME_ARGUMENT,),
@@ -112,14 +112,14 @@ GOAL_CONDITIONS: Vocabulary = {
     "not_through": (NAME_ARGUMENT, NAME_ARGUMENT),
 }
 # The predicates of goal.lp.
-GOAL: Vocabulary = {
+GOAL_VOCABULARY: Vocabulary = {
     **GOAL_CONDITIONS,
     "first": (_fact_of("a goal", GOAL_CONDITIONS),),
     "then": (_fact_of("a goal", GOAL_CONDITIONS),),
 }
 
 
-class Open(StrEnum):
+class Openness(StrEnum):
     """The extent to which a predicate may hold beyond what is believed."""
 
     NEVER = "never"
@@ -144,7 +144,7 @@ class BeliefPredicate(NamedTuple):
     """
 
     arguments: tuple[ArgumentType, ...]
-    open: Open
+    open: Openness
     subject: int = 0
     confident: bool = False
     settled: frozenset[str] = frozenset()
@@ -160,15 +160,15 @@ COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
 KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))  # the kinds of nodes
 NEVER_OBJECTS = frozenset({"org", "floor", "verge"})  # nodes without a shape class, colour and movability
 # The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
-BELIEF: Mapping[tuple[str, int], BeliefPredicate] = {
-    ("node", 1): BeliefPredicate((THING_ARGUMENT,), Open.UNSEEN),
-    ("object", 1): BeliefPredicate((THING_ARGUMENT,), Open.UNSEEN),
-    ("kind", 3): BeliefPredicate((THING_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNSEEN, confident=True),
-    ("child", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Open.UNSEEN, subject=1),
-    ("offset", 3): BeliefPredicate((THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN),
-    ("held", 1): BeliefPredicate((THING_ARGUMENT,), Open.NEVER),
+BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
+    ("node", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
+    ("object", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
+    ("kind", 3): BeliefPredicate((THING_ARGUMENT, KIND_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNSEEN, confident=True),
+    ("child", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNSEEN, subject=1),
+    ("offset", 3): BeliefPredicate((THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
+    ("held", 1): BeliefPredicate((THING_ARGUMENT,), Openness.NEVER),
     ("rect", 5): BeliefPredicate(
-        (THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN
+        (THING_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
     ),
     ("segment", 7): BeliefPredicate(
         (
@@ -180,30 +180,30 @@ BELIEF: Mapping[tuple[str, int], BeliefPredicate] = {
             LENGTH_ARGUMENT,
             CONFIDENCE_ARGUMENT,
         ),
-        Open.UNSEEN,
+        Openness.UNSEEN,
         confident=True,
     ),
     ("shape", 3): BeliefPredicate(
         (THING_ARGUMENT, word_argument("shape", SHAPE_CLASSES), CONFIDENCE_ARGUMENT),
-        Open.UNTOLD,
+        Openness.UNTOLD,
         0,
         True,
         NEVER_OBJECTS,
     ),
     ("colour", 3): BeliefPredicate(
-        (THING_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNTOLD, 0, True, NEVER_OBJECTS
+        (THING_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNTOLD, 0, True, NEVER_OBJECTS
     ),
-    ("movable", 2): BeliefPredicate((THING_ARGUMENT, CONFIDENCE_ARGUMENT), Open.UNTOLD, 0, True, NEVER_OBJECTS),
-    ("adjacent", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Open.UNTOLD, settled=frozenset({"org"})),
-    ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Open.UNSEEN),
-    ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Open.UNSEEN),
-    ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Open.UNSEEN),
-    ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Open.UNSEEN),
-    ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Open.UNSEEN),
+    ("movable", 2): BeliefPredicate((THING_ARGUMENT, CONFIDENCE_ARGUMENT), Openness.UNTOLD, 0, True, NEVER_OBJECTS),
+    ("adjacent", 2): BeliefPredicate((THING_ARGUMENT, THING_ARGUMENT), Openness.UNTOLD, settled=frozenset({"org"})),
+    ("room", 1): BeliefPredicate((ROOM_ARGUMENT,), Openness.UNSEEN),
+    ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Openness.UNSEEN),
+    ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
+    ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
+    ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("corner", 3): BeliefPredicate(
-        (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Open.NEVER
+        (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
     ),
-    ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Open.NEVER),
+    ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
 }
 
 

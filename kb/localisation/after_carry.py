@@ -35,8 +35,8 @@ from kb.localisation.score import (
     residual_at,
 )
 from kb.localisation.state import TrackerState
-from kb.mapping.patch import covered
-from kb.objects.held_object import ROUNDING, HeldObject, Square
+from kb.mapping.patch import patch_of_polygon
+from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, Square
 
 MAX_CLEAR_CHANCE = 0.25  # probability of a contact up to which a motion counts as clear of obstacles; tuned
 
@@ -140,7 +140,7 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
     Squares that the object may leave free are taken for floor, not for something that happens to fill them.
     """
     frame, others, nothing = state.frame, state.others(held), NO_SQUARES
-    floor = state.occupancy.supposing(covered(held.polygon).squares())
+    floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
 
     def agrees(outline: Any) -> bool:
         lying = replace(held, polygon=outline, slack=0.0, full=nothing, empty=nothing)
@@ -211,7 +211,7 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
     held_objects = {}
     for name, held in state.held_objects.items():
         far = np.hypot(*(away - Rotate(held.turned, (0.0, 0.0)).points(away)).T)
-        least = ROUNDING if state.beside_line and held.turned % 360 else 0.0
+        least = COMMAND_ROUNDING if state.beside_line and held.turned % 360 else 0.0
         held_objects[name] = replace(held, astray=float(far.max(initial=least)))
     return held_objects
 

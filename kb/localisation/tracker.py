@@ -34,7 +34,7 @@ from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, FULL, OccupancyMap
-from kb.objects.held_object import ROUNDING, HeldObject, borne_out, discounted
+from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
 from kb.perception.retina import count_ranges
 
 MAX_MOTIONS = 12  # last straight motions that are kept for re-estimation: bounds its time; tuned on random worlds
@@ -178,7 +178,7 @@ class Tracker:
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
         if isinstance(command, Turn) and state.beside_line:
-            held = replace(held, astray=max(held.astray, ROUNDING))
+            held = replace(held, astray=max(held.astray, COMMAND_ROUNDING))
             self.update_object(held)
         judged = explain_carry(self.state, self.state.surprise(command, ranges), held, motion)
         if isinstance(command, Push):
@@ -215,7 +215,7 @@ class Tracker:
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
             state = replace(state, hypotheses=chosen.hypotheses, confirmations=0)
-            held_objects = borne_out(held_objects, state.in_hand)
+            held_objects = held_or_moved(held_objects, state.in_hand)
         if chosen.reestimated is not None:
             correction = chosen.reestimated.correction
             own = state.frame.place_to_utak(*state.place)
@@ -266,7 +266,7 @@ class Tracker:
         samples, number = state.frame.samples(), len(state.observations)
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
         held_objects = {name: held.seen(samples, ranges, x, y) for name, held in state.held_objects.items()}
-        samples, counts = discounted(samples, ranges, x, y, held_objects.values())
+        samples, counts = subtract_held_objects(samples, ranges, x, y, held_objects.values())
         cells = field_statuses(occupancy, samples, counts, x, y)
         moved = tuple(object_pose(held, state.frame) for held in held_objects.values())
         observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)

@@ -12,16 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.gibbs import DRAWN, FREE, FULL, UNSEEN, Counts, costs, pictures
+from geometry.counts.gibbs import DRAWN, FREE, FULL, UNSEEN_SQUARE, Counts, costs, pictures
 from geometry.kernels.arrays import Bools, Floats, Labels, Longs
-from geometry.raster.components import Components, boxes, components
+from geometry.raster.components import Components, bounding_boxes, components
 from kb.mapping.occupancy import OPEN, MapView
 from kb.mapping.occupancy_odds import STRAY_COUNT
 
 MAX_COMPLETIONS = 12  # completions of a map; tuned on random worlds (benchmarks.campaign)
 DRAWS_PER_COMPLETION = 2  # samples drawn for each completion that is kept; tuned
 COST_WEIGHT = 0.3  # a sample that costs less by 1 is kept more often, by this power of e; tuned
-SEED = 20031  # of the random numbers; convention
+COMPLETION_SEED = 20031  # of the random numbers; convention
 FIRST_SCHEDULE = (60, 0.5)  # sweeps over a scene that was not drawn yet, and the first inverse temperature; tuned
 NEXT_SCHEDULE = (30, 1.0)  # likewise over a scene most of which was drawn before; tuned
 INTERIOR_DEPTH = 2  # squares: what is probably occupied, or free, so far from its edge is not drawn; tuned
@@ -29,8 +29,8 @@ INTERIOR_PROBABILITY = (
     0.93  # from which it is probably occupied: under a field of the last level that may miss a square
 )
 START_PROBABILITY = 0.5  # from which a square is occupied in the first sample: more likely than not
-Image = NDArray[np.int8]
-Told = tuple[int | bytes, ...]  # all that determines the samples of a scene
+OccupancyImage = NDArray[np.int8]
+SceneKey = tuple[int | bytes, ...]  # all that determines the samples of a scene
 
 
 class CompletionTask(NamedTuple):
@@ -41,7 +41,7 @@ class CompletionTask(NamedTuple):
     rows, columns : slice
         Where it lies on the arrays of the map view.
     ground : (h, w) int8
-        What is given of each square: FREE, FULL, DRAWN (to be drawn) or UNSEEN (also: squares of other scenes).
+        What is given of each square: FREE, FULL, DRAWN (to be drawn) or UNSEEN_SQUARE (also: squares of other scenes).
     first : (h, w) int8
         Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not.
     counts : Counts
@@ -50,11 +50,11 @@ class CompletionTask(NamedTuple):
 
     rows: slice
     columns: slice
-    ground: Image
-    first: Image
+    ground: OccupancyImage
+    first: OccupancyImage
     counts: Counts
 
-    def told(self, view: MapView) -> Told:
+    def told(self, view: MapView) -> SceneKey:
         """Return a key of all that determines its samples, its place included: equal keys mean equal scenes."""
         arrays = (self.ground, *self.counts)
         return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
@@ -68,7 +68,7 @@ class Completions(NamedTuple):
     west, south : int
         The square at [0, 0], map frame.
     ground : (rows, columns) int8
-        What was given of each square: FREE, FULL, DRAWN or UNSEEN.
+        What was given of each square: FREE, FULL, DRAWN or UNSEEN_SQUARE.
     images : (MAX_COMPLETIONS, rows, columns) int8
         The completions: 1 where a square is occupied.
     scenes : mapping
@@ -77,9 +77,9 @@ class Completions(NamedTuple):
 
     west: int
     south: int
-    ground: Image
-    images: Image
-    scenes: Mapping[Told, Image]
+    ground: OccupancyImage
+    images: OccupancyImage
+    scenes: Mapping[SceneKey, OccupancyImage]
 
     def at(self, x: int, y: int) -> Bools | None:
         """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool.
@@ -88,15 +88,15 @@ class Completions(NamedTuple):
         """
         row, column = y - self.south, x - self.west
         inside = 0 <= row < self.ground.shape[0] and 0 <= column < self.ground.shape[1]
-        if not inside or self.ground[row, column] == UNSEEN:
+        if not inside or self.ground[row, column] == UNSEEN_SQUARE:
             return None
         shown: Bools = self.images[:, row, column] > 0
         return shown
 
     def over(self, scene: CompletionTask, view: MapView) -> "Completions":
-        """Return the part that lies where a scene of another map view lies; UNSEEN beyond these completions."""
+        """Return the part that lies where a scene of another map view lies; UNSEEN_SQUARE beyond these completions."""
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
-        ground: Image = np.full(scene.ground.shape, UNSEEN, np.int8)
+        ground: OccupancyImage = np.full(scene.ground.shape, UNSEEN_SQUARE, np.int8)
         images = np.zeros((len(self.images), *ground.shape), np.int8)
         (high, wide), (rows, columns) = ground.shape, self.ground.shape
         top, right = max(min(high, rows - south), 0), max(min(wide, columns - west), 0)
@@ -110,7 +110,7 @@ class Completions(NamedTuple):
 NO_COMPLETIONS = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((MAX_COMPLETIONS, 0, 0), np.int8), {})
 
 
-def ground_of(view: MapView) -> Image:
+def given_squares(view: MapView) -> OccupancyImage:
     """Return what is given when completions are drawn: settled squares, and the interior of what is surely alike.
 
     Parameters
@@ -121,16 +121,16 @@ def ground_of(view: MapView) -> Image:
     Returns
     -------
     (rows, columns) int8
-        FREE, FULL, DRAWN (to be drawn) or UNSEEN.
+        FREE, FULL, DRAWN (to be drawn) or UNSEEN_SQUARE.
     """
-    ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN).astype(np.int8)
+    ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN_SQUARE).astype(np.int8)
     drawn = ground == DRAWN
     ground[drawn & _interior(view.probability > INTERIOR_PROBABILITY, INTERIOR_DEPTH)] = FULL
     ground[drawn & _interior(~view.seen | (view.probability <= STRAY_COUNT), INTERIOR_DEPTH)] = FREE
     return ground
 
 
-def draw_completions(view: MapView, ground: Image, before: Completions) -> Completions:
+def draw_completions(view: MapView, ground: OccupancyImage, before: Completions) -> Completions:
     """Draw completions that agree with all counts.
 
     Parameters
@@ -138,7 +138,7 @@ def draw_completions(view: MapView, ground: Image, before: Completions) -> Compl
     view : MapView
         The map.
     ground : (rows, columns) int8
-        What is given, as of `ground_of`.
+        What is given, as of `given_squares`.
     before : Completions
         Those of the impression before, in the same frame; scenes of which nothing new is known are taken from them.
     """
@@ -152,13 +152,13 @@ def draw_completions(view: MapView, ground: Image, before: Completions) -> Compl
     return Completions(view.west, view.south, ground, images, drawn)
 
 
-def _draw_scene(scene: CompletionTask, before: Completions) -> Image:
+def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
     """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8."""
     open_ = scene.ground == DRAWN
-    known = open_ & (before.ground != UNSEEN)
+    known = open_ & (before.ground != UNSEEN_SQUARE)
     sweeps, hot = NEXT_SCHEDULE if known.sum() > open_.sum() / 2 else FIRST_SCHEDULE
     first = np.repeat(np.where(known, before.images, scene.first), DRAWS_PER_COMPLETION, axis=0)
-    drawn = pictures(scene.ground, scene.counts, first, sweeps, hot, SEED)
+    drawn = pictures(scene.ground, scene.counts, first, sweeps, hot, COMPLETION_SEED)
     return drawn[_resample(costs(drawn, scene.ground, scene.counts))][:, open_]
 
 
@@ -170,7 +170,7 @@ def _resample(costs: Floats) -> Longs:
     return kept
 
 
-def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
+def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
     """Yield the independent scenes of a map.
 
     Parameters
@@ -178,7 +178,7 @@ def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
     view : MapView
         The map.
     ground : (rows, columns) int8
-        What is given, as of `ground_of`.
+        What is given, as of `given_squares`.
     """
     open_ = ground == DRAWN
     counts = _counts_of_drawn(view.counts, ground)
@@ -188,13 +188,13 @@ def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
     owner = labels.ravel()[counts.where[np.arange(len(counts.where)), (counts.weight > 0).argmax(1)]]
     order = np.argsort(owner, kind="stable")
     first = (view.probability > START_PROBABILITY).astype(np.int8)
-    for label, (south, west, north, east) in enumerate(boxes(labels, near.number).tolist()):
+    for label, (south, west, north, east) in enumerate(bounding_boxes(labels, near.number).tolist()):
         if label == 0 or north < 0:
             continue
         rows, columns = slice(max(south - 1, 0), north + 2), slice(max(west - 1, 0), east + 2)
         own = labels[rows, columns] == label
         part = ground[rows, columns]
-        part = np.where(own | (part != DRAWN), part, np.int8(UNSEEN))
+        part = np.where(own | (part != DRAWN), part, np.int8(UNSEEN_SQUARE))
         begin, end = np.searchsorted(owner[order], [label, label + 1])
         under = counts.of(order[begin:end])
         up, along = np.divmod(under.where, ground.shape[1])
@@ -203,7 +203,7 @@ def scenes(view: MapView, ground: Image) -> Iterator[CompletionTask]:
         yield CompletionTask(rows, columns, part, first[rows, columns], under)
 
 
-def _counts_of_drawn(counts: Counts, ground: Image) -> Counts:
+def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
     """Return what the fields that cover squares to be drawn say of these squares alone."""
     under = ground.ravel()[counts.where]
     weight = np.where(under == DRAWN, counts.weight, np.int16(0))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geometry.counts.gibbs import DRAWN
 from geometry.counts.moments import Blobs, blobs
 from geometry.kernels.arrays import Floats, Longs
-from kb.mapping.completions import NO_COMPLETIONS, Completions, draw_completions, ground_of
+from kb.mapping.completions import NO_COMPLETIONS, Completions, draw_completions, given_squares
 from kb.mapping.occupancy import MapView
 
 # All figures below were tuned on random worlds (benchmarks.campaign), unless they are derived.
@@ -107,7 +107,7 @@ def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETI
     before : CompletionSummary
         Those of the impression before, in the same frame.
     """
-    return CompletionSummary(draw_completions(view, ground_of(view), before.pictures))
+    return CompletionSummary(draw_completions(view, given_squares(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:
@@ -145,11 +145,11 @@ def part_seen_probability(found: Blobs) -> Floats:
     """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1."""
     compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
     may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
-    answer: Floats = np.where(may_be, OBJECT_PROBABILITY * seen_in_part(found.area), 0.0)
+    answer: Floats = np.where(may_be, OBJECT_PROBABILITY * chance_by_seen_squares(found.area), 0.0)
     return answer
 
 
-def seen_in_part(squares: Longs) -> Floats:
+def chance_by_seen_squares(squares: Longs) -> Floats:
     """Return how likely something that goes on unseen, and may be an object, is the one looked for.
 
     Parameters

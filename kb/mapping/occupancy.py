@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.counts.gibbs import Counts
-from geometry.counts.settle import FREE, FULL, OPEN, misfits, residue, settle
+from geometry.counts.settle import FREE, FULL, OPEN, misfits, remaining_counts, settle
 from geometry.kernels.arrays import XY, Bools, Ints, Square
 from kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
 from kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
@@ -342,7 +342,7 @@ class OccupancyMap:
 
     def _informative(self) -> Bools:
         """Return which fields still say something of open squares."""
-        _, weight, low, high = residue(self.state.ravel(), *self._fields)
+        _, weight, low, high = remaining_counts(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 
     def _keep(self, rows: Bools) -> None:

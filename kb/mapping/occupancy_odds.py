@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.settle import residue
+from geometry.counts.settle import remaining_counts
 from geometry.kernels.arrays import Floats, Ints
 
 FITTING_ROUNDS = 6  # rounds of iterative proportional fitting after an impression; tuned
@@ -93,7 +93,7 @@ class Odds:
 def _fit(logits: Logits, fields: Fields) -> None:
     """Fit the odds of open squares to the mean counts of the fields, in place."""
     where, weights = fields.where, fields.weight
-    open_, weight, low, high = residue(*fields)
+    open_, weight, low, high = remaining_counts(*fields)
     if not open_.any():
         return
     under, entry = where[open_], np.nonzero(open_)[0]

@@ -53,7 +53,7 @@ def patch_of(mask: Bools, view: MapView) -> Patch:
     return Patch(view.west + int(columns[0]), view.south + int(rows[0]), part.copy())
 
 
-def covered(polygon: Any) -> Patch:
+def patch_of_polygon(polygon: Any) -> Patch:
     """Return the patch of the squares whose open interior meets a polygon.
 
     Parameters

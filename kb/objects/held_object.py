@@ -15,23 +15,27 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from geometry.counts.uncover import uncover
+from geometry.counts.uncover import remove_covered_squares
 from geometry.kernels.arrays import Square as Square
-from kb.mapping.patch import Patch, covered, patch_of_squares
+from kb.mapping.patch import Patch, patch_of_polygon, patch_of_squares
 from kb.objects.subcell_extent import (
     NO_INSETS,
     SideValues,
     SubcellExtent,
     inset_change,
-    moved_in,
+    inset_outline,
     narrowed,
     turn_sides,
     within_play,
 )
 from kb.perception.frame import Samples
 
-WHOLE = 1e-6  # squares: a corner so close to a corner of the grid is taken to be there; rounding of floats
-ROUNDING = 1e-4  # squares: tolerance of an outline that is known exactly, but for the rounding of commands; derived
+GRID_CORNER_TOLERANCE = (
+    1e-6  # squares: a corner so close to a corner of the grid is taken to be there; rounding of floats
+)
+COMMAND_ROUNDING = (
+    1e-4  # squares: tolerance of an outline that is known exactly, but for the rounding of commands; derived
+)
 MIN_DUBIOUS_FIELDS = (
     8  # fields that a motion leaves unexplained, from which the object more likely lies elsewhere; tuned
 )
@@ -118,7 +122,7 @@ class HeldObject:
     def play(self) -> float:
         """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding."""
         play = max(self.slack, self.astray)
-        return play if play >= WHOLE else 0.0
+        return play if play >= GRID_CORNER_TOLERANCE else 0.0
 
     @property
     def lying_insets(self) -> SubcellExtent | None:
@@ -136,13 +140,13 @@ class HeldObject:
     def _quarters(self) -> int | None:
         """The number of quarter turns that it was turned; None when it lies askew."""
         quarters = round(self.turned / 90.0)
-        return quarters if abs(self.turned - 90.0 * quarters) < WHOLE else None
+        return quarters if abs(self.turned - 90.0 * quarters) < GRID_CORNER_TOLERANCE else None
 
     @cached_property
     def sure(self) -> Patch:
         """The squares that it surely covers, map frame."""
         inner = self._bound(1) if self.play else self.polygon
-        patch = EMPTY_PATCH if inner.is_empty else covered(inner)
+        patch = EMPTY_PATCH if inner.is_empty else patch_of_polygon(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
@@ -150,7 +154,7 @@ class HeldObject:
         """The squares that it covers or may cover, map frame."""
         if not self.play:
             return self.sure
-        patch = covered(self._bound(-1))
+        patch = patch_of_polygon(self._bound(-1))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
     def _bound(self, inwards: int) -> Any:
@@ -159,10 +163,10 @@ class HeldObject:
         What is known of each side is used where no motion ended early.
         """
         insets = self.lying_insets
-        if insets is not None and not self.stopped and self.play <= max(insets.play, ROUNDING):
+        if insets is not None and not self.stopped and self.play <= max(insets.play, COMMAND_ROUNDING):
             west, east, south, north = insets.plays[inwards > 0]
             far = inwards * west, inwards * east, inwards * south, inwards * north
-            outline = within_play(self.polygon, far, inwards * ROUNDING)
+            outline = within_play(self.polygon, far, inwards * COMMAND_ROUNDING)
             if outline is not None:
                 return outline
         return self.polygon.buffer(-inwards * self.play, join_style="mitre")
@@ -197,8 +201,8 @@ class HeldObject:
             for exact, unless its place is known only roughly or its sides may lie further in or out.
         """
         nothing: frozenset[Square] = frozenset()
-        placed = whole(polygon)
-        slack = max(otherwise, OUTLINE_TOLERANCE) if self.inexact else slack_of(placed, otherwise)
+        placed = snap_to_grid(polygon)
+        slack = max(otherwise, OUTLINE_TOLERANCE) if self.inexact else outline_tolerance(placed, otherwise)
         if self.insets is not None and self._quarters is not None and self.insets.play:
             slack = max(slack, self.insets.play)
         return replace(self, polygon=placed, slack=slack, full=nothing, empty=nothing)
@@ -239,7 +243,7 @@ class HeldObject:
             None when the impression agrees with no outline of possible insets, or when insets say nothing of it.
         """
         quarters = self._quarters
-        if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > ROUNDING:
+        if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
             return None
         left = narrowed(self.insets.after(quarters), self.polygon, agrees)
         return None if left is None else self.inset(left.after(-quarters))
@@ -262,11 +266,11 @@ class HeldObject:
             return None
         change = inset_change(insets, self.insets)
         if not any(change):
-            return replace(self, insets=insets, slack=max(insets.play, ROUNDING) if insets.play else self.slack)
-        polygon, first = moved_in(self.polygon, turn_sides(change, quarters)), moved_in(self.first, change)
+            return replace(self, insets=insets, slack=max(insets.play, COMMAND_ROUNDING) if insets.play else self.slack)
+        polygon, first = inset_outline(self.polygon, turn_sides(change, quarters)), inset_outline(self.first, change)
         if polygon is None or first is None:
             return None
-        lying = self.lying(polygon, max(insets.play, ROUNDING))
+        lying = self.lying(polygon, max(insets.play, COMMAND_ROUNDING))
         return replace(lying, first=first, insets=insets)
 
     def woken(self, far: float) -> "HeldObject":
@@ -284,7 +288,7 @@ class HeldObject:
         return replace(self, stuck=self.stuck + 1)
 
 
-def borne_out(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:
+def held_or_moved(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, HeldObject]:
     """Return the objects that are held or were seen to move: a grasp of any other may have missed it.
 
     Parameters
@@ -297,7 +301,7 @@ def borne_out(loads: Mapping[str, HeldObject], held: str | None) -> dict[str, He
     return {name: load for name, load in loads.items() if load.proven or name == held}
 
 
-def whole(polygon: Any) -> Any:
+def snap_to_grid(polygon: Any) -> Any:
     """Return a polygon with its corners rounded to corners of the grid if all of them lie there but for rounding.
 
     Parameters
@@ -305,16 +309,16 @@ def whole(polygon: Any) -> Any:
     polygon : shapely Polygon
         In the map frame.
     """
-    return shapely.transform(polygon, np.rint) if is_whole(polygon) else polygon
+    return shapely.transform(polygon, np.rint) if is_grid_aligned(polygon) else polygon
 
 
-def is_whole(polygon: Any) -> bool:
+def is_grid_aligned(polygon: Any) -> bool:
     """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid."""
     points = shapely.get_coordinates(polygon)
-    return bool(np.abs(points - np.rint(points)).max() < WHOLE)
+    return bool(np.abs(points - np.rint(points)).max() < GRID_CORNER_TOLERANCE)
 
 
-def slack_of(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> float:
+def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> float:
     """Return how far the true outline may lie from a believed one, in squares.
 
     Parameters
@@ -325,12 +329,12 @@ def slack_of(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> float:
         The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact: its image
         shows it exactly.
     """
-    return 0.0 if is_whole(polygon) else max(otherwise, ROUNDING)
+    return 0.0 if is_grid_aligned(polygon) else max(otherwise, COMMAND_ROUNDING)
 
 
 def initial_insets(polygon: Any) -> SubcellExtent | None:
     """Return the possible insets of the sides of an object that never moved; None when it is not on the grid."""
-    return SubcellExtent() if polygon is not None and is_whole(polygon) else None
+    return SubcellExtent() if polygon is not None and is_grid_aligned(polygon) else None
 
 
 def initial_short(polygon: Any) -> SideValues:
@@ -341,7 +345,7 @@ def initial_short(polygon: Any) -> SideValues:
     return (OUTLINE_TOLERANCE,) * 4 if insets is None else insets.short
 
 
-def discounted(
+def subtract_held_objects(
     samples: Samples, ranges: NDArray[np.int16], x: int, y: int, loads: Iterable[HeldObject]
 ) -> tuple[Samples, NDArray[np.int16]]:
     """Subtract objects that were held from an impression, so that it speaks of all else alone.
@@ -369,5 +373,5 @@ def discounted(
     for load in loads:
         possible, sure = load.possible, load.sure
         here = x - possible.west, y - possible.south, x - sure.west, y - sure.south
-        uncover(samples.columns, samples.rows, weight, left, possible.mask, sure.mask, *here)
+        remove_covered_squares(samples.columns, samples.rows, weight, left, possible.mask, sure.mask, *here)
     return samples._replace(weight=weight), left

@@ -55,7 +55,7 @@ def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInter
     return SideInterval(length, length + here - most, length + here - least)
 
 
-def may_be(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
+def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
     """Return what a rectangle may be, as far as the lengths of its sides are known.
 
     Parameters

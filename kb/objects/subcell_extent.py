@@ -98,7 +98,7 @@ def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
     return west, east, south, north
 
 
-def moved_in(polygon: Any, sides: SideValues) -> Any:
+def inset_outline(polygon: Any, sides: SideValues) -> Any:
     """Return an outline with its sides moved inwards.
 
     Parameters
@@ -147,9 +147,9 @@ def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
     Returns
     -------
     shapely Polygon or None
-        None as for `moved_in`.
+        None as for `inset_outline`.
     """
-    moved = moved_in(polygon, _as_sides(far + margin for far in inwards))
+    moved = inset_outline(polygon, _as_sides(far + margin for far in inwards))
     if moved is None:
         return None
     points, new = (shapely.get_coordinates(outline)[:-1] for outline in (polygon, moved))
@@ -158,7 +158,7 @@ def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
     return shapely.Polygon(np.where(exact & on_line, points, new))
 
 
-def depths(image: tuple[float, float, float, float]) -> SideValues:
+def last_row_coverage(image: tuple[float, float, float, float]) -> SideValues:
     """Return how much of the last row of squares on each side an image covers, from above 0 to 1 square.
 
     Parameters
@@ -189,14 +189,14 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
     """
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = polygon.bounds
-    deep = depths((x0 - west, y0 - south, x1 + east, y1 + north))
+    deep = last_row_coverage((x0 - west, y0 - south, x1 + east, y1 + north))
     halves = [_halves(*side) for side in zip(insets.least, insets.most, deep, strict=True)]
     if all(len(parts) == 1 for parts in halves):
         return insets if agrees(polygon) else None
     left = []
     for parts in product(*halves):
         part = SubcellExtent(_as_sides(p[0] for p in parts), _as_sides(p[1] for p in parts))
-        lying = moved_in(polygon, inset_change(part, insets))
+        lying = inset_outline(polygon, inset_change(part, insets))
         if lying is not None and agrees(lying):
             left.append(part)
     if not left:

@@ -25,7 +25,16 @@ Coordinate = TypeVar("Coordinate", float, Floats)
 CENTRE = (0.5, 0.5)  # the centre of square (0, 0), map frame
 SAMPLING_TIE_TOLERANCE = 1e-9  # squares: an offset so near to the line between two squares may be sampled from either
 MAX_SAMPLED_SQUARES = 16  # squares under the largest field: derived, 4 x 4
-AROUND = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))  # (east, north) of each of DIRECTIONS
+ADJACENT_OFFSETS = (
+    (0, 1),
+    (1, 1),
+    (1, 0),
+    (1, -1),
+    (0, -1),
+    (-1, -1),
+    (-1, 0),
+    (-1, 1),
+)  # (east, north) of each of DIRECTIONS
 
 
 class Samples(NamedTuple):
@@ -105,7 +114,7 @@ class Frame:
 
         They are several where the direction points between two squares.
         """
-        column, row = self.to_lattice(*AROUND[DIRECTIONS.index(direction)])
+        column, row = self.to_lattice(*ADJACENT_OFFSETS[DIRECTIONS.index(direction)])
         return [(x, y) for x in _nearest_squares(column) for y in _nearest_squares(row)]
 
     def directions(self) -> dict[Square, str]:

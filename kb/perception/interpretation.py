@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from kb.perception.regions import Percept
 from kb.reasoning.encoding_constants import encoding_constant
-from kb.reasoning.solver import KB, solve
+from kb.reasoning.solver import KB_ENCODINGS, solve
 
-INTERPRETATION = KB / "interpretation.lp"
+INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
 SHORTEST_WALL = encoding_constant(INTERPRETATION, "shortest_wall")  # squares: what is so long is surely verge
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
 FELT_OBJECT_CONFIDENCE = encoding_constant(INTERPRETATION, "felt_object")  # percent: of a thing felt not to be verge
@@ -99,7 +99,7 @@ def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mappi
         The user's encodings are wrong.
     """
     answer: dict[str, dict[str, int]] = {}
-    for atom in solve([KB / "shapes.lp", *rules], facts) or ():
+    for atom in solve([KB_ENCODINGS / "shapes.lp", *rules], facts) or ():
         if atom.match("shape", 3):
             node, shape, confidence = (str(a) for a in atom.arguments)
             known = answer.setdefault(node, {})

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from geometry.kernels.arrays import Bools
-from geometry.raster.components import boxes, components, edged
+from geometry.raster.components import bounding_boxes, components, with_edge_neighbours
 
 RowColumn = tuple[int, int]  # a square as (row, column)
-VERGE = "b"  # the colour of the verge; convention (the simulated world)
+VERGE_COLOUR = "b"  # the colour of the verge; convention (the simulated world)
 MAX_THING_LENGTH = 10  # squares that a thing may measure between floor and floor, or from a corner along a wall; tuned
 MAX_THING_EXTENT = 12  # squares: the longer side of a thing's containing rectangle, at most; tuned
 
@@ -46,7 +46,7 @@ def protrusions(floor: Bools, solid: Bools, seen: Bools) -> list[Bools]:
     found += [
         part for pocket in pockets for mask in between for part in _small_parts(mask | pocket) if (part & pocket).any()
     ]
-    unlike = {mask.tobytes(): mask for mask in found if (edged(mask) & solid & ~mask).any()}
+    unlike = {mask.tobytes(): mask for mask in found if (with_edge_neighbours(mask) & solid & ~mask).any()}
     return sorted(unlike.values(), key=lambda mask: int(mask.sum()))
 
 
@@ -65,7 +65,7 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     """
     things: list[Bools] = []
     for place, colour in felt.items():
-        if colour == VERGE or any(thing[place] for thing in things):
+        if colour == VERGE_COLOUR or any(thing[place] for thing in things):
             continue
         thing: Bools | None = None
         for part in parts:
@@ -89,7 +89,7 @@ def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     """
     things = separate_things(parts, felt)
     known = np.any(things, axis=0) if things else np.False_
-    left = [part & ~known for part in parts if not any(part[p] for p, colour in felt.items() if colour == VERGE)]
+    left = [part & ~known for part in parts if not any(part[p] for p, colour in felt.items() if colour == VERGE_COLOUR)]
     unlike = {mask.tobytes(): mask for mask in left if mask.any() and not any(mask[place] for place in felt)}
     return list(unlike.values())
 
@@ -116,7 +116,7 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
 def _small_parts(mask: Bools) -> Iterator[Bools]:
     """Yield the connected parts of a mask that are no larger than a thing."""
     parts = components(mask)
-    for n, (south, west, north, east) in enumerate(boxes(parts.labels, parts.number)[1:].tolist(), 1):
+    for n, (south, west, north, east) in enumerate(bounding_boxes(parts.labels, parts.number)[1:].tolist(), 1):
         if max(north - south, east - west) < MAX_THING_EXTENT:
             yield parts.labels == n
 

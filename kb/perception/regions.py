@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Labels, Longs
-from geometry.raster.components import boxes, components
+from geometry.raster.components import bounding_boxes, components
 from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, neighbours
 
 
@@ -165,7 +165,7 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
 
 def extents(labels: Labels, count: int) -> Longs:
     """Return the longer side of each label's containing rectangle, (count + 1,) in squares; 0 of labels not there."""
-    south, west, north, east = boxes(labels, count).T
+    south, west, north, east = bounding_boxes(labels, count).T
     longer: Longs = np.maximum(np.maximum(north - south, east - west) + 1, 0)
     return longer
 

@@ -58,7 +58,7 @@ DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
 # Argument types whose numbers mean other things after the next impression. No rule may state one as a constant.
 TRANSIENT_NUMBERS = frozenset({"neck", "convex corner"})
 # By the name of an encoding: the predicates that users' rules may use there, with their argument types.
-REACHED: Mapping[str, Interface] = {
+USER_RULE_INTERFACES: Mapping[str, Interface] = {
     "interpretation": {
         ("region", 3): (REGION_ARGUMENT, word_argument("state", ("zero", "nonzero")), CONFIDENCE_ARGUMENT),
         ("rim", 1): (REGION_ARGUMENT,),
@@ -107,6 +107,6 @@ REACHED: Mapping[str, Interface] = {
     },
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
-READ_ONLY: frozenset[Signature] = frozenset(
+READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
     {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
 )

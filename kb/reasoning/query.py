@@ -2,7 +2,8 @@
 
 A query without variables has the answer yes, no or don't know. A query with variables has the rows of values for which
 it certainly holds; when there is none, no or don't know. Besides the facts, queries can use `object(N)`, which stands
-for `kind(N, object, C)`. `kb.three_valued.evaluation` decides what is certain, possible or false, by the table `BELIEF`
+for `kind(N, object, C)`. `kb.three_valued.evaluation` decides what is certain, possible or false, by the table
+`BELIEF_PREDICATES`
 of kb.language.vocabulary; docs/files.md describes the rules.
 """
 
@@ -10,19 +11,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
 
-from kb.language.diagnostics import BadInputError, Problem, Span
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import parse_facts
-from kb.language.source_text import decode
+from kb.language.source_text import source_from_bytes
 from kb.language.terms import Fact, Number
-from kb.language.vocabulary import BELIEF
+from kb.language.vocabulary import BELIEF_PREDICATES
 from kb.reasoning.rulebook import Statement
 from kb.reasoning.worker import Worker
 
 MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
 MAX_ANSWER_ROWS = 10_000  # rows of an answer, by default; a convention
-VOCABULARY = tuple(BELIEF)  # the predicates of which queries can be made, by name and number of arguments
+QUERY_PREDICATES = tuple(
+    BELIEF_PREDICATES
+)  # the predicates of which queries can be made, by name and number of arguments
 
 
 class QueryLimitError(Exception):
@@ -108,7 +111,7 @@ class QueryEngine:
         """
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check_query(text)
-        world = parse_facts(decode("belief", "\n".join(facts).encode("utf-8")))
+        world = parse_facts(source_from_bytes("belief", "\n".join(facts).encode("utf-8")))
         request = {
             "facts": [_request_entry(fact) for fact in world],
             "query": text,
@@ -133,7 +136,7 @@ def _request_entry(fact: Fact) -> list[int | str]:
 def _query_error(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
     """Return the error `what` at a character of the query, from 1; at the whole query for 0."""
     line = text.split("\n")[0]
-    span = Span(1, at, at) if 1 <= at <= len(line) else Span(1, 1, max(1, len(line)))
+    span = SourceSpan(1, at, at) if 1 <= at <= len(line) else SourceSpan(1, 1, max(1, len(line)))
     return BadInputError([Problem("query", span, what, line, hint)])
 
 
@@ -145,6 +148,6 @@ def _check_query(text: str) -> None:
         raise _query_error(text[:100], f"a query has at most {MAX_QUERY_CHARACTERS} characters")
     if "\n" in text or "%" in text:
         raise _query_error(text, "a query is one line without comments")
-    problems = list(integers_beyond_32_bits(decode("query", text.encode("utf-8", errors="surrogateescape"))))
+    problems = list(integers_beyond_32_bits(source_from_bytes("query", text.encode("utf-8", errors="surrogateescape"))))
     if problems:
         raise BadInputError(problems)

@@ -15,7 +15,7 @@ from clingo.ast import AST, ASTType, parse_string
 
 from kb.language import operating_system
 from kb.language.diagnostics import did_you_mean
-from kb.language.vocabulary import BELIEF
+from kb.language.vocabulary import BELIEF_PREDICATES
 from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
 from kb.three_valued.aliases import rename_utak_to_org
 from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
@@ -90,7 +90,7 @@ def answer_query(
     defining = _clauses_of_rules(rules)
     defined = {clause.head.signature for clause in defining if clause.head is not None}
     for clause in clauses:
-        check_body(clause.body, {*BELIEF, *beliefs.signatures(), *defined}, names)
+        check_body(clause.body, {*BELIEF_PREDICATES, *beliefs.signatures(), *defined}, names)
     try:
         derive(defining, beliefs)
     except ClauseError as error:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from kb.language.arguments import ArgumentType
-from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
-from kb.language.reader import facts_of
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from kb.language.reader import facts_from_text
 from kb.language.source_text import Source
 from kb.language.terms import Fact
-from kb.language.vocabulary import BELIEF, Signature
-from kb.reasoning.interfaces import DEFINING_FACTS, REACHED, READ_ONLY, TRANSIENT_NUMBERS
+from kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_PREDICATES, TRANSIENT_NUMBERS, USER_RULE_INTERFACES
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
 # Predicates of encodings that users' rules do not reach, and those encodings.
@@ -32,8 +32,8 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
 }  # fmt: skip
 # The predicates that rules may use, by encoding.
 PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
-    **{name: frozenset(interface) for name, interface in REACHED.items()},
-    QUERY_INTERFACE: frozenset(BELIEF),
+    **{name: frozenset(interface) for name, interface in USER_RULE_INTERFACES.items()},
+    QUERY_INTERFACE: frozenset(BELIEF_PREDICATES),
 }
 # All predicates of the world model and of the encodings that users' rules may use.
 INTERFACE_PREDICATES = frozenset(signature for known in PREDICATES_BY_ENCODING.values() for signature in known)
@@ -92,7 +92,7 @@ class Statement:
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
         """Return the problem `what` at the statement's place, or at another line and column."""
         line, column = at or self.at
-        return self.source.problem(Span(line, column, column), what, hint)
+        return self.source.problem(SourceSpan(line, column, column), what, hint)
 
 
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
@@ -181,14 +181,16 @@ class Rulebook:
             ):
                 where = " and ".join(f"{name}.lp" for name in INTERNAL_PREDICATES[atom.signature])
                 what = f"{_form(atom.signature)} belongs to {where}, which rules of users do not reach"
-                yield one.problem(what, atom.at, f"they reach {', '.join(f'{name}.lp' for name in sorted(REACHED))}")
+                yield one.problem(
+                    what, atom.at, f"they reach {', '.join(f'{name}.lp' for name in sorted(USER_RULE_INTERFACES))}"
+                )
         for atom in one.body:
             if atom.signature not in INTERFACE_PREDICATES | self.own_predicates | self._declared | set(
                 INTERNAL_PREDICATES
             ):
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES | self.own_predicates))
         for atom in one.heads:
-            if atom.signature in READ_ONLY:
+            if atom.signature in READ_ONLY_PREDICATES:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
                 yield one.problem(what, atom.at)
             elif atom.signature in INTERFACE_PREDICATES:
@@ -198,10 +200,12 @@ class Rulebook:
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants that no encoding accepts at their place."""
-        options = [interface[atom.signature] for interface in REACHED.values() if atom.signature in interface]
+        options = [
+            interface[atom.signature] for interface in USER_RULE_INTERFACES.values() if atom.signature in interface
+        ]
         for number, constant in enumerate(atom.constants):
             if constant is not None and options:
-                term = facts_of(f"p({constant}).")[0].args[0]
+                term = facts_from_text(f"p({constant}).")[0].args[0]
                 complaints = [types[number].check(term) for types in options]
                 if options[0][number].name in TRANSIENT_NUMBERS:
                     what = f"there is no {options[0][number].name} {constant}: they are numbered anew each time"
@@ -262,7 +266,7 @@ def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Seque
     atom : the derived atom; its predicate belongs to the interface of the encoding.
     given : the facts that the encoding gets, by predicate.
     """
-    types = REACHED[encoding][atom.signature]
+    types = USER_RULE_INTERFACES[encoding][atom.signature]
     for type_, term in zip(types, atom.args, strict=True):
         complaint = type_.check(term)
         if complaint is not None:

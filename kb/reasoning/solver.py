@@ -10,8 +10,8 @@ from pathlib import Path
 
 import clingo
 
-KB = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
-ENCODING_FOLDERS = (KB, KB.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
+KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
+ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 
 
 class EncodingError(Exception):

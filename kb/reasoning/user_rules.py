@@ -14,16 +14,16 @@ from typing import Any
 
 import clingo
 
-from kb.language.diagnostics import BadInputError, Problem, Span
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.integers import integers_beyond_32_bits
-from kb.language.reader import MAX_TERM_DEPTH, facts_of
+from kb.language.reader import MAX_TERM_DEPTH, facts_from_text
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
 from kb.language.tokens import tokenize
 from kb.language.vocabulary import Signature
-from kb.reasoning.interfaces import REACHED
+from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
-from kb.reasoning.solver import KB
+from kb.reasoning.solver import KB_ENCODINGS
 from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
@@ -51,7 +51,7 @@ def read_rules(paths: Sequence[Path | str]) -> Rulebook:
     return _rulebook(tuple(read_source(path) for path in paths))
 
 
-def checked_rules(paths: Sequence[Path | str]) -> Rulebook:
+def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
     """Return the rules of some files after a test with every encoding that they reach.
 
     The test finds rules that contradict each other or never end whatever is given, and arithmetic without a result.
@@ -72,9 +72,9 @@ def checked_rules(paths: Sequence[Path | str]) -> Rulebook:
     rules = read_rules(paths)
     if rules.self_contained:
         _solved_by_worker("", "", rules.self_contained)
-    for name in REACHED:
+    for name in USER_RULE_INTERFACES:
         if reaching := rules.rules_reaching(name):
-            _solved_by_worker(f"{name}.lp", (KB / f"{name}.lp").read_text(), reaching, search=False)
+            _solved_by_worker(f"{name}.lp", (KB_ENCODINGS / f"{name}.lp").read_text(), reaching, search=False)
     if rules.query_rules:
         asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
         found = _worker().exchange(asked, MAX_RULE_SECONDS)
@@ -155,7 +155,7 @@ def solve_with_user_rules(
     program = "\n".join([encoding.read_text(), *(f"{fact}." for fact in facts)])
     found = _solved_by_worker(encoding.name, program, reaching)
     given: dict[Signature, list[Fact]] = {}
-    for fact in facts_of("".join(f"{fact}.\n" for fact in facts)):
+    for fact in facts_from_text("".join(f"{fact}.\n" for fact in facts)):
         given.setdefault(fact.signature, []).append(fact)
     for text in found["derived"]:
         atom = _as_fact(text)
@@ -201,7 +201,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], se
 def _as_fact(text: str) -> Fact | None:
     """Return the fact that a derived atom denotes; None when fact files could not express it."""
     try:
-        (fact,) = facts_of(f"{text}.")
+        (fact,) = facts_from_text(f"{text}.")
     except (BadInputError, ValueError):
         return None
     return fact
@@ -245,12 +245,12 @@ def _error_at_place(source: Source, message: str) -> BadInputError:
     line, start, end = int(place[1]), int(place[2]), int(place[3] or place[2])
     if line > len(source.lines):  # the end of the file
         line, start = len(source.lines), len(source.lines[-1])
-    return BadInputError([source.problem(Span(line, max(1, start), max(1, start, end - 1)), _one_line(place[4]))])
+    return BadInputError([source.problem(SourceSpan(line, max(1, start), max(1, start, end - 1)), _one_line(place[4]))])
 
 
-def _span(at: Sequence[int]) -> Span:
+def _span(at: Sequence[int]) -> SourceSpan:
     """Return the span of one column."""
-    return Span(at[0], at[1], at[1])
+    return SourceSpan(at[0], at[1], at[1])
 
 
 def _one_line(message: str) -> str:

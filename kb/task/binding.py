@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from kb.language.terms import Symbol
-from kb.objects.proportions import may_be
-from kb.reasoning.solver import KB, solve
+from kb.objects.proportions import possible_rectangle_shapes
+from kb.reasoning.solver import KB_ENCODINGS, solve
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 
 
-class Reconciled(NamedTuple):
+class Reconciliation(NamedTuple):
     """The objects of the world model that the task's parameters mean.
 
     Attributes
@@ -39,7 +39,7 @@ def reconcile(
     before: Mapping[str, str],
     rules: tuple[Path, ...] = (),
     carried: Iterable[str] = (),
-) -> Reconciled:
+) -> Reconciliation:
     """Return the best match of the task's object parameters with objects of the world model.
 
     Parameters
@@ -64,9 +64,9 @@ def reconcile(
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
     facts += [f"bound_before({x},{node})" for x, node in sorted(before.items())]
     found: dict[str, list[tuple[str, ...]]] = {}
-    for atom in solve([KB / "reconciliation.lp", *rules], facts) or ():
+    for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))
-    return Reconciled(
+    return Reconciliation(
         {atom[0]: atom[1] for atom in found.get("bind", ())},
         tuple(x for (x,) in found.get("hypothesised", ())),
         tuple((x, node) for x, node in found.get("doubtful", ())),
@@ -103,5 +103,5 @@ def _node_facts(node: Node) -> Iterable[str]:
         yield f"fixed({node.name})"
     if node.moved:
         yield f"moved({node.name})"
-    for shape in may_be(node.polygon, node.insets):
-        yield f"may_be({node.name},shape,{shape})"
+    for shape in possible_rectangle_shapes(node.polygon, node.insets):
+        yield f"possible_rectangle_shapes({node.name},shape,{shape})"

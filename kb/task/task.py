@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from kb.language.diagnostics import BadInputError, Problem, Span, did_you_mean
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import GOAL, RESERVED_PARAMETER_NAMES, START, Vocabulary, check_facts
+from kb.language.vocabulary import GOAL_VOCABULARY, RESERVED_PARAMETER_NAMES, START_VOCABULARY, Vocabulary, check_facts
 
 CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
 PARAMETER_KINDS = ("object", "door", "room")  # the predicates that introduce parameters
@@ -40,7 +40,7 @@ class Parameter:
 
     name: str
     kind: str
-    span: Span = field(compare=False)
+    span: SourceSpan = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Task:
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
         """Return the claims about one parameter."""
-        return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), Span(0, 0, 0)))
+        return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
 def read_task(start: Path | str, goal: Path | str) -> Task:
@@ -107,7 +107,9 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
         except BadInputError as bad:
             problems += bad.problems
             sources.append(None)
-    start_facts, goal_facts = (_checked_facts(s, v, problems) for s, v in zip(sources, (START, GOAL), strict=True))
+    start_facts, goal_facts = (
+        _checked_facts(s, v, problems) for s, v in zip(sources, (START_VOCABULARY, GOAL_VOCABULARY), strict=True)
+    )
     if problems or sources[0] is None or sources[1] is None:
         raise BadInputError(problems)
     return task_of(sources[0], start_facts, sources[1], goal_facts)
@@ -131,7 +133,7 @@ def read_start(path: Path | str) -> tuple[Fact, ...]:
     """
     source = read_source(path)
     problems: list[Problem] = []
-    start_facts = _checked_facts(source, START, problems)
+    start_facts = _checked_facts(source, START_VOCABULARY, problems)
     if not problems:
         problems = _start_problems(source, start_facts)[2]
     if problems:

@@ -6,7 +6,7 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF, KIND_ARGUMENT
+from kb.language.vocabulary import BELIEF_PREDICATES, KIND_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
@@ -25,7 +25,7 @@ def rename_utak_to_org(clause: Clause) -> Clause:
 
 def _kind_arguments(atom: Atom) -> list[int]:
     """Return the indices of the arguments of an atom that are kinds."""
-    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
+    slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     return [at for at, slot in enumerate(slots) if slot is KIND_ARGUMENT]
 
 

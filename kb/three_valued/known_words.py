@@ -5,9 +5,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 import clingo
 
 from kb.language.arguments import ArgumentType, abbreviated
-from kb.language.diagnostics import Span, did_you_mean
+from kb.language.diagnostics import SourceSpan, did_you_mean
 from kb.language.terms import Number, Symbol, Term, Text
-from kb.language.vocabulary import BELIEF, Signature
+from kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from kb.three_valued.clauses import (
     Aggregate,
     Atom,
@@ -23,7 +23,7 @@ from kb.three_valued.clauses import (
 from kb.three_valued.uncertain_values import Value
 
 ConstantNames = Mapping[str, frozenset[str]]  # constants as text, by the name of the argument type
-NO_PLACE = Span(1, 1, 1)  # the place of values that stand in no file
+NO_PLACE = SourceSpan(1, 1, 1)  # the place of values that stand in no file
 
 
 def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> ConstantNames:
@@ -39,7 +39,7 @@ def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Const
     """
     found: dict[str, set[str]] = {}
     for signature, stated in rows.items():
-        slots = BELIEF[signature].arguments if signature in BELIEF else ()
+        slots = BELIEF_PREDICATES[signature].arguments if signature in BELIEF_PREDICATES else ()
         for row in stated:
             for slot, value in zip(slots, row, strict=False):
                 if not isinstance(value, int):
@@ -58,8 +58,8 @@ def check_body(body: Sequence[Literal], known: Collection[Signature], names: Con
     """
     for atom in atoms_of(tuple(body)):
         check_predicate(atom, known)
-        if atom.signature in BELIEF:
-            for slot, part in zip(BELIEF[atom.signature].arguments, atom.parts, strict=True):
+        if atom.signature in BELIEF_PREDICATES:
+            for slot, part in zip(BELIEF_PREDICATES[atom.signature].arguments, atom.parts, strict=True):
                 check_constant(slot, part, names)
     for literals in _conjunctions(body):
         slots = {name: slot for atom in literals if isinstance(atom, Atom) for name, slot in _variable_types(atom)}
@@ -117,7 +117,7 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
 
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
     """Yield each variable among the arguments of an atom with its argument type; numbers are left out."""
-    slots = BELIEF[atom.signature].arguments if atom.signature in BELIEF else ()
+    slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     for slot, part in zip(slots, atom.parts, strict=False):
         if isinstance(part, Variable) and slot.limits is None:
             yield part.name, slot

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kb.language.vocabulary import BELIEF, BeliefPredicate, Open, Signature
+from kb.language.vocabulary import BELIEF_PREDICATES, BeliefPredicate, Openness, Signature
 from kb.three_valued.uncertain_values import Unknown, Value, compare
 
 FactRow = tuple[Value, ...]  # the arguments of one fact
@@ -35,7 +35,7 @@ class Beliefs:
                 self._rows.setdefault(OBJECT_SIGNATURE, {})[(row[0],)] = None
         self.known_names = frozenset(
             str(row[declared.subject])
-            for signature, declared in BELIEF.items()
+            for signature, declared in BELIEF_PREDICATES.items()
             for row in self._rows.get(signature, ())
         )
         counts = [row[1] for row in self._rows.get(("unseen", 2), ())]
@@ -88,7 +88,7 @@ class Beliefs:
         if not possible:
             return
         yield from list(self._possible.get(signature, ()))
-        declared = BELIEF.get(signature)
+        declared = BELIEF_PREDICATES.get(signature)
         if declared is None:
             return
         if declared.confident and not confidence_fixed:
@@ -112,11 +112,11 @@ class Beliefs:
 
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
-        if declared.open is Open.NEVER:
+        if declared.open is Openness.NEVER:
             return
         if not self.everything_seen and (subject is None or str(subject) not in self.known_names):
             yield self._row(declared, Unknown(new=True))
-        if declared.open is Open.UNTOLD:
+        if declared.open is Openness.UNTOLD:
             for thing in self._objects if subject is None else [subject]:
                 known = str(thing) in self.known_names and str(thing) not in declared.settled
                 if known and not self._stated(signature, [thing] + [None] * (len(declared.arguments) - 1)):

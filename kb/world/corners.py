@@ -12,9 +12,9 @@ import shapely
 
 from geometry.kernels.arrays import XY, Bools, Square
 from kb.mapping.occupancy import FULL
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.perception.regions import label_of
-from kb.reasoning.solver import KB, solve
+from kb.reasoning.solver import KB_ENCODINGS, solve
 from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
 WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew
@@ -55,7 +55,7 @@ def known_floor(model: WorldModel) -> Bools:
         if node.moved:
             under = model.view.state == FULL
             if node.polygon is not None:
-                under &= model.mask_within(covered(node.polygon))
+                under &= model.mask_within(patch_of_polygon(node.polygon))
             if model.floor_under_moved is not None:
                 under |= model.floor_under_moved
             mask |= (model.labels == label_of(node.region)) & under
@@ -87,7 +87,7 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
     for number, corner in enumerate(found):
         east, north = model.place_to_utak(*corner.point)
         facts.append(f"convex({number},{round(FACT_UNITS_PER_SQUARE * east)},{round(FACT_UNITS_PER_SQUARE * north)})")
-    answer = solve([KB / "corners.lp", *rules], facts) or ()
+    answer = solve([KB_ENCODINGS / "corners.lp", *rules], facts) or ()
     return {str(a.arguments[0]): found[a.arguments[1].number] for a in answer if a.match("furthest", 2)}
 
 

@@ -17,14 +17,16 @@ from geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
 from geometry.passages.necks import Segment
 from geometry.raster.components import components
 from kb.perception.interpretation import SHORTEST_WALL
-from kb.perception.protrusions import VERGE
+from kb.perception.protrusions import VERGE_COLOUR
 from kb.perception.regions import extents
 from kb.reasoning.encoding_constants import encoding_constant
-from kb.reasoning.solver import KB
+from kb.reasoning.solver import KB_ENCODINGS
 from kb.world.model import WorldModel
 
 Indices = tuple[Longs, Longs]  # the rows and the columns of some squares
-DOOR_RATIO = float(encoding_constant(KB / "rooms.lp", "door_ratio"))  # as many times as wide is the floor beside a door
+DOOR_RATIO = float(
+    encoding_constant(KB_ENCODINGS / "rooms.lp", "door_ratio")
+)  # as many times as wide is the floor beside a door
 JAMB_PROBABILITY = 0.75  # squares occupied with at least this probability are taken for parts of one thing; tuned
 WIDTH_UNCERTAINTY = 2 * math.sqrt(2)  # squares: a neck is so much wider at most if its walls end anywhere in 2 squares
 UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention
@@ -163,7 +165,7 @@ def _wall_parts(model: WorldModel) -> _WallParts:
     found = components(model.view.seen & (model.view.probability >= JAMB_PROBABILITY))
     longer = extents(found.labels, found.number)
     height, width = found.labels.shape
-    for row, column in (model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE):
+    for row, column in (model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE_COLOUR):
         label = found.labels[row, column] if 0 <= row < height and 0 <= column < width else 0
         if label:  # verge, however short it is
             longer[label] = max(longer[label], SHORTEST_WALL)

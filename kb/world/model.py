@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Labels, Square
-from geometry.raster.components import edged
+from geometry.raster.components import with_edge_neighbours
 from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, CompletionSummary
 from kb.mapping.occupancy import OPEN, MapView
 from kb.mapping.patch import Patch
@@ -29,11 +29,15 @@ from kb.perception.regions import Percept
 
 MAX_SMALL_FRAME_DOUBT = math.radians(5)  # radians: two frames that differ less may explain the same impressions; tuned
 MAX_SQUARE_SHIFT = 0.3  # squares: a square that lies elsewhere by at most this is still the same; tuned
-SPACE = 0.06  # probability: a square that is occupied at most so likely counts as floor; tuned on random worlds
+MAX_FREE_PROBABILITY = (
+    0.06  # probability: a square that is occupied at most so likely counts as floor; tuned on random worlds
+)
 MIN_OBSTACLE_PROBABILITY = (
     0.5  # a square that is occupied at least so likely may be part of a thing: more likely than not
 )
-CLEAR = 0.12  # probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
+MAX_CLEAR_PROBABILITY = (
+    0.12  # probability: a square that is occupied at most so likely, or free so, is not in doubt; tuned
+)
 PROBABLY_VERGE = 51  # percent: confidence from which a region is taken for verge: more likely than not
 FACT_UNITS_PER_SQUARE = 100  # lengths in facts, given or shown by encodings, are hundredths of squares; convention
 ROOT_NODE, FLOOR_NODE, VERGE_NODE = "org", "floor", "verge"  # names of the nodes that are no objects
@@ -243,7 +247,7 @@ class WorldModel:
         height, width = self.labels.shape
         felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
         within = {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
-        standing, near_verge = self.verge.copy(), edged(self.verge)
+        standing, near_verge = self.verge.copy(), with_edge_neighbours(self.verge)
         for patch in (self.mask(node.patch) for node in self.objects if not node.moved):
             standing |= patch & (patch & near_verge).any()  # it was felt to be a thing, and may be larger than that
         return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
@@ -316,13 +320,13 @@ def count_open_squares(mask: Bools, view: MapView) -> tuple[int, int]:
 
     mask : (rows, columns) bool, the squares of the region on the view's arrays.
     """
-    about = edged(mask)
+    about = with_edge_neighbours(mask)
     return int((about & ~determined_squares(view)).sum()), int((about & doubtful_squares(view)).sum())
 
 
 def free_squares(view: MapView) -> Bools:
     """Return the squares that were seen and are taken for floor, (rows, columns) bool."""
-    mask: Bools = view.seen & (view.probability <= SPACE)
+    mask: Bools = view.seen & (view.probability <= MAX_FREE_PROBABILITY)
     return mask
 
 
@@ -334,11 +338,19 @@ def occupied_squares(view: MapView) -> Bools:
 
 def determined_squares(view: MapView) -> Bools:
     """Return the squares that the counts settle or whose probability is close to 0 or 1, (rows, columns) bool."""
-    mask: Bools = (view.state != OPEN) | (view.probability <= SPACE) | (view.probability >= 1 - SPACE)
+    mask: Bools = (
+        (view.state != OPEN)
+        | (view.probability <= MAX_FREE_PROBABILITY)
+        | (view.probability >= 1 - MAX_FREE_PROBABILITY)
+    )
     return mask
 
 
 def doubtful_squares(view: MapView) -> Bools:
     """Return the squares that no count settles and whose probability is far from 0 and 1, (rows, columns) bool."""
-    mask: Bools = (view.state == OPEN) & (view.probability > CLEAR) & (view.probability < 1 - CLEAR)
+    mask: Bools = (
+        (view.state == OPEN)
+        & (view.probability > MAX_CLEAR_PROBABILITY)
+        & (view.probability < 1 - MAX_CLEAR_PROBABILITY)
+    )
     return mask

@@ -13,16 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Labels, Square
-from geometry.raster.components import boxes
+from geometry.raster.components import bounding_boxes
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
-from kb.mapping.patch import Patch, covered, patch_of
-from kb.objects.held_object import ROUNDING, HeldObject, initial_insets, initial_short, slack_of
+from kb.mapping.patch import Patch, patch_of, patch_of_polygon
+from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
 from kb.objects.proportions import corrected_shape
 from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
-from kb.perception.frame import AROUND, Frame
+from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE, protrusions, separate_things
+from kb.perception.protrusions import VERGE_COLOUR, protrusions, separate_things
 from kb.perception.regions import Percept, Region, label_of
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
@@ -67,7 +67,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
-    if all(colour == VERGE for colour in colours.values()):
+    if all(colour == VERGE_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
     for thing in separate_things(protrusions(free_squares(view), occupied, view.seen), colours):
@@ -143,7 +143,7 @@ class _Window(NamedTuple):
 
 def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
     """Return the parts of the map about the regions with these labels."""
-    framing = boxes(model.labels, int(model.labels.max()))
+    framing = bounding_boxes(model.labels, int(model.labels.max()))
     found = []
     for label in labels:
         south, west, north, east = framing[label].tolist()
@@ -200,7 +200,7 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
     """Return an object that was held, classified anew if its shape is open, since it was found to be larger."""
     if load.shape:
         return load
-    measured = measurer.measure_whole(covered(load.first))
+    measured = measurer.measure_whole(patch_of_polygon(load.first))
     return replace(load, shape=classify_shapes(shape_facts({load.name: measured}), rules).get(load.name, {}))
 
 
@@ -210,7 +210,7 @@ def grasped(node: Node) -> HeldObject:
         name=node.name,
         polygon=node.polygon,
         first=node.polygon,
-        slack=slack_of(node.polygon),
+        slack=outline_tolerance(node.polygon),
         insets=initial_insets(node.polygon),
         shape=node.shape,
         colour=node.colour,
@@ -258,7 +258,7 @@ def _felt_objects(
     known = [occupancy.state[occupancy.index(*square)] for square in named]
     if colour is None or all(state == FULL for state in known):
         return []
-    about = {(i + dx, j + dy) for i, j in named for dx, dy in (*AROUND, (0, 0))}
+    about = {(i + dx, j + dy) for i, j in named for dx, dy in (*ADJACENT_OFFSETS, (0, 0))}
     return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
 
 
@@ -283,7 +283,9 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
         The squares that the object covers, or may cover; map frame.
     """
     view, labels = model.view, model.labels.copy()
-    lies, sure, possible = (model.squares(p.squares()) for p in (covered(load.polygon), load.sure, load.possible))
+    lies, sure, possible = (
+        model.squares(p.squares()) for p in (patch_of_polygon(load.polygon), load.sure, load.possible)
+    )
     patch = patch_of(possible & ((view.state != FULL) | lies), view)
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
@@ -338,7 +340,7 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
         stuck=load.stuck,
         dubious=load.dubious,
         inexact=load.inexact,
-        astray=load.astray > ROUNDING,
+        astray=load.astray > COMMAND_ROUNDING,
         short=load.short,
         insets=load.lying_insets,
     )

@@ -17,13 +17,17 @@ import numpy as np
 from geometry import Passage, Screen
 from geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
 from geometry.passages.necks import Segment
-from geometry.raster.winding import crossings
-from kb.reasoning.solver import KB, solve
+from geometry.raster.winding import crossing_number
+from kb.reasoning.solver import KB_ENCODINGS, solve
 from kb.world.doors import DoorwayNeck, find_necks
 from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 
-SURE = 60  # percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)
-LIKELY_DOOR = 25  # percent: confidence from which a neck that may be a door is tried; tuned on random worlds
+MIN_DOOR_CONFIDENCE = (
+    60  # percent: confidence from which a neck counts as a door; tuned on random worlds (benchmarks.campaign)
+)
+MIN_TRIED_DOOR_CONFIDENCE = (
+    25  # percent: confidence from which a neck that may be a door is tried; tuned on random worlds
+)
 DOORWAY_REACH = 1.6  # squares: how far beyond a mouth the doorway may reach, and a room is not sure to begin; tuned
 MAX_MOUTH_DISTANCE = 1.5  # squares from a mouth within which the room behind it begins, where that is seen; tuned
 MIN_BOUND_PROBABILITY = 0.5  # verge occupied with at least this probability bounds doors: more likely than not
@@ -55,12 +59,12 @@ class Door:
     @property
     def sure(self) -> bool:
         """Whether it counts as a door."""
-        return self.confidence >= SURE
+        return self.confidence >= MIN_DOOR_CONFIDENCE
 
     @property
     def likely(self) -> bool:
         """Whether it is likely enough to be a door to be tried."""
-        return self.confidence >= LIKELY_DOOR
+        return self.confidence >= MIN_TRIED_DOOR_CONFIDENCE
 
     @property
     def width(self) -> float:
@@ -129,7 +133,7 @@ class Rooms:
         """The doors that count as such."""
         return tuple(door for door in self.doors if door.sure)
 
-    def leading(self, room: int, least: int = SURE) -> list[Door]:
+    def leading(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> list[Door]:
         """Return the doors of a room.
 
         Parameters
@@ -141,7 +145,7 @@ class Rooms:
         """
         return [door for door in self.doors if door.confidence >= least and room in door.sides]
 
-    def beyond(self, room: int, least: int = SURE) -> Bools:
+    def beyond(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> Bools:
         """Return the squares of all rooms that share a door with a room, doorways left out.
 
         Parameters
@@ -160,7 +164,7 @@ class Rooms:
         return mask
 
 
-NOTHING = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
+NO_ROOMS = Rooms((), np.zeros((0, 0), np.int32), np.zeros((0, 0), np.bool_))
 
 
 def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | None = None) -> Rooms:
@@ -219,7 +223,7 @@ def _judge_necks(
         sizes = (passage.width, 2 * passage.sides[0], 2 * passage.sides[1])
         width, one, other = (math.floor(FACT_UNITS_PER_SQUARE * size + 1e-6) for size in sizes)
         facts.append(f"neck({number},{width},{one},{other},{certainty})")
-    answer = (solve([KB / "rooms.lp", *rules], facts) if facts else None) or ()
+    answer = (solve([KB_ENCODINGS / "rooms.lp", *rules], facts) if facts else None) or ()
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer if a.match("door", 2)}
     nearest = [known[a.arguments[0].number] for a in answer if a.match("opening", 1)]
     opening = _opening(nearest[0]) if nearest else None
@@ -302,7 +306,7 @@ def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
     return mask
 
 
-def crosses(points: Floats, door: Door) -> int:
+def count_crossings(points: Floats, door: Door) -> int:
     """Return the net number of passes of a track through the neck of a door; there and back counts as none.
 
     Parameters
@@ -320,7 +324,7 @@ def crosses(points: Floats, door: Door) -> int:
     a, along = np.array(door.a), np.subtract(door.b, door.a)
     turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
     whole = float(along @ along)
-    return abs(crossings(turned, (0.0, 0.0)) - crossings(turned, (whole, 0.0)))
+    return abs(crossing_number(turned, (0.0, 0.0)) - crossing_number(turned, (whole, 0.0)))
 
 
 def went_through(track: Floats, door: Door) -> bool:
@@ -333,4 +337,4 @@ def went_through(track: Floats, door: Door) -> bool:
     door : Door
         The door.
     """
-    return any(crosses(track[: end + 1], door) for end in range(1, len(track)))
+    return any(count_crossings(track[: end + 1], door) for end in range(1, len(track)))

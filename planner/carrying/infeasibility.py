@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
 from geometry.manipulation.plan_carrying import CarryingPlan
-from kb.objects.held_object import is_whole
+from kb.objects.held_object import is_grid_aligned
 from kb.world.model import Node, WorldModel
 from planner.carrying.open_facts import possible_width
 from planner.goals.placement import lies_askew
@@ -120,10 +120,10 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
     if lies_askew(node):  # then the walls beside it are not known well either
         return "it was turned askew"
     # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against walls.
-    if model.anew and node.polygon is not None and not is_whole(node.polygon):
+    if model.anew and node.polygon is not None and not is_grid_aligned(node.polygon):
         return "it lies askew, and may have been turned before all was forgotten"
     # The robot has brought it there. When no wider passage would let it go on, it is more likely elsewhere.
-    off_grid = node.moved and not is_whole(node.polygon)
+    off_grid = node.moved and not is_grid_aligned(node.polygon)
     return "it was stopped on its way there" if off_grid and _is_blocked_elsewhere(closest_refuted(plans)) else ""
 
 

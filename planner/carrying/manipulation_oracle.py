@@ -20,8 +20,8 @@ from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCor
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
-from kb.objects.held_object import is_whole
-from kb.perception.frame import AROUND
+from kb.objects.held_object import is_grid_aligned
+from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
@@ -245,7 +245,7 @@ class ManipulationOracle:
         if key not in self._answers:
             if len(self._answers) > MAX_REMEMBERED:
                 self._answers.clear()
-            margin = min(INEXACT_MARGIN * (contacts + (not is_whole(shape))), MAX_MARGIN)
+            margin = min(INEXACT_MARGIN * (contacts + (not is_grid_aligned(shape))), MAX_MARGIN)
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
                 return plan_carrying(
@@ -282,7 +282,7 @@ def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
     In a frame that is turned these are squares at its corners.
     """
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
-    about = {(x + dx, y + dy) for x, y in covered for dx, dy in AROUND} - covered
+    about = {(x + dx, y + dy) for x, y in covered for dx, dy in ADJACENT_OFFSETS} - covered
     for x, y in about:
         if not any((x + dx, y + dy) in covered for dx, dy in ways):
             yield x + 0.5 - middle.x, y + 0.5 - middle.y

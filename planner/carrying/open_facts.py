@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import edged
-from kb.perception.protrusions import VERGE
+from geometry.raster.components import with_edge_neighbours
+from kb.perception.protrusions import VERGE_COLOUR
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import LIKELY
@@ -72,7 +72,7 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
     wall = _nearest_square(unfelt_walls(model), near)
     if wall is not None:
         return f"the wall at {model.point_in_words(wall)}, which was never felt, is a thing that can be moved"
-    unseen = _nearest_square(edged(model.space) & ~model.view.seen, near)
+    unseen = _nearest_square(with_edge_neighbours(model.space) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
     unmoved = [node for node in model.objects if not node.moved and node.confidence >= LIKELY]
@@ -81,11 +81,11 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
 
 def unfelt_walls(model: WorldModel) -> Bools:
     """Return the mask (rows, columns) of squares beside known floor on which a wall was seen and never felt."""
-    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE)
+    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_COLOUR)
     things: Bools = np.zeros_like(felt)
     for node in model.objects:
         things |= model.mask(node.patch)
-    mask: Bools = edged(model.space) & model.view.seen & ~model.space & ~felt & ~things
+    mask: Bools = with_edge_neighbours(model.space) & model.view.seen & ~model.space & ~felt & ~things
     return mask
 
 

@@ -13,7 +13,7 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside, Leg
 from geometry.motion.se2 import Rotate, Translate
 from kb.body import Grasp, Move, Release
-from kb.objects.held_object import is_whole
+from kb.objects.held_object import is_grid_aligned
 from kb.perception.frame import CENTRE
 from kb.world.model import Node, WorldModel
 from planner.advice import Act, Go, See, command_of, unplanned_act
@@ -273,7 +273,7 @@ class PlanExecutor:
         if held.stuck > 1 or self._contacts.get(held.name, 0) > bound:
             self.failed.record(held, model)
         elif held.moved and pushed is not None and self.pull:
-            doubted = self._contacts[held.name] > 1 or not is_whole(held.polygon)
+            doubted = self._contacts[held.name] > 1 or not is_grid_aligned(held.polygon)
             retreat = retreat_push(held, pushed, model, doubted)
             return Act(command_of(retreat, model), f"{held.name} is drawn back from what stopped it")
         return Act(Release(), f"{held.name} is released, because it did not move")

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from kb.mapping.occupancy import OPEN
-from kb.world.model import SPACE, Node, WorldModel
+from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from planner.advice import See
 from planner.carrying.manipulation_oracle import ManipulationPlan
 from planner.goals.placement import SURELY
@@ -33,7 +33,11 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
         return None
     unsure = found.swept & ~situation.cost_maps.free(0)
     if is_long:
-        unsure |= grown(found.swept, DETOUR_ROOM) & (model.view.state == OPEN) & (model.view.probability > SPACE)
+        unsure |= (
+            grown(found.swept, DETOUR_ROOM)
+            & (model.view.state == OPEN)
+            & (model.view.probability > MAX_FREE_PROBABILITY)
+        )
     unsure &= ~model.mask(node.patch)
     if not unsure.any():
         return None

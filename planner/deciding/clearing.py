@@ -12,7 +12,7 @@ import numpy as np
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
-from geometry.raster.geodesic import UNREACHED
+from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
 from kb.world.model import Node, WorldModel
@@ -73,7 +73,9 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
 def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; none into a mere nook."""
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
-    beyond = (without.distances[UNSEEN] != UNREACHED) & (cost_maps.distances[UNSEEN] == UNREACHED) & ~under
+    beyond = (
+        (without.distances[UNSEEN] != GEODESIC_UNREACHED) & (cost_maps.distances[UNSEEN] == GEODESIC_UNREACHED) & ~under
+    )
     if not leads_away(beyond, under):
         return []
     return ways(without, UNSEEN, np.flatnonzero(beyond), "grid")

@@ -13,11 +13,11 @@ import numpy as np
 from geometry.kernels.arrays import XY
 from kb.body import Release
 from kb.language.terms import Fact
-from kb.task.binding import Reconciled, reconcile
+from kb.task.binding import Reconciliation, reconcile
 from kb.task.task import Task
 from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
-from kb.world.rooms import NOTHING, Rooms, rooms_of
+from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
@@ -82,7 +82,7 @@ class Decider:
         self.bound: Mapping[str, str] = bound or {}
         self.stages = stages(task)
         self.attained = 0
-        self.rooms: Rooms = NOTHING
+        self.rooms: Rooms = NO_ROOMS
         self.corners: Mapping[str, Corner] = {}
         self.pursuer = pursuer or Pursuer(paths)
         self.executor = executor or PlanExecutor(pull)
@@ -130,7 +130,7 @@ class Decider:
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
 
     def _towards(
-        self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[XY]
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
     ) -> Decision | None:
         """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is."""
         conflict = self._transporter.conflict_verdict(stage, situation)
@@ -149,7 +149,9 @@ class Decider:
             return None
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
 
-    def _go(self, stage: Stage, situation: Situation, reconciled: Reconciled, track: Sequence[XY]) -> Decision | None:
+    def _go(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
+    ) -> Decision | None:
         """Return the next command towards where the robot itself shall be, or the verdict; None when it is there."""
         goals = stage.own
         if situation.model.held is not None:
@@ -223,7 +225,7 @@ class Decider:
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
-    def _reconcile(self, cost_maps: CostMaps) -> Reconciled:
+    def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
         """Return what the parameters of the task mean now, and remember it as bound."""
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = ways_to_objects(cost_maps)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.kernels.arrays import Floats
-from kb.mapping.object_heat import seen_in_part
-from kb.task.binding import Reconciled
+from kb.mapping.object_heat import chance_by_seen_squares
+from kb.task.binding import Reconciliation
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
 from planner.goals.robot_goals import Destination
@@ -44,7 +44,7 @@ class Candidate(NamedTuple):
 
 
 def subgoals_towards(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciled, to: Approach = TAKE
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciliation, to: Approach = TAKE
 ) -> list[Subgoal]:
     """Return the subgoals that may lead to where all of some goals hold.
 
@@ -118,7 +118,7 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
 
 
 def _doubtful_objects(
-    situation: Situation, reconciled: Reconciled, likely: Floats | None, to: Approach
+    situation: Situation, reconciled: Reconciliation, likely: Floats | None, to: Approach
 ) -> list[Candidate]:
     """Return the objects of the world model that may be what is looked for. likely : as of `_object_heat`."""
     cost_maps, model = situation.cost_maps, situation.model
@@ -141,7 +141,7 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
     cut = (grown(mask, 1) & ~model.view.seen).any()
-    return max(shown, float(seen_in_part(mask.sum()))) if cut else shown
+    return max(shown, float(chance_by_seen_squares(mask.sum()))) if cut else shown
 
 
 def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
@@ -177,7 +177,7 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     return [*explored, *settled, *passages]
 
 
-def _object_heat(situation: Situation, reconciled: Reconciled) -> Floats | None:
+def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
     """Return the probability (rows, columns) that a square belongs to the shape looked for; None when none is."""
     wanted = sorted(
         str(claim.fact.args[1])

@@ -12,7 +12,7 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
-from kb.task.binding import Reconciled
+from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Infeasibility
@@ -77,7 +77,7 @@ class Transporter:
         return self._origins.at(parameter, node, situation)
 
     def towards(
-        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciled, tools: Tools
+        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools
     ) -> Decision | None:
         """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
 
@@ -178,7 +178,7 @@ class Transporter:
             None if node is None or held == situation.binding.get(x) else self._lead_out(node, stage, situation, tools)
         )
 
-    def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciled, tools: Tools) -> Decision:
+    def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools) -> Decision:
         """Return the next command to find what a parameter means, or the verdict when nothing can be that."""
         immovable = dict(reconciled.unmovable).get(x)
         unseen = nowhere(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.raster.components import edged
+from geometry.raster.components import with_edge_neighbours
 from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
-from kb.world.rooms import SURE, Door, rooms_of
+from kb.world.rooms import MIN_DOOR_CONFIDENCE, Door, rooms_of
 from planner.carrying.infeasibility import Infeasibility
 from planner.goals.robot_goals import contains, out_of_sight
 from planner.navigation.subgoals import Subgoal
@@ -129,7 +129,7 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     situation : what is believed.
     """
     model = situation.model
-    rim = edged(model.mask(node.patch))
+    rim = with_edge_neighbours(model.mask(node.patch))
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
     for mask in () if alone else model.protruding:
@@ -188,7 +188,7 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
         return None
     closed = view._replace(probability=np.where(view.seen, view.probability, 1.0).astype(np.float32))
     rooms = rooms_of(replace(model, view=closed), situation.rules, model.verge | ~view.seen)
-    if (situation.next_to(began, rooms, SURE) & covered).any():
+    if (situation.next_to(began, rooms, MIN_DOOR_CONFIDENCE) & covered).any():
         return None
     rows, columns = np.nonzero(covered)
 
@@ -225,10 +225,10 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
     if goal == "around":
         hidden = covered & out_of_sight(model.verge, model, began)
         return lambda mask: bool((hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
-    beyond = situation.next_to(began, situation.rooms, SURE)
+    beyond = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
 
     def moves_the_room(mask: Bools) -> bool:
-        other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), SURE)
+        other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), MIN_DOOR_CONFIDENCE)
         return bool(other.any() and not (other & beyond).any())
 
     return moves_the_room

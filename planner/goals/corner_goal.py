@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import End, placed
+from geometry.manipulation.goals import End, shape_at_pose
 from geometry.manipulation.plan_carrying import Between, InCorner, Inside
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.components import components
-from geometry.raster.geodesic import UNREACHED, reach
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from kb.language.terms import Fact
-from kb.world.model import CLEAR, Node
+from kb.world.model import MAX_CLEAR_PROBABILITY, Node
 from planner.goals.placement import NEGLIGIBLE_LENGTH, Placement, can_leave, in_view, lands, lies_askew, region_of
 from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see
 from planner.screen.projection import grown
@@ -180,13 +180,13 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     shape = in_view(node.polygon, situation)
     hoped = FurtherCorner(side, side, situation)
     between = _between_walls(side, situation)
-    if between is not None and not (unclear & (view.probability < 1 - CLEAR)).any():
+    if between is not None and not (unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)).any():
         return _between_placement(side, between, shape)
     if not unclear.any():
         return replace(_settled_placement(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
     viewpoint = sight_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
-    may_go_on = unclear & (view.probability < 1 - CLEAR)
+    may_go_on = unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)
     if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)
     return Placement({side: near}, viewpoint.what, (viewpoint,), holds=lands(near, shape), hoped=hoped)
@@ -208,7 +208,7 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
         goal = next((one for one in goals if not lands(one, shape)), goals[-1])
         holds = _surely(end, node, shape) or lands(goals[-1], shape)
         return Placement({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
-    x0, y0, x1, y1 = placed(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
+    x0, y0, x1, y1 = shape_at_pose(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + ROTATED_ALLOWANCE, far + ROTATED_ALLOWANCE))
     loose = {} if lands(flat, shape) else {side: close}
@@ -333,5 +333,5 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
 def _reachable_floor(node: Node, situation: Situation) -> Bools:
     """Return the squares that the robot can reach, (rows, columns), when the object to be carried moves along."""
     cost_maps = situation.cost_maps
-    mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != UNREACHED
+    mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED
     return mask

@@ -7,7 +7,7 @@ from typing import Any
 
 import shapely
 
-from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, placed
+from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, shape_at_pose
 from kb.language.terms import Fact
 from planner.goals.placement import Placement
 from planner.goals.robot_goals import corner_side
@@ -93,7 +93,7 @@ def enclosing_region(end: End, shape: Any) -> Any:
     if isinstance(end, Inside):
         return end.polygon.buffer(REGION_ROUNDING)
     if isinstance(end, At):
-        return placed(shape, end.pose).buffer(REGION_ROUNDING)
+        return shape_at_pose(shape, end.pose).buffer(REGION_ROUNDING)
     if isinstance(end, Roomy):
         raise ValueError("a place on the way is no goal of a task")
     longest = 2 * shapely.minimum_bounding_radius(shape)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from geometry.manipulation.goals import placed
+from geometry.manipulation.goals import shape_at_pose
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact, Number, Text
@@ -79,7 +79,7 @@ def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
     left = (degrees.value - node.turned + 180.0) % 360.0 - 180.0
     holds = math.dist((x, y), (middle.x, middle.y)) <= POSE_TOLERANCE and abs(left) <= ANGLE_TOLERANCE
     there = Pose(x - middle.x, y - middle.y, left)
-    outline = placed(in_view(node.polygon, situation), there)
+    outline = shape_at_pose(in_view(node.polygon, situation), there)
     west, south, east, north = outline.bounds
     margin = POSE_TOLERANCE + math.hypot(east - west, north - south) * math.radians(ANGLE_TOLERANCE)
     near = Inside(outline.buffer(margin, join_style="mitre"))

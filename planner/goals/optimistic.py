@@ -8,7 +8,7 @@ of the view.
 import numpy as np
 
 from geometry.kernels.arrays import Bools
-from geometry.raster.components import edged
+from geometry.raster.components import with_edge_neighbours
 from planner.situation import Situation
 
 BEYOND = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned)
@@ -27,7 +27,7 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
     """
     unseen, wider = ~framed(situation.model.view.seen), framed(mask)
     for _ in range(BEYOND):
-        wider |= edged(wider) & unseen
+        wider |= with_edge_neighbours(wider) & unseen
     return wider
 
 

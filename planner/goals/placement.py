@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import At, End, Inside, met
+from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.rasterize import squares
 from kb.localisation.propose.larger_object import DEEPEST, SIDES
@@ -124,7 +124,7 @@ class Placement:
 
 def lands(end: End, shape: Any) -> bool:
     """Return whether a shape meets an end as it is now; both in the view frame."""
-    return met(end, shape, shape)
+    return is_goal_met(end, shape, shape)
 
 
 def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:

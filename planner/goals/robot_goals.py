@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import edged
+from geometry.raster.components import with_edge_neighbours
 from kb.language.terms import Fact, Symbol
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
@@ -272,7 +272,7 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     mask = situation.model.mask(node.patch)
     around = grown(mask, 1)
     near = around & situation.cost_maps.floor
-    touching = near & edged(mask)
+    touching = near & with_edge_neighbours(mask)
     if touching.any():
         near = touching
     squares = np.flatnonzero(near)

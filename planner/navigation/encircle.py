@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry.kernels.arrays import XY, Floats, Square
-from geometry.raster.winding import MOST, crossings, winding_way
+from geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
 from kb.world.model import Node, WorldModel
 from planner.navigation.routes import PlannedRoute
 from planner.screen.projection import UNSEEN, CostMaps
@@ -21,7 +21,7 @@ def winding(track: Sequence[XY], node: Node) -> int:
 
     track : points of the map frame, closed by its first point.
     """
-    return crossings(_centred([*track, track[0]]), pivot(node))
+    return crossing_number(_centred([*track, track[0]]), pivot(node))
 
 
 def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
@@ -45,7 +45,7 @@ def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int
     x, y = pivot(node)
     about = (x - model.view.west, y - model.view.south)
     goal = _square(track[0], model)
-    done = crossings(_centred(track), (x, y))
+    done = crossing_number(_centred(track), (x, y))
     for level in range(UNSEEN + 1):
         free = cost_maps.free(level) & ~model.mask(node.patch)
         free[cost_maps.here[1], cost_maps.here[0]] = True  # an object seen coarsely may seem to cover it
@@ -54,7 +54,11 @@ def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int
         found = {}
         for turn in (1, -1):
             number = turn - done
-            squares = winding_way(free, cost_maps.here, goal, about, number) if abs(number) <= MOST else None
+            squares = (
+                shortest_path_with_crossing_number(free, cost_maps.here, goal, about, number)
+                if abs(number) <= MAX_CROSSING_NUMBER
+                else None
+            )
             if squares and len(squares) > 1:
                 found[turn] = _route(squares, level)
         if found:

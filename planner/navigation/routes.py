@@ -11,10 +11,10 @@ import numpy as np
 
 from geometry import Screen
 from geometry.kernels.arrays import XY, Bools, Floats, Square
-from geometry.pathfinders.grid_astar import grid_way
-from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.pathfinders.grid_astar import grid_path
+from geometry.pathfinders.visibility_graph import visibility_path
 from kb.reasoning.solver import solve
-from kb.world.rooms import Door, crosses
+from kb.world.rooms import Door, count_crossings
 from planner.navigation.subgoals import ASP, TENTHS_PER_SQUARE
 from planner.screen.projection import CostMaps, Squares
 from planner.screen.sweeps import squares_along
@@ -58,12 +58,12 @@ def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's."""
-    return _single(free, visibility_way(free, _centre(start), _centre(goal)))
+    return _single(free, visibility_path(free, _centre(start), _centre(goal)))
 
 
 def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route over the squares and their eight neighbours, by A*."""
-    return _single(free, grid_way(free, _centre(start), _centre(goal)))
+    return _single(free, grid_path(free, _centre(start), _centre(goal)))
 
 
 def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
@@ -147,7 +147,7 @@ def choose_way(
 def leads_through(route: PlannedRoute, door: Door) -> bool:
     """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side."""
     points = np.array(route.squares) + 0.5
-    return bool(crosses(points, door) % 2)
+    return bool(count_crossings(points, door) % 2)
 
 
 def _centre(square: Square) -> XY:

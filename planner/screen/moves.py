@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.line_of_sight import straight
-from geometry.raster.winding import crossings
+from geometry.raster.winding import crossing_number
 from kb.body import Command, Move
 from kb.localisation.hypotheses.walk_outcomes import on_line
 from kb.perception.frame import turned
@@ -237,4 +237,4 @@ def halting(command: Command | None, place: XY, model: WorldModel) -> Command | 
 
 def _same_side(part: Sequence[Square], about: XY | None) -> bool:
     """Return whether a straight line may replace part of a path without passing `about` on its other side."""
-    return about is None or crossings(np.array([*part, part[0]]) + 0.5, about) == 0
+    return about is None or crossing_number(np.array([*part, part[0]]) + 0.5, about) == 0

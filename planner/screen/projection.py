@@ -15,17 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.components import edged
-from geometry.raster.geodesic import UNREACHED, reach
+from geometry.raster.components import with_edge_neighbours
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
 from kb.mapping.patch import Patch
-from kb.world.model import SPACE, WorldModel
+from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from planner.screen.unseen_gain import expected_gain
 
 Mask = Bools  # (rows, columns)
 Squares = NDArray[np.int64]  # flat indices on a screen: row * columns + column
 FIFTHS_PER_SQUARE = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
-LEVEL_MAX_PROBABILITY = (SPACE, 0.15, 0.3, 0.45)  # by level: a square occupied with at most this may be crossed (tuned)
+LEVEL_MAX_PROBABILITY = (
+    MAX_FREE_PROBABILITY,
+    0.15,
+    0.3,
+    0.45,
+)  # by level: a square occupied with at most this may be crossed (tuned)
 UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
 APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
@@ -100,14 +105,16 @@ class CostMaps:
         """
         for level in range(UNSEEN + 1):
             far = self.distances[level].ravel()[squares]
-            if (far != UNREACHED).any():
-                return Reached(level, float(far[far != UNREACHED].min()) / FIFTHS_PER_SQUARE + LEVEL_COST * level)
+            if (far != GEODESIC_UNREACHED).any():
+                return Reached(
+                    level, float(far[far != GEODESIC_UNREACHED].min()) / FIFTHS_PER_SQUARE + LEVEL_COST * level
+                )
         return None
 
     @cached_property
     def floor(self) -> Bools:
         """The squares that can surely be reached: those with a way at certainty level 0."""
-        mask: Bools = self.distances[0] != UNREACHED
+        mask: Bools = self.distances[0] != GEODESIC_UNREACHED
         return mask
 
     @cached_property
@@ -124,7 +131,7 @@ class CostMaps:
         view = self.model.view
         doubtful_squares = view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY)
         doubtful = grown(doubtful_squares, 1) | grown(~view.seen, 1)
-        mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= SPACE) & ~doubtful)
+        mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= MAX_FREE_PROBABILITY) & ~doubtful)
         mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
         return mask
@@ -146,7 +153,7 @@ class CostMaps:
         """
         view = self.model.view
         things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge
-        return self.believed | (self.free(APPROACH_LEVEL) & edged(things))
+        return self.believed | (self.free(APPROACH_LEVEL) & with_edge_neighbours(things))
 
     @cached_property
     def information_gain(self) -> Floats:
@@ -166,7 +173,7 @@ class CostMaps:
 class DistanceMaps:
     """The distances of all squares from the robot, by certainty level; each map is computed at its first use.
 
-    `maps[level]` is (rows, columns) int32, in fifths of squares; -1 (UNREACHED) where no way leads.
+    `maps[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
     """
 
     def __init__(self, cost_maps: CostMaps) -> None:

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Labels
-from geometry.raster.components import components, edged
-from geometry.raster.geodesic import UNREACHED
+from geometry.raster.components import components, with_edge_neighbours
+from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.mapping.occupancy import OPEN
-from kb.world.model import SPACE, Node
+from kb.world.model import MAX_FREE_PROBABILITY, Node
 from kb.world.rooms import Door
 from planner.screen.projection import FIFTHS_PER_SQUARE, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
 from planner.screen.unseen_gain import VERGE_WEIGHT
@@ -70,7 +70,7 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     """
     view = cost_maps.model.view
     edge = view.seen & grown(~view.seen, 1)
-    border = edge & (cost_maps.distances[GAP_LEVEL] != UNREACHED)
+    border = edge & (cost_maps.distances[GAP_LEVEL] != GEODESIC_UNREACHED)
     surely = grown(edge & cost_maps.floor, 1).ravel()
     stretches = [squares for squares in group_by_label(_stretches(border)) if not surely[squares].any()]
     return [Viewpoint(squares, "there may be a gap in what bounds the floor") for squares in stretches]
@@ -93,7 +93,7 @@ def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
         One for each connected stretch of such squares.
     """
     view = cost_maps.model.view
-    open_ = view.seen & (view.state == OPEN) & (view.probability > SPACE) & grown(cost_maps.floor, 1)
+    open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & grown(cost_maps.floor, 1)
     if odd:
         open_ &= view.probability < SURELY_OCCUPIED
     near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), CLOSE), 0)
@@ -111,7 +111,7 @@ def against_the_wall(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
 
     mask : (rows, columns), its squares.
     """
-    beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & edged(mask))
+    beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
 
 
@@ -163,7 +163,7 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
     doors : possible doors; those that are sure, or whose walls are settled or cannot be seen better, are left out.
     """
     view = cost_maps.model.view
-    vague = view.seen & (view.state == OPEN) & (view.probability > SPACE)
+    vague = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY)
     found = []
     for door in doors:
         ends = np.zeros(vague.shape, np.bool_)

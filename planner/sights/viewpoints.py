@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.components import components, edged
+from geometry.raster.components import components, with_edge_neighbours
 from kb.mapping.occupancy import OPEN
 from kb.world.model import Node
 from planner.screen.moves import one_move
@@ -127,7 +127,11 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
         Flat indices; empty when the robot looked from everywhere.
     """
     beside = grown(mask, 1)
-    near = _taking_squares(cost_maps, mask, to) if to.take else np.flatnonzero(cost_maps.floor & edged(mask))
+    near = (
+        _taking_squares(cost_maps, mask, to)
+        if to.take
+        else np.flatnonzero(cost_maps.floor & with_edge_neighbours(mask))
+    )
     worth_it = chance >= MIN_APPROACH_PROBABILITY or to.take
     if worth_it and len(near) and not (beside & cost_maps.looked_from).any():
         return _most_revealing(cost_maps, near, mask, chance, to) if to.take else near
@@ -152,7 +156,7 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> Squares:
     """
     surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     sides = _sides_out_of_the_way(cost_maps, surely, to)
-    for candidates in (sides, edged(mask)):
+    for candidates in (sides, with_edge_neighbours(mask)):
         met = np.flatnonzero(one_move(cost_maps, SubgoalKind.INSPECT, candidates))
         near = met if len(met) else np.flatnonzero(cost_maps.floor & candidates)
         if len(near):
@@ -165,7 +169,7 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
 
     surely : (rows, columns), the squares of the object.
     """
-    sides = edged(surely)
+    sides = with_edge_neighbours(surely)
     if to.corner is None:
         return sides
     east, north = to.corner

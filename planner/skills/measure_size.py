@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
-from geometry.manipulation.goals import At, placed
+from geometry.manipulation.goals import At, shape_at_pose
 from geometry.motion.se2 import Pose
-from kb.objects.subcell_extent import SubcellExtent, depths, moved_in
+from kb.objects.subcell_extent import SubcellExtent, inset_outline, last_row_coverage
 from kb.world.model import Node
 
 FINE = 0.12  # squares within which the inset of a side counts as known: an eighth; tuned on random worlds
@@ -71,7 +71,7 @@ def phases(node: Node) -> tuple[float | None, float | None] | None:
         return None
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = node.polygon.bounds
-    _, deep, _, high = depths((x0 - west, y0 - south, x1 + east, y1 + north))
+    _, deep, _, high = last_row_coverage((x0 - west, y0 - south, x1 + east, y1 + north))
     wanted = [_wanted_depth(insets, 0), _wanted_depth(insets, 2)]
     if wanted == [None, None]:
         return None
@@ -84,12 +84,12 @@ def least_outline(node: Node) -> Any:
 
     Its sides along the grid are moved in as far as impressions allow. node : the object.
     """
-    return node.polygon if node.insets is None else moved_in(node.polygon, node.short)
+    return node.polygon if node.insets is None else inset_outline(node.polygon, node.short)
 
 
 def _turned_back(node: Node) -> Iterator[At]:
     """Yield where an object lies along the grid as it did when it was first held, the nearest place first."""
-    x0, y0, _, _ = placed(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
+    x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)
     for dx, dy in sorted(product(offsets, repeat=2), key=lambda step: math.hypot(*step)):
         yield At(Pose(round(x0) - x0 + dx, round(y0) - y0 + dy, -node.turned))

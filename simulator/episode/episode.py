@@ -13,9 +13,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
-from simulator.episode.output_files import is_episode, keep_first, opened
+from simulator.episode.output_files import is_episode, keep_first, open_for_writing
 from simulator.episode.wellformed import HEADER_CHECK, RESULT_CHECK, STEP_CHECK, KeyPath, column
 
 EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
@@ -142,14 +142,14 @@ _JSON = json.JSONDecoder(object_pairs_hook=_object_without_duplicates, parse_con
 
 def _damaged(path: str, number: int, what: str, column: int = 1) -> BadInputError:
     """Return the error `what` at a line and a column of an episode."""
-    return BadInputError([Problem(path, Span(number, column, column), what)])
+    return BadInputError([Problem(path, SourceSpan(number, column, column), what)])
 
 
 def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
     """Return the problem of a value, placed at the key that leads to it."""
     at = column(raw.decode("utf-8"), where)
     key = ".".join(where)[:80]
-    return Problem(path, Span(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
+    return Problem(path, SourceSpan(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
 
 
 class EpisodeLog:
@@ -177,7 +177,7 @@ class EpisodeLog:
             return
         if resume and not Path(path).exists():
             raise CannotOpenError(str(path), "there is no such episode to go on from")
-        self._stream = opened(path, is_episode, "episode", force)
+        self._stream = open_for_writing(path, is_episode, "episode", force)
         try:
             if resume:
                 self._recorded = complete_lines(path)

@@ -21,7 +21,7 @@ def is_episode(head: bytes) -> bool:
     return bool(re.match(rb'\s*\{\s*"utak"\s*:\s*"episode"', head)) or EPISODE_START.startswith(head)
 
 
-def is_rows(head: bytes) -> bool:
+def is_json_lines(head: bytes) -> bool:
     """Return whether a file with these first bytes holds JSON objects."""
     return head.lstrip().startswith(b"{")
 
@@ -31,7 +31,7 @@ def is_svg(head: bytes) -> bool:
     return re.match(rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<svg\b", head, re.DOTALL) is not None
 
 
-def opened(path: Path | str, kind: Kind, name: str, force: bool = False) -> BinaryIO:
+def open_for_writing(path: Path | str, kind: Kind, name: str, force: bool = False) -> BinaryIO:
     """Return a file for writing, positioned at its start, with its contents kept; a new file is made if needed.
 
     The file is locked until it is closed. A pipe or a device is returned as it is.
@@ -91,13 +91,13 @@ def write_whole(path: Path | str, text: str, kind: Kind, name: str, force: bool 
     ----------
     path : the file.
     text : the whole new contents.
-    kind, name, force : which files may be overwritten, as for `opened`.
+    kind, name, force : which files may be overwritten, as for `open_for_writing`.
 
     Raises
     ------
     CannotOpenError : the file cannot be written, is of another kind, or another process writes to it.
     """
-    stream = opened(path, kind, name, force)
+    stream = open_for_writing(path, kind, name, force)
     try:
         keep_first(stream, 0)
         stream.write(text.encode("utf-8"))

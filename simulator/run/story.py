@@ -6,9 +6,9 @@ from typing import Any, NamedTuple, Protocol
 
 import shapely
 
-from kb.language.diagnostics import BadInputError, Problem, Span
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import parse_facts
-from kb.language.source_text import decode
+from kb.language.source_text import source_from_bytes
 from simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, read_episode
 from simulator.episode.record import recorded_world
 from simulator.run.robots import make_robot
@@ -157,11 +157,11 @@ class RecordedStory:
         """The world model at the current step, as well-formed facts."""
         facts = facts_of_line(self.line)
         try:
-            parse_facts(decode(self._name, "\n".join(facts).encode("utf-8")))
+            parse_facts(source_from_bytes(self._name, "\n".join(facts).encode("utf-8")))
         except BadInputError as bad:
             first = bad.problems[0]
             what = f"belief.facts, number {first.span.line}: {first.what}: the episode is damaged"
-            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
+            raise BadInputError([Problem(self._name, SourceSpan(self._at + 2, 1, 1), what)]) from None
         return facts
 
     def picture(self) -> str:
@@ -173,7 +173,7 @@ class RecordedStory:
             return draw(world, polygons, (x, y))
         except (ValueError, shapely.errors.ShapelyError):  # a boundary that crosses itself, say
             what = f"step {self._at} does not record a table that can be drawn: the episode is damaged"
-            raise BadInputError([Problem(self._name, Span(self._at + 2, 1, 1), what)]) from None
+            raise BadInputError([Problem(self._name, SourceSpan(self._at + 2, 1, 1), what)]) from None
 
 
 def open_story(path: Path | str, settings: Settings) -> Story:
@@ -198,7 +198,7 @@ def open_story(path: Path | str, settings: Settings) -> Story:
         return LiveStory(lambda: Session(scenario, settings, make_robot, EpisodeLog(None)))
     episode = read_episode(path)
     if not episode.steps:
-        raise BadInputError([Problem(str(path), Span(1, 1, 1), "the episode ends before its first step")])
+        raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), "the episode ends before its first step")])
     return RecordedStory(str(path), episode)
 
 

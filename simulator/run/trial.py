@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from simulator.episode.episode import EpisodeLog
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, Session
@@ -51,7 +51,7 @@ def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioT
     scenario = read_scenario(folder)
     if scenario.expectations is None:
         where = str(Path(folder) / "expect.lp")
-        raise BadInputError([Problem(where, Span(1, 1, 1), "a test needs expect.lp, which is missing")])
+        raise BadInputError([Problem(where, SourceSpan(1, 1, 1), "a test needs expect.lp, which is missing")])
     session = Session(scenario, settings or Settings(), make_robot, EpisodeLog(None))
     result = session.run()
     faults = list(_faults(result, should_fail(scenario.expectations)))

@@ -15,9 +15,9 @@ from contextlib import suppress
 from pathlib import Path
 
 import geometry
-from geometry.kernels.jit import tell
+from geometry.kernels.jit import announce_compiling
 from kb.language.operating_system import end_with_parent, read_lines_from_parent
-from utak_command import beside
+from utak_command import isolated_command
 
 # The folders of our packages.
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
@@ -36,7 +36,7 @@ def warm(carrying: bool, paths: str = "skeleton") -> None:
     missing = uncompiled([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
     if not missing:
         return
-    tell()
+    announce_compiling()
     mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
     _compile_in_two_processes([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
@@ -66,7 +66,7 @@ def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequen
 
 def second_process_command(uses: Sequence[Callable[[], None]]) -> list[str]:
     """Return the command line of the process that compiles for some uses."""
-    return beside("simulator.run.warming", *(use.__name__ for use in uses))
+    return isolated_command("simulator.run.warming", *(use.__name__ for use in uses))
 
 
 def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
@@ -119,9 +119,9 @@ def search() -> None:
     import numpy as np
 
     from geometry.raster.geodesic import reach
-    from geometry.routes.queries import rehearse
+    from geometry.routes.queries import compile_route_kernels
 
-    rehearse()
+    compile_route_kernels()
     reach(np.ones((2, 2), np.bool_), 0, 0)
 
 
@@ -131,9 +131,9 @@ def see() -> None:
 
     from geometry.counts.gibbs import DRAWN, Counts, pictures
     from geometry.counts.moments import blobs
-    from geometry.raster.components import boxes, components
+    from geometry.raster.components import bounding_boxes, components
 
-    boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
+    bounding_boxes(components(np.ones((2, 2), np.bool_)).labels, 1)
     drawn, full = np.full((1, 1), DRAWN, np.int8), np.ones((1, 1), np.int8)
     one = np.ones(1, np.int16)
     counts = Counts(np.zeros((1, 1), np.int32), np.ones((1, 1), np.int16), one, one)
@@ -145,30 +145,30 @@ def tell_counts() -> None:
     """Call the kernels that derive squares from counts."""
     import numpy as np
 
-    from geometry.counts.contradictions import contradicting
-    from geometry.counts.settle import misfits, residue, settle
-    from geometry.counts.uncover import uncover
+    from geometry.counts.contradictions import total_contradictions
+    from geometry.counts.settle import misfits, remaining_counts, settle
+    from geometry.counts.uncover import remove_covered_squares
 
     where, one = np.zeros((1, 2), np.int32), np.ones(1, np.int16)
     fields = where, np.array([[1, 0]], np.int16), one, one
     settle(np.full(1, -1, np.int8), np.full(1, -1, np.int16), *fields, np.ones(1, np.bool_), 0)
     misfits(np.ones(1, np.int8), *fields, np.zeros(1, np.bool_))
-    residue(np.ones(1, np.int8), *fields)
+    remaining_counts(np.ones(1, np.int8), *fields)
     field, ranges, mask = np.zeros((1, 1), np.int32), np.zeros((1, 1, 2), np.int16), np.ones((1, 1), np.bool_)
     weight = np.ones((1, 1), np.int16)
-    contradicting(field, field, weight, one, np.zeros((1, 2), np.int64), ranges, np.zeros((0, 3)))
-    uncover(field, field, weight, ranges[0], mask, mask, 0, 0, 0, 0)
+    total_contradictions(field, field, weight, one, np.zeros((1, 2), np.int64), ranges, np.zeros((0, 3)))
+    remove_covered_squares(field, field, weight, ranges[0], mask, mask, 0, 0, 0, 0)
 
 
 def sightlines() -> None:
     """Call the kernels that follow lines of sight, as `--paths visibility` does."""
     import numpy as np
 
-    from geometry.pathfinders.visibility_graph import visibility_way
+    from geometry.pathfinders.visibility_graph import visibility_path
 
     free = np.ones((5, 5), np.bool_)
     free[2, 2] = False
-    visibility_way(free, (0.5, 2.5), (4.5, 2.5))
+    visibility_path(free, (0.5, 2.5), (4.5, 2.5))
 
 
 def change() -> None:
@@ -220,12 +220,12 @@ def walk() -> None:
     from geometry.motion.se2 import Translate
     from geometry.raster.line_of_sight import straight
     from geometry.raster.rasterize import squares
-    from geometry.raster.winding import winding_way
+    from geometry.raster.winding import shortest_path_with_crossing_number
 
     free = np.ones((3, 3), np.bool_)
     free[1, 1] = False
     straight(free, 0, 0, 2)
-    winding_way(free, (0, 0), (0, 0), (1.5, 1.5), 1)
+    shortest_path_with_crossing_number(free, (0, 0), (0, 0), (1.5, 1.5), 1)
     squares(shapely.box(0, 0, 1, 1), 1, 1)
     Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(ContactBody(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 

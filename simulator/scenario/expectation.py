@@ -12,7 +12,7 @@ from kb.language.diagnostics import BadInputError, Problem, did_you_mean
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Text
-from kb.language.vocabulary import EXPECT, check_facts
+from kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
 from kb.language.wkt import parse_wkt
 from simulator.world.world import World, outer_ring
 
@@ -56,7 +56,7 @@ def read_expectations(path: Path | str, world: World | None) -> tuple[Fact, ...]
     """
     source = read_source(path)
     facts = parse_facts(source)
-    problems = check_facts(source, facts, EXPECT)
+    problems = check_facts(source, facts, EXPECTATION_VOCABULARY)
     if not facts:
         hint = "such as within(50). or fails.; without expected facts leave the file out"
         problems = [source.problem(source.start(), "nothing is expected: expect.lp is empty", hint)]

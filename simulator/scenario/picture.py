@@ -15,7 +15,7 @@ import numpy.typing as npt
 import shapely
 
 from geometry.raster.rasterize import squares
-from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, Span
+from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Problem, SourceSpan
 from kb.language.source_text import Source, read_source
 from simulator.world.world import VERGE_COLOUR, Thing, World
 
@@ -62,7 +62,9 @@ def _bad_rows(source: Source, rows: list[str]) -> Iterator[Problem]:
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]) or not row:
             what = f"{len(row)} squares in this row, {len(rows[0])} in the first"
-            yield source.problem(Span(number, 1, max(1, len(row))), what, "one character a square: write . for floor")
+            yield source.problem(
+                SourceSpan(number, 1, max(1, len(row))), what, "one character a square: write . for floor"
+            )
             return
 
 
@@ -71,7 +73,7 @@ def _bad_marks(source: Source, rows: list[str]) -> Iterator[Problem]:
     found = []
     for number, row in enumerate(rows, 1):
         for match in re.finditer("[^a-z.]", row):
-            span = Span(number, match.start() + 1, match.start() + 1)
+            span = SourceSpan(number, match.start() + 1, match.start() + 1)
             if match[0] == UTAK_MARK:
                 found.append(span)
             else:

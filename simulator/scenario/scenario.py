@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.terms import Fact
 from kb.task.task import Task, read_task
 from simulator.scenario.expectation import read_expectations
@@ -81,7 +81,7 @@ def read_any_world(folder: Path | str) -> World:
     facts, picture = folder / "world.lp", folder / "world.txt"
     if facts.exists() and picture.exists():
         what = "the scenario has two worlds, world.lp and world.txt"
-        raise BadInputError([Problem(str(picture), Span(1, 1, 1), what, hint="keep one of them")])
+        raise BadInputError([Problem(str(picture), SourceSpan(1, 1, 1), what, hint="keep one of them")])
     if picture.exists():
         return read_picture(picture)
     if not facts.exists():

@@ -42,7 +42,9 @@ def kb_files_named(paths: list[str]) -> tuple[str, ...]:
     BadInputError : the rules have errors.
     """
     if paths:
-        from kb.reasoning.user_rules import checked_rules  # imported only when there are users' rules: it takes time
+        from kb.reasoning.user_rules import (
+            read_tested_rules,  # imported only when there are users' rules: it takes time
+        )
 
-        checked_rules(paths)
+        read_tested_rules(paths)
     return tuple(paths)

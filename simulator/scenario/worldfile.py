@@ -11,7 +11,7 @@ from kb.language.diagnostics import BadInputError, Problem
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Text
-from kb.language.vocabulary import WORLD, check_facts
+from kb.language.vocabulary import WORLD_VOCABULARY, check_facts
 from kb.language.wkt import parse_wkt
 from simulator.world.world import VERGE_COLOUR, Thing, World
 
@@ -49,7 +49,7 @@ def read_world(path: Path | str) -> World:
     """
     source = read_source(path)
     facts = parse_facts(source)
-    problems = check_facts(source, facts, WORLD) or list(_counts(source, facts))
+    problems = check_facts(source, facts, WORLD_VOCABULARY) or list(_counts(source, facts))
     if problems:
         raise BadInputError(problems)
     return _world(source, facts)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, did_you_mean
-from kb.reasoning.query import VOCABULARY, QueryEngine, QueryLimitError
+from kb.reasoning.query import QUERY_PREDICATES, QueryEngine, QueryLimitError
 from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story
 from simulator.terminal.action_in_words import describe
@@ -54,7 +54,7 @@ class Prompt:
 
     def words(self) -> list[str]:
         """Return the words that can be completed: commands and names of predicates."""
-        return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in VOCABULARY)])
+        return sorted([*self._commands, "quit", *(f"{name}(" for name, _ in QUERY_PREDICATES)])
 
     def obey(self, line: str) -> bool:
         """Execute a line. Return False when it says to quit. Errors are printed, not raised."""

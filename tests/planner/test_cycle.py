@@ -10,7 +10,7 @@ import pytest
 
 from benchmarks.harness.trial import Conditions, run_trial
 from kb.body import Command, Impression, Move
-from kb.language.diagnostics import Span
+from kb.language.diagnostics import SourceSpan
 from kb.language.terms import Symbol
 from kb.perception.frame import turned
 from kb.task.task import Claim, Parameter, Task
@@ -23,7 +23,7 @@ from planner.stages import constraints, stages
 from tests.kb.drawings import seen_whole
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
-NOWHERE = Span(0, 0, 0)
+NOWHERE = SourceSpan(0, 0, 0)
 
 
 class DrawnBody:

@@ -1,12 +1,12 @@
 """The stages of a task: its steps in order, each as often as it is stated."""
 
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.task.task import Task
 from planner.stages import stages
 
 
 def test_a_repeated_step_is_a_stage_of_its_own() -> None:
-    goals = facts_of("first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
+    goals = facts_from_text("first(at(utak, start)). then(at(utak, corner(northeast))). then(at(utak, start)).")
     found = stages(Task({}, (), goals))
     assert [str(stage) for stage in found] == ["at(utak,start)", "at(utak,corner(northeast))", "at(utak,start)"]
     assert [stage.followed for stage in found] == [True, True, False]

@@ -17,7 +17,7 @@ from kb.localisation.hypotheses.frames import Position
 from kb.mapping.completions import Completions
 from kb.mapping.obstacle_chance import ObstacleChance
 from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import HeldObject, Square
 
 LIKELIEST_ODDS_GAP = 1.0  # log odds within which squares count as the likeliest ones; tuned on random worlds
@@ -144,7 +144,7 @@ def suspected_squares(
     if outcome is None or not outcome.stopped or not held.proven:
         return NO_SQUARES
     place, polygon = advance(outcome.place, outcome.polygon, motion)
-    there = covered(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}
+    there = patch_of_polygon(polygon).squares() | {(math.floor(place[0]), math.floor(place[1]))}
     there -= replace(held, polygon=outcome.polygon, full=NO_SQUARES, empty=NO_SQUARES).possible.squares()
     there.discard((math.floor(outcome.place[0]), math.floor(outcome.place[1])))
     state = {square: occupancy.state[occupancy.index(*square)] for square in there}

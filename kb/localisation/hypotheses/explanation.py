@@ -13,7 +13,7 @@ from kb.mapping.occupancy import OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import CENTRE, Frame, Samples
 from kb.perception.retina import FIELDS
-from kb.reasoning.solver import KB, solve
+from kb.reasoning.solver import KB_ENCODINGS, solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
 MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
@@ -151,7 +151,7 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
         if e.chance is not None:
             price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_PRICED_CHANCE)))
             offered.append(f"unlikely({number},{price})")
-    answer = solve([KB / "accommodation.lp"], [*offered, *facts])
+    answer = solve([KB_ENCODINGS / "accommodation.lp"], [*offered, *facts])
     if not answer:
         raise AssertionError("accommodation.lp always has an answer")
     return explanations[answer[0].arguments[0].number]

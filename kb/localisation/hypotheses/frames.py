@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.contradictions import contradicting
+from geometry.counts.contradictions import total_contradictions
 from kb.perception.frame import CENTRE, Frame
 
 Position = tuple[float, float]  # (x, y) or (east, north) in squares; the frame is named where it is used
@@ -173,7 +173,7 @@ def count_contradictions_at(
     """
     apart = [(*frame.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
     discs = np.array(apart, np.float64).reshape(-1, 3)
-    return contradicting(*frame.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
+    return total_contradictions(*frame.samples(), np.ascontiguousarray(squares), np.ascontiguousarray(ranges), discs)
 
 
 def prune_hypotheses(

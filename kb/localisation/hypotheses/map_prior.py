@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.counts.gibbs import DRAWN, EDGE, FULL, costs, pictures
+from geometry.counts.gibbs import DRAWN, EDGE_COST, FULL, costs, pictures
 from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
 from kb.localisation.hypotheses.remap import remap
-from kb.mapping.completions import SEED, CompletionTask, Image, Told, ground_of, scenes
+from kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
 from kb.mapping.occupancy import OccupancyMap
 from kb.perception.frame import Frame
 
@@ -40,7 +40,7 @@ MAX_REDRAWS = 2  # times that close maps are drawn once more; tuned
 OBLIQUE_COST = 4.5  # log odds against any one orientation but Utak's own axes; about ln 90, for 90 orientations
 SEEDS_PER_EFFORT = 16  # random seeds reserved for each effort: more than completions in any effort
 Effort = tuple[int, int]
-DrawnScenes = dict[Told, tuple[float, Image]]
+DrawnScenes = dict[SceneKey, tuple[float, OccupancyImage]]
 SquaresKey = tuple[int, bytes]
 
 
@@ -55,7 +55,7 @@ class MapDescription:
     def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None) -> None:
         """Begin with no completion. drawn : completions of scenes of this or other maps; new ones are added to it."""
         self._view = occupancy.view()
-        self._ground = ground_of(self._view)
+        self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
         self._least = [np.inf] * len(self._scenes)
         self._image = (self._ground == FULL).astype(np.int8)
@@ -71,14 +71,14 @@ class MapDescription:
         for number, scene in enumerate(self._scenes):
             key = (*scene.told(self._view), *effort, self._rounds)
             if key not in self._drawn:
-                self._drawn[key] = _simplest(scene, effort, SEED + SEEDS_PER_EFFORT * self._rounds)
+                self._drawn[key] = _simplest(scene, effort, COMPLETION_SEED + SEEDS_PER_EFFORT * self._rounds)
             least, image = self._drawn[key]
             if least < self._least[number]:
                 self._least[number] = least
                 open_ = scene.ground == DRAWN
                 self._image[scene.rows, scene.columns][open_] = image[open_]
         self._rounds += 1
-        self.price = self.cost(EDGE)
+        self.price = self.cost(EDGE_COST)
         return self.price
 
     def cost(self, edge: float) -> float:
@@ -92,7 +92,7 @@ class MapDescription:
         return bends / max(self.price - bends, LOG_ODDS_PER_COST)
 
 
-def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, Image]:
+def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, OccupancyImage]:
     """Return the cost of the simplest of some completions of a scene, and the completion."""
     number, sweeps = effort
     first = np.repeat(scene.first[None], number, axis=0)

@@ -15,12 +15,12 @@ import numpy as np
 import shapely
 
 from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.components import components, edged
+from geometry.raster.components import components, with_edge_neighbours
 from geometry.shapes.fit import fit_shapes
 from kb.localisation.hypotheses.frames import ObjectPose, Observation, Position, observation_squares
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
-from kb.mapping.patch import Patch, covered
-from kb.objects.held_object import HeldObject, discounted, is_whole, whole
+from kb.mapping.patch import Patch, patch_of_polygon
+from kb.objects.held_object import HeldObject, is_grid_aligned, snap_to_grid, subtract_held_objects
 from kb.objects.subcell_extent import SubcellExtent
 from kb.perception.frame import Frame
 
@@ -95,7 +95,7 @@ class MapReplay:
             moved = [(self._taken[pose.name], pose) for pose in observation.moved if pose.name in self._taken]
             there = [_moved_to(taken, held_objects[pose.name], pose, self.new) for taken, pose in moved]
             x, y = (math.floor(v) for v in self.new.place_from_utak(*observation.place))
-            freed = discounted(self.new.samples(), observation.ranges, x, y, there)
+            freed = subtract_held_objects(self.new.samples(), observation.ranges, x, y, there)
             self._residual += self._occupancy.clashes(*freed, x, y)
             self._occupancy.observe(*freed, x, y, number)
             if number == 0:
@@ -245,14 +245,16 @@ def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMa
     askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_centroid(held.first, old))
     first, skewed = _placed(held.first, skew, middle), held.skewed or abs(askew) > MAX_FRAME_SKEW
-    straight = is_whole(held.first)
-    seen = None if straight and abs(askew) <= MAX_FRAME_SKEW else _fitted_outline(covered(first), occupancy)
+    straight = is_grid_aligned(held.first)
+    seen = None if straight and abs(askew) <= MAX_FRAME_SKEW else _fitted_outline(patch_of_polygon(first), occupancy)
     if seen is not None:
         first, skewed = seen, False
     elif straight:
         first = _straightened(Rotate(askew, middle).carry(first), occupancy)
     lying = held.lying(first)
-    insets = held.insets if skew == 0.0 and seen is None else SubcellExtent() if is_whole(lying.polygon) else None
+    insets = (
+        held.insets if skew == 0.0 and seen is None else SubcellExtent() if is_grid_aligned(lying.polygon) else None
+    )
     return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
 
 
@@ -260,7 +262,9 @@ def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
     """Return an outline with its corners on grid corners, shifted to where the map contradicts it least."""
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
-    lying = [whole(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in CORNER_STEPS]
+    lying = [
+        snap_to_grid(shapely.transform(nearest, lambda points, s=step: points + np.array(s))) for step in CORNER_STEPS
+    ]
     return min(lying, key=lambda other: _count_disagreements(other, occupancy))
 
 
@@ -284,9 +288,9 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
 
 def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
     """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it."""
-    patch = covered(polygon)
+    patch = patch_of_polygon(polygon)
     own = np.pad(patch.mask, 1)
-    about = edged(own)
+    about = with_edge_neighbours(own)
     state = occupancy.window(patch.west - 1, patch.south - 1, own.shape)
     return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
 

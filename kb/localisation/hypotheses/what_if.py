@@ -36,7 +36,7 @@ from kb.localisation.hypotheses.frames import (
 from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, ReplayPrefixes
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import OccupancyMap
-from kb.objects.held_object import HeldObject, discounted
+from kb.objects.held_object import HeldObject, subtract_held_objects
 from kb.perception.frame import Frame
 
 MAX_JUDGING_OBSERVATIONS = 24  # last observations by which frames are judged once objects were moved; tuned
@@ -283,7 +283,7 @@ class Surprise:
     def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
         """Return a copy of the map with the observation integrated at `place`, and the objects as in `held_objects`."""
         x, y = (math.floor(v) for v in place)
-        samples, counts = discounted(self.frame.samples(), self.ranges, x, y, held_objects)
+        samples, counts = subtract_held_objects(self.frame.samples(), self.ranges, x, y, held_objects)
         occupancy = self.occupancy.copy()
         occupancy.observe(samples, counts, x, y, len(self.observations))
         return occupancy
@@ -344,4 +344,4 @@ def count_clashes(
     only_whether : ask only whether there are any; then the number may be too small, though not 0.
     """
     x, y = math.floor(place[0]), math.floor(place[1])
-    return occupancy.clashes(*discounted(frame.samples(), ranges, x, y, held_objects), x, y, only_whether)
+    return occupancy.clashes(*subtract_held_objects(frame.samples(), ranges, x, y, held_objects), x, y, only_whether)

@@ -14,8 +14,8 @@ from kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome,
 from kb.localisation.hypotheses.frames import Position
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.occupancy import FULL
-from kb.mapping.patch import covered
-from kb.objects.held_object import WHOLE, HeldObject
+from kb.mapping.patch import patch_of_polygon
+from kb.objects.held_object import GRID_CORNER_TOLERANCE, HeldObject
 
 MIN_CROWDED_SQUARES = 4  # newly occupied squares right beside a turned object from which its turn is doubted; tuned
 CROWDED_DISTANCE = 1.0  # squares around an object in which those are counted: its neighbours
@@ -88,7 +88,9 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
     """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
     moved = held.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (held, moved))
-    whole = before < WHOLE  # not turned at all, or all the way round: then how far it is astray is unknown
+    whole = (
+        before < GRID_CORNER_TOLERANCE
+    )  # not turned at all, or all the way round: then how far it is astray is unknown
     return moved if whole else replace(moved, astray=held.astray * after / before)
 
 
@@ -98,6 +100,6 @@ def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldOb
     held : the object where it lies now. others : all other held objects. place : of Utak now, map frame.
     """
     before, after = surprise.occupancy, surprise.map_after([*others, held], place)
-    about = covered(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
+    about = patch_of_polygon(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
     new = [square for square in about if before.state[before.index(*square)] != FULL]
     return sum(after.state[after.index(*square)] == FULL for square in new)

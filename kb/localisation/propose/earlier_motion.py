@@ -33,8 +33,8 @@ from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
 from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
 from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
-from kb.mapping.patch import covered
-from kb.objects.held_object import HeldObject, Square, is_whole
+from kb.mapping.patch import patch_of_polygon
+from kb.objects.held_object import HeldObject, Square, is_grid_aligned
 from kb.perception.frame import Frame
 
 MAX_MOTIONS_WITH_ORIGIN = 4  # last motions that are re-estimated together with the origin: bounds the time; tuned
@@ -230,7 +230,7 @@ def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Posi
     An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     the observation is made.
     """
-    if not is_whole(held.first):
+    if not is_grid_aligned(held.first):
         return shift
     frame, observation = surprise.frame, surprise.observations[held.since - 1]
     elsewhere = observation._replace(place=add(observation.place, shift))
@@ -241,11 +241,11 @@ def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Posi
 def _moved_since(
     under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
 ) -> frozenset[Square]:
-    """Return the squares that objects covered when a motion was made, the object in hand left out, map frame."""
+    """Return the squares that objects covered when a motion was made, without the object in hand, map frame."""
     before = {pose.name: pose for pose in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
     for held in under.held_objects.values():
         if held.name != motion.in_hand:
             lying = object_at(held, before[held.name], frame).polygon if held.name in before else held.first
-            squares |= covered(lying).squares()
+            squares |= patch_of_polygon(lying).squares()
     return squares

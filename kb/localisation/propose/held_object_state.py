@@ -12,7 +12,7 @@ from typing import Any
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
-from kb.objects.held_object import HeldObject, slack_of
+from kb.objects.held_object import HeldObject, outline_tolerance
 
 MIN_THWARTED_MOTIONS = 2  # motions without effect or reason from which the place of an object is inexact; tuned
 MIN_MOVED_DISTANCE = 0.2  # squares: an object blocked before this did not move; tuned
@@ -38,7 +38,7 @@ def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, 
         return replace(held.resisted(), thwarted=thwarted, inexact=inexact)
     if outcome.insets is not None:
         held = held.inset(outcome.insets) or held
-    slack = held.slack if outcome.as_commanded else max(held.slack, slack_of(outcome.polygon))
+    slack = held.slack if outcome.as_commanded else max(held.slack, outline_tolerance(outcome.polygon))
     moved = held.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
     moved = replace(moved, empty=moved.empty | outcome.contact_squares)
     unmoved = outcome.how == "blocked" and held.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE

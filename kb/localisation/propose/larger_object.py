@@ -14,8 +14,8 @@ from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.occupancy import FREE
-from kb.mapping.patch import covered, patch_of_squares
-from kb.objects.held_object import HeldObject, is_whole
+from kb.mapping.patch import patch_of_polygon, patch_of_squares
+from kb.objects.held_object import HeldObject, is_grid_aligned
 
 DEEPEST = 3  # squares by which an object may go on in what seems to be wall; tuned on random worlds
 SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
@@ -37,14 +37,14 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     Explanation
         Without residual; `larger` is the object before the push.
     """
-    if held.proven or not isinstance(motion, Translate) or not is_whole(held.polygon):
+    if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
-    occupancy, seen = surprise.occupancy, covered(held.polygon).squares()
+    occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
     for depth in range(1, DEEPEST + 1):
         for side in SIDES:
             whole = _extended(held, side, depth)
-            hidden = covered(whole.polygon).squares() - seen
+            hidden = patch_of_polygon(whole.polygon).squares() - seen
             if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):
                 continue
             outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Span
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 
@@ -72,16 +72,16 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
         else:
             what = f"{path.name} is neither a file of a scenario nor one of rules"
             hint = f"a scenario's files are {', '.join(sorted(_checks()))}; files of rules end in .lp"
-            raise BadInputError([Problem(str(path), Span(1, 1, 1), what, hint=hint)])
+            raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), what, hint=hint)])
     check(path)
     return exits.SUCCESS
 
 
 def _rules(path: Path) -> None:
     """Check a file of rules, as for --kb."""
-    from kb.reasoning.user_rules import checked_rules
+    from kb.reasoning.user_rules import read_tested_rules
 
-    checked_rules([path])
+    read_tested_rules([path])
 
 
 def _checks() -> dict[str, Callable[[Path], Any]]:

@@ -58,13 +58,13 @@ def _limit(text: str) -> int:
 
 def _go_to(story: "Story", name: str, step: int | None) -> None:
     """Advance to a step, or to the end for None; raise BadInputError when there is no such step."""
-    from kb.language.diagnostics import BadInputError, Problem, Span
+    from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 
     while story.line["step"] != step and story.advance():
         pass
     if step is not None and story.line["step"] != step:
         what = f"there is no step {step}: the last is {story.line['step']}"
-        raise BadInputError([Problem(name, Span(1, 1, 1), what)])
+        raise BadInputError([Problem(name, SourceSpan(1, 1, 1), what)])
 
 
 def _step(text: str) -> int:

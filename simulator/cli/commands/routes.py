@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kb.language.diagnostics import BadInputError, Problem, Span
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 from simulator.terminal.numbers import parse_decimal, parse_whole
@@ -62,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
         routes = screen.routes(start, goal, k=options.k)
     except ValueError as error:
         hint = "" if top is None else "y is counted from the bottom here"
-        raise BadInputError([Problem(options.map, Span(1, 1, 1), str(error), hint=hint)]) from None
+        raise BadInputError([Problem(options.map, SourceSpan(1, 1, 1), str(error), hint=hint)]) from None
     if options.svg:
         from geometry.io.svg import draw, place
         from simulator.episode.output_files import is_svg, write_whole
@@ -82,12 +82,14 @@ def _free_squares(name: str) -> "Bools":
         return _free_squares_of_scenario(name)
     raw = read_bytes(name, MAX_MAP_BYTES)
     if len(raw) > MAX_MAP_BYTES:
-        raise BadInputError([Problem(name, Span(1, 1, 1), f"the map is larger than {MAX_MAP_BYTES} bytes")])
+        raise BadInputError([Problem(name, SourceSpan(1, 1, 1), f"the map is larger than {MAX_MAP_BYTES} bytes")])
     try:
         return parse_map(raw)
     except MapError as error:
         line = raw.split(b"\n")[error.line - 1].decode("latin-1").rstrip("\r")
-        raise BadInputError([Problem(name, Span(error.line, error.column, error.end), error.what, line)]) from None
+        raise BadInputError(
+            [Problem(name, SourceSpan(error.line, error.column, error.end), error.what, line)]
+        ) from None
 
 
 def _free_squares_of_scenario(name: str) -> "Bools":

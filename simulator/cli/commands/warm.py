@@ -14,11 +14,11 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Compile all kernels and print their number."""
-    from geometry.kernels.jit import ready
+    from geometry.kernels.jit import kernel_status
     from simulator.run.warming import count_cached_kernels, warm_all
 
     warm_all()
-    count, cache_is_writable = ready()
+    count, cache_is_writable = kernel_status()
     if not count:
         print("nothing to compile: NUMBA_DISABLE_JIT is set")
     elif cache_is_writable:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 
 from benchmarks.engine.sightlines import Sightlines
-from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.pathfinders.visibility_graph import visibility_path
 from tests.geometry import oracles
 from tests.geometry.routes.test_routes import trips
 
@@ -14,7 +14,7 @@ from tests.geometry.routes.test_routes import trips
 @given(trips(most=14))
 def test_the_length_is_that_of_the_whole_visibility_graph(trip):
     free, start, goal = trip
-    way, sight = visibility_way(free, start, goal), Sightlines(free)
+    way, sight = visibility_path(free, start, goal), Sightlines(free)
     if way is None:
         assert sight.length(start, goal, 1e6) == np.inf
         return

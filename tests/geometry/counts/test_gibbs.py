@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from geometry.counts.gibbs import (
-    CORNER,
+    CORNER_COST,
     COUNT_ERROR_COST,
     DRAWN,
-    EDGE,
+    EDGE_COST,
     FINAL_INVERSE_TEMPERATURE,
     FREE,
     FULL,
     NEIGHBOUR_STEPS,
-    UNSEEN,
+    UNSEEN_SQUARE,
     Counts,
     _flip_costs,
     costs,
@@ -65,7 +65,7 @@ def test_samples_show_what_the_counts_of_two_observations_determine() -> None:
 def test_samples_keep_fixed_squares_and_show_nothing_unseen() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
-    ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN, FREE
+    ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN_SQUARE, FREE
     drawn = pictures(ground, counts_of(truth, 4), np.ones((3, *truth.shape), np.int8), 10, 0.5)
     assert drawn.shape == (3, 24, 24)
     assert (drawn[:, 9:14, 10:15] == 1).all()
@@ -77,7 +77,7 @@ def test_a_wall_one_square_off_is_moved_as_a_whole() -> None:
     truth = np.zeros((20, 20), np.int8)
     truth[:, 7:9] = 1
     ground = np.full(truth.shape, DRAWN, np.int8)
-    ground[:, [0, -1]] = ground[[0, -1]] = UNSEEN
+    ground[:, [0, -1]] = ground[[0, -1]] = UNSEEN_SQUARE
     beside = np.roll(truth, 1, axis=1)
     counts = joined_counts(counts_of(truth, 4, 1), counts_of(truth, 4, 3))
     drawn = pictures(ground, counts, np.repeat(beside[None], 6, 0), 4, FINAL_INVERSE_TEMPERATURE)
@@ -85,33 +85,33 @@ def test_a_wall_one_square_off_is_moved_as_a_whole() -> None:
     assert (drawn[:, shown] == truth[shown]).mean() > 0.97
 
 
-def cost(image: np.ndarray, ground: np.ndarray, edge: float = EDGE) -> float:
+def cost(image: np.ndarray, ground: np.ndarray, edge: float = EDGE_COST) -> float:
     """Return the cost of the outline of a raster, edge by edge and corner by corner."""
     total = 0.0
     for row, column in np.ndindex(image.shape[0] - 1, image.shape[1] - 1):
         part = slice(row, row + 2), slice(column, column + 2)
-        if (ground[part] == UNSEEN).any():
+        if (ground[part] == UNSEEN_SQUARE).any():
             continue
         (a, b), (c, d) = image[part].tolist()
         edges = (a != b) + (c != d) + (a != c) + (b != d)
         corners = {0: 0, 2: 0 if a != d else 1, 4: 2}[edges] if edges != 2 or (a, b, c, d).count(1) == 2 else 1
-        total += edge * edges / 2 + CORNER * corners
+        total += edge * edges / 2 + CORNER_COST * corners
     return total
 
 
 @given(
     arrays(np.int8, (5, 5), elements=st.integers(0, 1)),
-    arrays(np.int8, (5, 5), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN])),
+    arrays(np.int8, (5, 5), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN_SQUARE])),
 )
 def test_the_cost_of_a_flip_is_the_difference_of_two_rasters(image: np.ndarray, ground: np.ndarray) -> None:
     ground[2, 2] = DRAWN
-    image[ground == UNSEEN] = 0
+    image[ground == UNSEEN_SQUARE] = 0
     changed = image.copy()
     changed[2, 2] = 1 - image[2, 2]
     shown = 0
     for point in range(4):
         row, column = 2 - point // 2, 2 - point % 2
-        shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN).all()) << point
+        shown |= int((ground[row : row + 2, column : column + 2] != UNSEEN_SQUARE).all()) << point
     neighbours = sum(int(image[2 + rows, 2 + across]) << n for n, (rows, across) in enumerate(NEIGHBOUR_STEPS))
     change = _flip_costs()[(shown << 9) + (neighbours << 1) + int(image[2, 2])]
     assert change == pytest.approx(cost(changed, ground) - cost(image, ground), abs=1e-5)
@@ -119,14 +119,14 @@ def test_the_cost_of_a_flip_is_the_difference_of_two_rasters(image: np.ndarray, 
 
 @given(
     arrays(np.int8, (2, 6, 7), elements=st.integers(0, 1)),
-    arrays(np.int8, (6, 7), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN])),
+    arrays(np.int8, (6, 7), elements=st.sampled_from([DRAWN, DRAWN, DRAWN, UNSEEN_SQUARE])),
     arrays(np.int8, (6, 7), elements=st.integers(0, 1)),
-    st.sampled_from([EDGE, 0.0]),
+    st.sampled_from([EDGE_COST, 0.0]),
 )
 def test_a_raster_costs_its_outline_and_the_errors_of_its_counts(
     images: np.ndarray, ground: np.ndarray, truth: np.ndarray, edge: float
 ) -> None:
-    images[:, ground == UNSEEN] = 0
+    images[:, ground == UNSEEN_SQUARE] = 0
     counts = counts_of(truth, 3)
     where = counts.where.reshape(-1, 9)
     for image, found in zip(images, costs(images, ground, counts, edge), strict=True):
@@ -174,7 +174,7 @@ def test_without_fields_there_is_nothing_to_draw() -> None:
 def test_moments_of_a_square(side: int, seen: bool) -> None:
     image = np.zeros((side + 2, side + 2), np.int8)
     image[1:-1, 1:-1] = 1
-    ground = np.where(image == 1, DRAWN, DRAWN if seen else UNSEEN).astype(np.int8)
+    ground = np.where(image == 1, DRAWN, DRAWN if seen else UNSEEN_SQUARE).astype(np.int8)
     found = blobs(image, ground)
     assert found.area.tolist() == [side * side]
     assert found.outward.tolist() == [0 if seen else 4 * side]

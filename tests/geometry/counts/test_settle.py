@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.counts.settle import FREE, FULL, OPEN, misfits, residue, settle
+from geometry.counts.settle import FREE, FULL, OPEN, misfits, remaining_counts, settle
 
 SQUARE_COUNT, MAX_FIELD_SQUARES = 12, 6
 
@@ -85,7 +85,7 @@ def test_remaining_counts_and_contradicted_fields(given_, states) -> None:
     where, weight, low, high = given_
     state, wrong = np.array(states, np.int8), np.zeros(len(low), np.bool_)
     found = misfits(state, where, weight, low, high, wrong)
-    open_, room, least, most = residue(state, where, weight, low, high)
+    open_, room, least, most = remaining_counts(state, where, weight, low, high)
     full = np.where(state[where] == FULL, weight, 0).sum(1)
     assert (open_ == ((state[where] == OPEN) & (weight > 0))).all()
     assert (room == (weight * open_).sum(1)).all()

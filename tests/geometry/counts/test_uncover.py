@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.counts.uncover import uncover
+from geometry.counts.uncover import remove_covered_squares
 
 SIDE = 5
 masks = st.lists(st.booleans(), min_size=SIDE * SIDE, max_size=SIDE * SIDE).map(
@@ -19,7 +19,7 @@ def test_possible_squares_are_not_sampled_and_certain_ones_not_counted(seed, pos
     columns, rows = rng.integers(-3, 4, (2, 8, 4), np.int32)
     weight, ranges = rng.integers(0, 3, (8, 4), np.int16), rng.integers(0, 9, (8, 2), np.int16)
     left, counts = weight.copy(), ranges.copy()
-    uncover(columns, rows, left, counts, possible, certain, x, y, x + 1, y - 1)
+    remove_covered_squares(columns, rows, left, counts, possible, certain, x, y, x + 1, y - 1)
 
     def on(mask, dx, dy):
         column, row = columns + dx, rows + dy

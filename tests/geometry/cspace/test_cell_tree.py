@@ -18,14 +18,14 @@ from geometry.cspace.cell_tree import (
     split_cell,
 )
 from geometry.cspace.channel import find_channel, new_channel_search
-from geometry.motion.body import new_mover
+from geometry.motion.body import new_moving_body
 from geometry.motion.cell_clearance import CELL_BLOCKED
 from geometry.motion.obstacle_field import ObstacleField
 
 SHAPE = box(-2, -0.5, 2, 0.5)
 WALLS = box(-1, -1, 11, 11).difference(box(0, 0, 10, 10)).union(box(4.5, 0, 5.5, 7.5))
 FIELD = ObstacleField(WALLS, (0, 0, 10, 10))
-BODY = new_mover(SHAPE)
+BODY = new_moving_body(SHAPE)
 NEARBY = FIELD.ground(BODY)
 
 

@@ -57,7 +57,8 @@ def test_importing_geometry_loads_neither_numba_nor_networkx() -> None:
 def test_kernels_of_routes_are_compiled_in_advance_for_the_types_of_screens() -> None:
     code = (
         "import numpy as np; from geometry import Screen; from geometry.homotopy import landmarks; "
-        "from geometry.pathfinders import polyanya; from geometry.routes import queries, router; queries.rehearse(); "
+        "from geometry.pathfinders import polyanya; from geometry.routes import queries, router; "
+        "queries.compile_route_kernels(); "
         "screen = Screen(np.ones((4, 4), bool)); print(len(screen.routes((0.5, 0.5), (3.5, 3.5), k=4)), "
         "screen.shortest((0.5, 0.5), (3.5, 3.5)) is not None); "
         "kernels = router.itineraries, polyanya.shortest_line, landmarks.measure_ways; "

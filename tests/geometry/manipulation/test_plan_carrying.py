@@ -11,7 +11,7 @@ from shapely import affinity, box
 
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds.makers import scenario
-from geometry.manipulation.goals import Roomy, met, moved
+from geometry.manipulation.goals import Roomy, is_goal_met, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, Pose, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
@@ -399,7 +399,7 @@ def test_a_goal_moved_there_and_back_is_the_same(goal: InCorner | At | Roomy) ->
     ends = [box(47, 18, 50, 22), affinity.translate(affinity.rotate(shape, 90), 3, -2), box(0, 0, 3, 4)]
     for end in ends:
         there = affinity.translate(end, 7, -3)
-        assert met(goal, shape, end) == met(away, affinity.translate(shape, 7, -3), there)
+        assert is_goal_met(goal, shape, end) == is_goal_met(away, affinity.translate(shape, 7, -3), there)
 
 
 @pytest.mark.parametrize("degrees", [10, 25, 45, 70])

@@ -7,8 +7,8 @@ import pytest
 import shapely
 from shapely import affinity, box
 
-from geometry.motion.body import new_mover
-from geometry.motion.cell_clearance import CELL_BLOCKED, CELL_CENTRE_FREE, CELL_FREE, classify_cell, distance_at
+from geometry.motion.body import new_moving_body
+from geometry.motion.cell_clearance import CELL_BLOCKED, CELL_CENTRE_FREE, CELL_FREE, classify_cell, clearance_at
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Pose
 
@@ -27,7 +27,7 @@ def random_walls(rng: np.random.Generator) -> shapely.Geometry:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_kind_of_a_cell_holds_at_every_pose_in_it(shape: shapely.Geometry) -> None:
     rng = np.random.default_rng(len(shape.wkt))
-    body, seen = new_mover(shape), []
+    body, seen = new_moving_body(shape), []
     for _ in range(12):
         walls = random_walls(rng)
         field = ObstacleField(walls, (0, 0, 16, 16))
@@ -63,14 +63,14 @@ def check_pose(
 def test_distances_agree_with_shapely() -> None:
     rng = np.random.default_rng(3)
     for shape in SHAPES:
-        body = new_mover(shape)
+        body = new_moving_body(shape)
         middle = affinity.translate(shape, *body.reference)
         for _ in range(40):
             walls = random_walls(rng)
             nearby = ObstacleField(walls, (0, 0, 16, 16)).ground(body)
             x, y, angle = *rng.uniform(0, 16, 2), rng.uniform(0, 2 * math.pi)
             want = Pose(x, y, math.degrees(angle)).place(middle).distance(walls)
-            found = distance_at(body, nearby, x, y, math.cos(angle), math.sin(angle))
+            found = clearance_at(body, nearby, x, y, math.cos(angle), math.sin(angle))
             if want == 0.0:
                 assert found == -1.0
             elif want < nearby.reach:

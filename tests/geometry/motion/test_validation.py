@@ -11,7 +11,7 @@ from shapely import MultiPolygon, Polygon, box
 from geometry.cspace.plan_motion import Inside, MotionPlan, plan_motion
 from geometry.manipulation.plan_carrying import At, InCorner, plan_carrying
 from geometry.motion.se2 import Pose
-from geometry.motion.validation import sound
+from geometry.motion.validation import valid_polygons
 
 BRICK = box(-2, -1, 2, 1)
 WALLS = box(-1, -1, 26, 13).difference(shapely.union_all([box(0, 0, 12, 12), box(13, 0, 25, 12), box(12, 4, 13, 7)]))
@@ -46,14 +46,14 @@ def carry_brick(shape: Any = LOAD, free: Any = FREE, utak: Any = (2.5, 2.5), goa
 @pytest.mark.parametrize("points", SAME.values(), ids=SAME)
 def test_another_description_of_a_ring_is_the_same_body(points: list[tuple[float, float]]) -> None:
     shape = Polygon(points)
-    assert sound(shape, "it").equals(BRICK)
+    assert valid_polygons(shape, "it").equals(BRICK)
     assert [m.pose(START) for m in move_brick(shape).motions[:1]] == [m.pose(START) for m in move_brick().motions[:1]]
     there = shapely.affinity.translate(shape, 6, 5)
     assert (carry_brick(there).status, carry_brick(there).commands) == ("found", carry_brick().commands)
 
 
 def test_rings_that_cross_are_read_even_odd() -> None:
-    assert sound(Polygon(BOWTIE), "it").area == pytest.approx(50)
+    assert valid_polygons(Polygon(BOWTIE), "it").area == pytest.approx(50)
     assert move_brick(goal=Inside(Polygon(BOWTIE))).status == "found"
     assert move_brick(walls=[WALLS, Polygon([(16, 1), (18, 3), (18, 1), (16, 3)])]).status == "found"
     assert move_brick(shapely.affinity.translate(Polygon(BOWTIE), -19, -6), start=Pose(6, 6)).status == "impossible"

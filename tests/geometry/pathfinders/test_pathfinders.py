@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from geometry import Screen
 from geometry.io.movingai import read_map, read_trips
 from geometry.io.svg import draw
-from geometry.pathfinders.grid_astar import grid_way
-from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.pathfinders.grid_astar import grid_path
+from geometry.pathfinders.visibility_graph import visibility_path
 from tests.geometry import oracles
 from tests.geometry.routes.test_routes import polygon, trips
 
@@ -66,12 +66,12 @@ def test_the_shortest_route_is_never_longer_than_another(trip):
     route, others = screen.shortest(start, goal), screen.routes(start, goal, k=12)
     assert (route is None) == (not others)
     if route is None:
-        assert visibility_way(free, start, goal) is None
-        assert grid_way(free, start, goal) is None
+        assert visibility_path(free, start, goal) is None
+        assert grid_path(free, start, goal) is None
         return
     assert route.length == pytest.approx(others[0].length, abs=1e-9)
-    assert route.length == pytest.approx(oracles.length(visibility_way(free, start, goal)), abs=1e-7)
-    assert oracles.length(grid_way(free, start, goal)) >= route.length - 1e-9
+    assert route.length == pytest.approx(oracles.length(visibility_path(free, start, goal)), abs=1e-7)
+    assert oracles.length(grid_path(free, start, goal)) >= route.length - 1e-9
 
 
 @settings(max_examples=60, deadline=None)
@@ -86,7 +86,7 @@ def test_grid_paths_are_legal_and_shortest_on_the_grid(trip):
             if 0 <= x + dx < columns and y + dy < rows and free[y + dy, x + dx] and free[y + dy, x] and free[y, x + dx]:
                 graph.add_edge((x, y), (x + dx, y + dy), weight=float(np.hypot(dx, dy)))
     a, b = ((int(p[0]), int(p[1])) for p in (start, goal))
-    way = grid_way(free, (a[0] + 0.5, a[1] + 0.5), (b[0] + 0.5, b[1] + 0.5))
+    way = grid_path(free, (a[0] + 0.5, a[1] + 0.5), (b[0] + 0.5, b[1] + 0.5))
     if nx.has_path(graph, a, b):
         assert oracles.length(way) == pytest.approx(nx.shortest_path_length(graph, a, b, "weight"))
     else:

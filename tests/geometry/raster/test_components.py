@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.raster.components import boxes, components
+from geometry.raster.components import bounding_boxes, components
 
 
 def flood(mask: np.ndarray) -> np.ndarray:
@@ -42,14 +42,14 @@ def test_labels_equal_those_of_flood_filling(rows: int, columns: int, seed: int,
 @given(st.integers(1, 14), st.integers(1, 14), st.integers(0, 2**32 - 1), st.floats(0, 1))
 def test_bounding_rectangles_fit_their_components(rows: int, columns: int, seed: int, density: float) -> None:
     found = components(np.random.default_rng(seed).random((rows, columns)) < density)
-    for label, box in enumerate(boxes(found.labels, found.number).tolist()):
+    for label, box in enumerate(bounding_boxes(found.labels, found.number).tolist()):
         places = np.argwhere(found.labels == label)
         if label or len(places):
             assert box == [*places.min(0).tolist(), *places.max(0).tolist()]
 
 
 def test_a_label_without_squares_has_no_rectangle() -> None:
-    assert boxes(np.ones((2, 3), np.int32), 2).tolist() == [[2, 3, -1, -1], [0, 0, 1, 2], [2, 3, -1, -1]]
+    assert bounding_boxes(np.ones((2, 3), np.int32), 2).tolist() == [[2, 3, -1, -1], [0, 0, 1, 2], [2, 3, -1, -1]]
 
 
 def test_a_comb_and_a_spiral_are_one_component_each() -> None:

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from geometry.raster.geodesic import UNREACHED, reach
-from geometry.raster.winding import MOST, crossings, winding_way
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
 
 STEPS = [(dr, dc) for dr in (-1, 0, 1) for dc in (-1, 0, 1) if dr or dc]
 
@@ -48,7 +48,7 @@ def test_distances_equal_those_of_dijkstra_on_a_graph(rows: int, columns: int, s
     free, rng = raster(rows, columns, seed)
     row, column = int(rng.integers(rows)), int(rng.integers(columns))
     free[row, column] = True
-    want = np.full(free.shape, UNREACHED)
+    want = np.full(free.shape, GEODESIC_UNREACHED)
     for square, cost_so_far in least_costs(free, (row, column)).items():
         want[square] = cost_so_far
     assert np.array_equal(reach(free, column, row), want)
@@ -79,7 +79,7 @@ def test_the_crossing_number_of_a_closed_line_is_its_winding_number(points: list
     for (ax, ay), (bx, by) in itertools.pairwise(closed):  # no side through the point itself
         cross = (bx - ax) * (about[1] - ay) - (by - ay) * (about[0] - ax)
         assume(abs(cross) > 1e-6 or (ax, ay) == (bx, by))
-    assert crossings(np.array(closed), about) == round(full_turns(closed, about))
+    assert crossing_number(np.array(closed), about) == round(full_turns(closed, about))
 
 
 @settings(max_examples=300, deadline=None)
@@ -89,8 +89,10 @@ def test_crossing_numbers_add_up_and_change_sign_when_reversed(
 ) -> None:
     first, second = np.array([*one, middle]), np.array([middle, *other])
     about = (0.1, 0.1)
-    assert crossings(np.vstack([first, second[1:]]), about) == crossings(first, about) + crossings(second, about)
-    assert crossings(first[::-1], about) == -crossings(first, about)
+    assert crossing_number(np.vstack([first, second[1:]]), about) == crossing_number(first, about) + crossing_number(
+        second, about
+    )
+    assert crossing_number(first[::-1], about) == -crossing_number(first, about)
 
 
 def sheets(free: np.ndarray, start: tuple[int, int], about: tuple[float, float]) -> dict[tuple[int, int, int], int]:
@@ -102,9 +104,9 @@ def sheets(free: np.ndarray, start: tuple[int, int], about: tuple[float, float])
             continue
         number, row, column = state
         for (p, q), cost in moves(free, row, column):
-            step = crossings(np.array([(column + 0.5, row + 0.5), (q + 0.5, p + 0.5)]), about)
+            step = crossing_number(np.array([(column + 0.5, row + 0.5), (q + 0.5, p + 0.5)]), about)
             other = (number + step, p, q)
-            if abs(other[0]) <= MOST and cost_so_far + cost < best.get(other, 10**9):
+            if abs(other[0]) <= MAX_CROSSING_NUMBER and cost_so_far + cost < best.get(other, 10**9):
                 best[other] = cost_so_far + cost
                 heapq.heappush(queue, (cost_so_far + cost, other))
     return best
@@ -116,7 +118,12 @@ def cost_of(squares: list[tuple[int, int]]) -> int:
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.integers(3, 9), st.integers(3, 9), st.integers(0, 2**32 - 1), st.integers(-MOST, MOST))
+@given(
+    st.integers(3, 9),
+    st.integers(3, 9),
+    st.integers(0, 2**32 - 1),
+    st.integers(-MAX_CROSSING_NUMBER, MAX_CROSSING_NUMBER),
+)
 def test_a_path_is_the_shortest_with_its_crossing_number(rows: int, columns: int, seed: int, number: int) -> None:
     free, rng = raster(rows, columns, seed)
     row, column = int(rng.integers(1, rows - 1)), int(rng.integers(1, columns - 1))
@@ -125,14 +132,14 @@ def test_a_path_is_the_shortest_with_its_crossing_number(rows: int, columns: int
     about = (column + 0.5, row + 0.5)
     best = sheets(free, (0, 0), about)
     for goal in ((0, 0), (rows - 1, columns - 1)):
-        path = winding_way(free, (0, 0), goal[::-1], about, number)
+        path = shortest_path_with_crossing_number(free, (0, 0), goal[::-1], about, number)
         want = best.get((number, *goal))
         if path is None:
             assert want is None
             continue
         assert path[0] == (0, 0)
         assert path[-1] == goal[::-1]
-        assert crossings(np.array(path) + 0.5, about) == number
+        assert crossing_number(np.array(path) + 0.5, about) == number
         assert cost_of(path) == want
         assert all((b, a) in [m for m, _ in moves(free, d, c)] for (c, d), (a, b) in itertools.pairwise(path))
 
@@ -140,6 +147,6 @@ def test_a_path_is_the_shortest_with_its_crossing_number(rows: int, columns: int
 def test_a_number_out_of_range_and_a_blocked_end_are_refused() -> None:
     free = np.array([[True, False], [True, True]])
     with pytest.raises(ValueError, match="crossing numbers"):
-        winding_way(free, (0, 0), (0, 1), (1.5, 0.5), MOST + 1)
+        shortest_path_with_crossing_number(free, (0, 0), (0, 1), (1.5, 0.5), MAX_CROSSING_NUMBER + 1)
     with pytest.raises(ValueError, match="not a free square"):
-        winding_way(free, (0, 0), (1, 0), (1.5, 0.5), 0)
+        shortest_path_with_crossing_number(free, (0, 0), (1, 0), (1.5, 0.5), 0)

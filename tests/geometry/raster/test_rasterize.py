@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry.motion.se2 import Rotate, Translate
-from geometry.raster.rasterize import areas, squares, squares_after
+from geometry.raster.rasterize import covered_areas, squares, squares_after
 
 WIDTH, HEIGHT = 14, 11
 whole = st.integers(-3, 16).map(float)
@@ -36,7 +36,7 @@ def test_squares_are_those_that_share_area(points: list, outside: bool, hole: tu
         shape = polygons_of(shapely.box(0, 0, WIDTH, HEIGHT).difference(shape))
     shape = polygons_of(shape.difference(shapely.box(*hole, hole[0] + 2, hole[1] + 1)))
     want = by_definition(shape)
-    np.testing.assert_allclose(areas(shape, WIDTH, HEIGHT), want, atol=1e-9)
+    np.testing.assert_allclose(covered_areas(shape, WIDTH, HEIGHT), want, atol=1e-9)
     well_decided = np.abs(want - 1e-9) > 1e-11
     assert (squares(shape, WIDTH, HEIGHT) == (want > 1e-9))[well_decided].all()
 
@@ -49,7 +49,7 @@ turns = st.builds(Rotate, st.sampled_from([90.0, -180.0]) | st.floats(-400, 400)
 @given(st.lists(corner, min_size=3, max_size=6), st.lists(pushes | turns, max_size=5))
 def test_squares_after_motions_are_the_union_over_the_motions(points: list, motions: list) -> None:
     shape = polygons_of(shapely.make_valid(shapely.Polygon(points)))
-    covered = [areas(motion.carry(shape), WIDTH, HEIGHT) for motion in motions]
+    covered = [covered_areas(motion.carry(shape), WIDTH, HEIGHT) for motion in motions]
     want = np.max(covered, axis=0, initial=0.0)
     well_decided = np.all([np.abs(area - 1e-9) > 1e-11 for area in covered], axis=0) if covered else slice(None)
     assert (squares_after(shape, motions, WIDTH, HEIGHT) == (want > 1e-9))[well_decided].all()
@@ -59,7 +59,7 @@ def test_squares_after_motions_are_the_union_over_the_motions(points: list, moti
 def test_an_edge_that_rises_by_a_tiny_number_is_cut_like_a_level_one(rise: float) -> None:
     shape = shapely.Polygon([(0.5, 0), (3.5, rise), (3.5, 2), (0.5, 2)])
     np.testing.assert_allclose(
-        areas(shape, WIDTH, HEIGHT), areas(shapely.box(0.5, 0, 3.5, 2), WIDTH, HEIGHT), atol=1e-12
+        covered_areas(shape, WIDTH, HEIGHT), covered_areas(shapely.box(0.5, 0, 3.5, 2), WIDTH, HEIGHT), atol=1e-12
     )
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from benchmarks.engine.exact import Exact, clearances
 from benchmarks.floors import CHECKS, disagreements
 from geometry import Route, Screen
-from geometry.pathfinders.visibility_graph import visibility_way
+from geometry.pathfinders.visibility_graph import visibility_path
 from geometry.routes.lifting import lift_to_skeleton
 from geometry.routes.tighten import word_of_crossings
 
@@ -122,9 +122,9 @@ def test_a_route_from_a_place_to_itself_has_length_zero() -> None:
 
 def test_the_visibility_graph_does_not_look_through_a_pinch_from_the_pinch() -> None:
     free = floor("#.", ".#")
-    assert visibility_way(free, (1.0, 1.0), (0.5, 0.5)) is None
-    assert visibility_way(free, (0.5, 0.5), (1.0, 1.0)) is None
-    assert visibility_way(free, (1.0, 1.0), (1.5, 1.5)) is not None
+    assert visibility_path(free, (1.0, 1.0), (0.5, 0.5)) is None
+    assert visibility_path(free, (0.5, 0.5), (1.0, 1.0)) is None
+    assert visibility_path(free, (1.0, 1.0), (1.5, 1.5)) is not None
 
 
 def test_the_length_of_an_edge_round_one_blocked_square_is_that_of_its_points() -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from geometry import Screen
 from geometry.raster import distance_transform
-from geometry.routes.layer import find_bones, level_of, new_state
+from geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
 from geometry.skeleton import sweep
 from geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
 from tests.geometry import lookalikes, oracles
@@ -44,7 +44,7 @@ def test_16_bits_are_used_only_where_they_hold_all_clearances(across, margins, r
     free = (np.hypot(u, v) if round_floor else np.maximum(abs(u), abs(v))) < across / 2
     free |= np.random.default_rng(seed).random(free.shape) < 0.02
     most = oracles.to_blocked(free).max()
-    if distance_transform.type_of_squares(free) == np.int16:
+    if distance_transform.smallest_distance_type(free) == np.int16:
         screen = Screen(free)
         assert screen._square.dtype == np.int16 and 0 <= screen._square.max() < 2**15 - 1
         assert most - 1 < screen.clearance.max() < most
@@ -61,8 +61,8 @@ def test_both_types_of_squared_clearances_give_the_same_graph(free):
     square[[0, -1]] = 0
     for radius in RADII:
         state, words = new_state(square.shape)
-        bones = find_bones(square, level_of(radius), state, words)
-        mine = screen._skeleton_at(level_of(radius))
+        bones = find_pathgraph(square, least_squared_clearance(radius), state, words)
+        mine = screen._skeleton_at(least_squared_clearance(radius))
         assert np.array_equal(state, mine[0])
         assert all(np.array_equal(a, b) for a, b in zip(bones, mine[2], strict=True))
     assert Screen(free).pathgraph_for(200.0).number_of_nodes() == 0

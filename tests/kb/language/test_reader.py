@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError, CannotOpenError
-from kb.language.reader import facts_of, read_facts
+from kb.language.reader import facts_from_text, read_facts
 from kb.language.terms import Number, Symbol, Text
 
 GIVEN_UP = (
@@ -20,12 +20,12 @@ GIVEN_UP = (
 def problems(text: str) -> list[str]:
     """Return the problems of a text, each as `line:col-col: what`."""
     with pytest.raises(BadInputError) as caught:
-        facts_of(text)
+        facts_from_text(text)
     return [f"{p.span.line}:{p.span.start}-{p.span.end}: {p.what}" for p in caught.value.problems]
 
 
 def test_terms_of_every_kind() -> None:
-    (fact,) = facts_of('p(-7, "a \\"b\\" \\\\ \\n", x, f(g(y), 2147483647), _z\').')
+    (fact,) = facts_from_text('p(-7, "a \\"b\\" \\\\ \\n", x, f(g(y), 2147483647), _z\').')
     number, text, name, compound, last = fact.args
     assert isinstance(number, Number)
     assert number.value == -7
@@ -38,17 +38,17 @@ def test_terms_of_every_kind() -> None:
 
 def test_comments_and_line_ends() -> None:
     text = "% one\r\na. %* two %* nested\n*% still *% b(\n1 ,2\t).\n%"
-    assert [str(f) for f in facts_of(text)] == ["a", "b(1,2)"]
+    assert [str(f) for f in facts_from_text(text)] == ["a", "b(1,2)"]
 
 
 def test_spans_count_from_one_in_characters() -> None:
-    (fact,) = facts_of("\n  object( x ).")
+    (fact,) = facts_from_text("\n  object( x ).")
     assert fact.span == (2, 3, 13)
     assert fact.args[0].span == (2, 11, 11)
 
 
 def test_the_place_of_a_term_does_not_count_for_equality() -> None:
-    one, other = facts_of("p(x,1).\n   p( x, 1 ).")
+    one, other = facts_from_text("p(x,1).\n   p( x, 1 ).")
     assert one == other
     assert hash(one) == hash(other)
 
@@ -94,7 +94,7 @@ def test_an_invalid_fact_is_refused_at_its_place(text: str) -> None:
 
 
 def test_nesting_has_a_limit() -> None:
-    assert len(facts_of("p(" * 64 + "x" + ")" * 64 + ".")) == 1
+    assert len(facts_from_text("p(" * 64 + "x" + ")" * 64 + ".")) == 1
     assert "nested more than 64 deep" in problems("p(" * 66 + "x" + ")" * 66 + ".")[0]
     assert "nested more than 64 deep" in problems("p(" * 100_000)[0]
 
@@ -119,7 +119,7 @@ def test_a_message_shows_line_caret_and_hint(tmp_path: Path) -> None:
 
 def test_at_most_twenty_problems_are_shown() -> None:
     with pytest.raises(BadInputError) as caught:
-        facts_of("p(X).\n" * 25)
+        facts_from_text("p(X).\n" * 25)
     assert str(caught.value).count("error:") == 20
     assert str(caught.value).endswith("... and more")
 
@@ -128,14 +128,14 @@ def test_at_most_twenty_problems_are_shown() -> None:
 def test_the_time_to_read_grows_linearly(text: str) -> None:
     start = time.process_time()
     with pytest.raises(BadInputError) as caught:
-        facts_of(text * (1_000_000 // len(text)) + "X")
+        facts_from_text(text * (1_000_000 // len(text)) + "X")
     assert len(caught.value.problems) <= 101
     assert time.process_time() - start < GIVEN_UP
 
 
 def test_a_long_string_is_read_fast() -> None:
     start = time.process_time()
-    (fact,) = facts_of('p("' + "1 2, " * 200_000 + '\\n").')
+    (fact,) = facts_from_text('p("' + "1 2, " * 200_000 + '\\n").')
     assert isinstance(fact.args[0], Text)
     assert fact.args[0].value.endswith("2, \n")
     assert time.process_time() - start < GIVEN_UP
@@ -177,13 +177,13 @@ terms = st.recursive(
 @given(st.lists(st.builds(lambda n, a: f"{n}({','.join(a)})", names, st.lists(terms, min_size=1, max_size=3))))
 def test_written_facts_are_read_back_equal(facts: list[str]) -> None:
     text = "\n".join(f"{fact}." for fact in facts)
-    assert [str(fact) for fact in facts_of(text)] == facts
+    assert [str(fact) for fact in facts_from_text(text)] == facts
 
 
 @given(st.text())
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
-        facts_of(text)
+        facts_from_text(text)
     except BadInputError as bad:
         assert bad.problems
         assert all(p.span.line >= 1 and 1 <= p.span.start <= p.span.end for p in bad.problems)

@@ -11,7 +11,7 @@ from kb.mapping.completions import (
     Completions,
     _resample,
     draw_completions,
-    ground_of,
+    given_squares,
     scenes,
 )
 from kb.mapping.occupancy import MapView
@@ -28,7 +28,7 @@ def views() -> list[MapView]:
 
 @pytest.mark.parametrize("view", views())
 def test_a_square_and_a_field_belong_to_one_scene(view: MapView) -> None:
-    ground = ground_of(view)
+    ground = given_squares(view)
     owner = np.zeros(ground.shape, int)
     for number, scene in enumerate(scenes(view, ground), 1):
         part = owner[scene.rows, scene.columns]
@@ -43,7 +43,7 @@ def test_a_square_and_a_field_belong_to_one_scene(view: MapView) -> None:
 
 @pytest.mark.parametrize("view", views())
 def test_completions_agree_with_settled_squares_and_with_nearly_all_counts(view: MapView) -> None:
-    ground = ground_of(view)
+    ground = given_squares(view)
     images = draw_completions(view, ground, NO_COMPLETIONS).images
     assert images.shape == (MAX_COMPLETIONS, *ground.shape)
     settled = ground != DRAWN
@@ -61,7 +61,7 @@ def test_a_scene_keeps_its_key_when_only_others_change() -> None:
     for observations in ([(50, 50)], [(50, 50), (50, 16)]):
         view = looked(rows, observations).view()
         places = {}
-        for scene in scenes(view, ground_of(view)):
+        for scene in scenes(view, given_squares(view)):
             corner = view.west + scene.columns.start, view.south + scene.rows.start
             places[corner] = list(scene.told(view))
         found.append(places)
@@ -84,16 +84,16 @@ def test_samples_stay_while_no_impression_says_anything_new_of_them() -> None:
     observations = [(50, 50), (50, 16), (52, 20)]
     first, second, third = (looked(rows, observations[:count]).view() for count in (1, 2, 3))
     assert second.south < first.south
-    before = draw_completions(first, ground_of(first), NO_COMPLETIONS)
-    now = draw_completions(second, ground_of(second), before)
+    before = draw_completions(first, given_squares(first), NO_COMPLETIONS)
+    now = draw_completions(second, given_squares(second), before)
     assert by_square(before).items() <= by_square(now).items()
-    then, alone = (draw_completions(third, ground_of(third), earlier) for earlier in (now, NO_COMPLETIONS))
+    then, alone = (draw_completions(third, given_squares(third), earlier) for earlier in (now, NO_COMPLETIONS))
     assert by_square(then) != by_square(alone)
 
 
 @pytest.mark.parametrize("view", views())
 def test_the_part_of_completions_over_a_scene_is_what_they_show_there(view: MapView) -> None:
-    whole = draw_completions(view, ground_of(view), NO_COMPLETIONS)
+    whole = draw_completions(view, given_squares(view), NO_COMPLETIONS)
     for scene in scenes(view, whole.ground):
         moved = view._replace(west=view.west - 3, south=view.south + 2)
         part = whole.over(scene, moved)

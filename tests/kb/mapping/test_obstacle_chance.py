@@ -21,7 +21,7 @@ def of(shown: np.ndarray, unseen: list[tuple[int, int]] = []) -> Completions:  #
     """Return completions of the squares (0, 0) to (4, 4) of the map frame, all of which are open."""
     ground = np.full((SIDE, SIDE), DRAWN, np.int8)
     for x, y in unseen:
-        ground[y, x] = gibbs.UNSEEN
+        ground[y, x] = gibbs.UNSEEN_SQUARE
     return Completions(0, 0, ground, shown, {})
 
 

@@ -13,8 +13,8 @@ from shapely.affinity import rotate, translate
 from geometry.motion.se2 import Rotate, Translate
 from kb.localisation.hypotheses.carry_outcomes import other_outcomes, predicted_outcome
 from kb.mapping.occupancy import OccupancyMap
-from kb.mapping.patch import covered
-from kb.objects.held_object import HeldObject, discounted, slack_of, whole
+from kb.mapping.patch import patch_of_polygon
+from kb.objects.held_object import HeldObject, outline_tolerance, snap_to_grid, subtract_held_objects
 from kb.perception.frame import Frame
 from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges
 from tests.kb.eyes import impression, random_room, world_of
@@ -43,7 +43,7 @@ def squares_of(polygon: shapely.Polygon) -> set[tuple[int, int]]:
 @settings(max_examples=60, deadline=None)
 def test_a_held_object_covers_its_squares(x: float, y: float, degrees: float) -> None:
     polygon = translate(rotate(ELL, degrees), round(x, 3), round(y, 3))
-    assert covered(polygon).squares() == squares_of(polygon)
+    assert patch_of_polygon(polygon).squares() == squares_of(polygon)
 
 
 @given(st.floats(0, 1) | st.sampled_from([5e-324, 1e-17, 1e-12, 1e-6]))
@@ -58,13 +58,15 @@ def test_a_held_object_may_cover_at_least_the_squares_that_it_surely_covers(far:
 def test_an_impression_without_the_held_object_is_that_of_a_table_without_it(
     x: int, y: int, quarter: int, angle: int, seed: int
 ) -> None:
-    polygon = whole(translate(rotate(ELL, 90 * quarter, origin=(0, 0)), x, y))
+    polygon = snap_to_grid(translate(rotate(ELL, 90 * quarter, origin=(0, 0)), x, y))
     own = squares_of(polygon)
     if (0, 0) in own:
         return
     others = {tuple(square) for square in np.random.default_rng(seed).integers(-14, 14, (80, 2)).tolist()} - own
     with_load = impression(lambda i, j: (i, j) in others or (i, j) in own, (0, 0), angle)
-    samples, ranges = discounted(Frame(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)])
+    samples, ranges = subtract_held_objects(
+        Frame(angle).samples(), count_ranges(with_load.retina), 0, 0, [load(polygon)]
+    )
     for number in range(len(FIELDS)):
         if number == OWN_FIELD:
             continue
@@ -76,15 +78,17 @@ def test_an_impression_without_the_held_object_is_that_of_a_table_without_it(
 
 def test_subtracting_an_object_that_is_not_there_gives_negative_counts() -> None:
     empty = impression(lambda i, j: False, (0, 0))
-    _, ranges = discounted(Frame().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))])
+    _, ranges = subtract_held_objects(
+        Frame().samples(), count_ranges(empty.retina), 0, 0, [load(translate(BRICK, 1, 1))]
+    )
     assert (ranges[:, 1] < 0).any()
 
 
 def test_the_edge_squares_of_a_slanted_held_object_are_open_until_seen() -> None:
     askew = translate(rotate(BRICK, 20), 0.3, 1.2)
-    assert slack_of(askew) > 0 == slack_of(BRICK)
-    before = load(askew, slack_of(askew))
-    assert before.sure.squares() < covered(askew).squares() < before.possible.squares()
+    assert outline_tolerance(askew) > 0 == outline_tolerance(BRICK)
+    before = load(askew, outline_tolerance(askew))
+    assert before.sure.squares() < patch_of_polygon(askew).squares() < before.possible.squares()
     true = squares_of(askew)
     observation = impression(lambda i, j: (i, j) in true, (2, -1))
     after = before.seen(Frame().samples(), count_ranges(observation.retina), 2, -1)
@@ -139,7 +143,7 @@ def test_an_impression_of_the_true_table_never_contradicts_the_map(
     lying = rotate(thing, -90 * quarters, origin=(0, 0))
     observation = count_ranges(impression(with_it, here, heading).retina)
     x, y = on_lattice(here, quarters)
-    freed = discounted(frame.samples(), observation, x, y, [load(whole(lying))])
+    freed = subtract_held_objects(frame.samples(), observation, x, y, [load(snap_to_grid(lying))])
     assert occupancy.clashes(*freed, x, y) == 0
 
 

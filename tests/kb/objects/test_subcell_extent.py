@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Rotate, Translate
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import HeldObject, initial_insets
 from kb.objects.subcell_extent import (
     FULL_INSETS,
@@ -21,7 +21,7 @@ from kb.objects.subcell_extent import (
     SideValues,
     SubcellExtent,
     inset_change,
-    moved_in,
+    inset_outline,
     narrowed,
     turn_sides,
 )
@@ -35,7 +35,7 @@ parts = st.integers(0, 19).map(lambda n: n / 20 + 0.017)  # never exactly on a g
 
 def image(thing: Any) -> Any:
     """Return the outline of the squares that an object covers, by its corners."""
-    whole = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in covered(thing).squares()])
+    whole = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in patch_of_polygon(thing).squares()])
     points = whole.exterior.coords[:-1]
     around = zip([points[-1], *points], points, [*points[1:], points[0]], strict=False)
     return shapely.Polygon([b for a, b, c in around if (b[0] - a[0]) * (c[1] - b[1]) != (b[1] - a[1]) * (c[0] - b[0])])
@@ -43,7 +43,7 @@ def image(thing: Any) -> Any:
 
 def looks_like(thing: Any) -> Callable[[Any], bool]:
     """Return whether an outline covers the same squares as the object."""
-    return lambda outline: covered(outline).squares() == covered(thing).squares()
+    return lambda outline: patch_of_polygon(outline).squares() == patch_of_polygon(thing).squares()
 
 
 def lies_within(insets: SubcellExtent, seen: Any, thing: Any) -> bool:
@@ -75,9 +75,9 @@ def test_the_true_insets_stay_possible_after_any_pushes(
                 <= MIN_TESTED_INTERVAL
             )
         else:
-            assert covered(load.polygon).squares() == covered(thing).squares()
+            assert patch_of_polygon(load.polygon).squares() == patch_of_polygon(thing).squares()
         assert lies_within(load.insets, seen, thing)
-        assert load.sure.squares() <= covered(thing).squares() <= load.possible.squares()
+        assert load.sure.squares() <= patch_of_polygon(thing).squares() <= load.possible.squares()
 
 
 @given(st.sampled_from(sorted(SHAPES)), parts, parts, st.integers(0, 3))
@@ -126,7 +126,7 @@ def test_a_stopped_object_may_lie_beside_a_grid_line() -> None:
     load = HeldObject("o1", seen, seen, insets=SubcellExtent(), proven=True)
     there = shapely.box(0.25, 0, 4.25, 4)
     exact, stopped = (load.moved(there, 0.0, commanded=commanded) for commanded in (True, False))
-    assert exact.possible.squares() == covered(there).squares()
+    assert exact.possible.squares() == patch_of_polygon(there).squares()
     assert stopped.possible.squares() > exact.possible.squares()
 
 
@@ -137,15 +137,15 @@ sides = st.tuples(*[st.floats(0, 0.9)] * 4)
 @settings(max_examples=60, deadline=None)
 def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: SideValues, quarters: int) -> None:
     outline = rotate(SHAPES[name], 90 * quarters, origin=(0, 0))
-    there = moved_in(outline, by)
+    there = inset_outline(outline, by)
     assert there is not None and outline.buffer(1e-9).covers(there)
     x0, y0, x1, y1 = outline.bounds
     west, east, south, north = by
     assert there.bounds == pytest.approx((x0 + west, y0 + south, x1 - east, y1 - north))
     west, east, south, north = (-side for side in by)
-    back = moved_in(there, (west, east, south, north))
+    back = inset_outline(there, (west, east, south, north))
     assert back.symmetric_difference(outline).area < 1e-9
-    spun = moved_in(rotate(outline, 90, origin=(0, 0)), turn_sides(by, 1))
+    spun = inset_outline(rotate(outline, 90, origin=(0, 0)), turn_sides(by, 1))
     assert spun.symmetric_difference(rotate(there, 90, origin=(0, 0))).area < 1e-9
 
 
@@ -153,12 +153,12 @@ def test_sides_moved_in_and_out_again_lie_where_they_did(name: str, by: SideValu
     "outline", [rotate(ELL, 20), shapely.Point(0, 0).buffer(3), shapely.Polygon([(0, 0), (4, 0), (0, 4)])]
 )
 def test_an_outline_not_parallel_to_the_grid_cannot_be_inset(outline: Any) -> None:
-    assert moved_in(outline, (0.1, 0.1, 0.1, 0.1)) is None
+    assert inset_outline(outline, (0.1, 0.1, 0.1, 0.1)) is None
 
 
 def test_an_inset_that_removes_an_arm_gives_none() -> None:
-    assert moved_in(ELL, (1.0, 1.0, 0.0, 0.0)) is not None
-    assert moved_in(moved_in(ELL, (1.0, 1.0, 0.0, 0.0)), (0.5, 0.5, 0.0, 0.0)) is None
+    assert inset_outline(ELL, (1.0, 1.0, 0.0, 0.0)) is not None
+    assert inset_outline(inset_outline(ELL, (1.0, 1.0, 0.0, 0.0)), (0.5, 0.5, 0.0, 0.0)) is None
 
 
 @given(st.floats(0, 0.9), st.floats(0, 0.9), st.floats(0.01, 1), st.floats(0.01, 1))
@@ -177,7 +177,7 @@ def test_the_believed_insets_are_possible(west: float, east: float, wide: float,
 
 def node_of(load: HeldObject) -> Node:
     """Return a node with what is known of a held object."""
-    node = Node(load.name, "object", 100, "part1", covered(load.polygon), 0, polygon=load.polygon)
+    node = Node(load.name, "object", 100, "part1", patch_of_polygon(load.polygon), 0, polygon=load.polygon)
     return replace(node, short=load.short, insets=load.lying_insets, moved=True)
 
 
@@ -187,5 +187,5 @@ def test_an_object_with_nearly_known_sides_may_fill_whole_squares_but_is_not_exa
     aligned = thing.moved(shapely.box(3, 2, 6, 5), 0.01, commanded=True)
     assert aligned.play
     for less in (-0.005, 0.0, 0.005):
-        squares = covered(shapely.box(3 + less, 2, 6 + less, 5)).squares()
+        squares = patch_of_polygon(shapely.box(3 + less, 2, 6 + less, 5)).squares()
         assert aligned.sure.squares() <= squares <= aligned.possible.squares()

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
 from kb.reasoning import user_rules
-from kb.reasoning.interfaces import REACHED
+from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.query import QueryEngine
 from kb.reasoning.rulebook import INTERNAL_PREDICATES
-from kb.reasoning.solver import KB, solve
-from kb.reasoning.user_rules import checked_rules, read_rules
+from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.user_rules import read_rules, read_tested_rules
 from tests.encoding_cases import ENCODINGS, case_file
 
 FACTS = ["region(a,zero,100)"]
@@ -29,7 +29,7 @@ def written(tmp_path: Path, *rules: str) -> list[Path]:
 
 
 def answered(tmp_path: Path, *rules: str) -> list[str] | None:
-    found = solve([KB / "interpretation.lp", *written(tmp_path, *rules)], FACTS)
+    found = solve([KB_ENCODINGS / "interpretation.lp", *written(tmp_path, *rules)], FACTS)
     return None if found is None else [str(atom) for atom in found]
 
 
@@ -42,7 +42,7 @@ def complaint(tmp_path: Path, *rules: str) -> str:
 def refusal(tmp_path: Path, *rules: str) -> str:
     """Return the message about files of rules that are refused before solving."""
     with pytest.raises(BadInputError) as caught:
-        checked_rules(written(tmp_path, *rules))
+        read_tested_rules(written(tmp_path, *rules))
     return str(caught.value)
 
 
@@ -151,7 +151,7 @@ DERIVED = {
 
 @pytest.mark.parametrize("rules", DERIVED)
 def test_derived_atoms_are_checked_against_the_vocabulary(tmp_path: Path, rules: str) -> None:
-    checked_rules(written(tmp_path, rules))
+    read_tested_rules(written(tmp_path, rules))
     said = complaint(tmp_path, rules)
     assert DERIVED[rules] in said
     assert said.startswith(f"{tmp_path}/rules0.lp:1:")
@@ -235,27 +235,27 @@ def test_the_interface_tables_agree_with_the_encodings() -> None:
     unreached: dict[tuple[str, int], set[str]] = {}
     for path in ENCODINGS:
         interface = {entry.signature for entry in build.entries(path.read_text()) if entry.role}
-        if path.stem in REACHED:
-            assert set(REACHED[path.stem]) == interface, path
+        if path.stem in USER_RULE_INTERFACES:
+            assert set(USER_RULE_INTERFACES[path.stem]) == interface, path
         elif path.stem != "belief":
             for signature in interface:
                 unreached.setdefault(signature, set()).add(path.stem)
     assert {signature: set(names) for signature, names in INTERNAL_PREDICATES.items()} == unreached
 
 
-@pytest.mark.parametrize("name", REACHED)
+@pytest.mark.parametrize("name", USER_RULE_INTERFACES)
 def test_rules_that_derive_nothing_change_no_answer(tmp_path: Path, name: str) -> None:
     """With a rule that only reads, solved in another process, every case has the same answer as without it."""
     paths = written(tmp_path, "seen(1) :- #true.")
     facts = [
         fact.strip()
-        for line in case_file(KB / f"{name}.lp").read_text().split("%% ")[1].splitlines()[1:]
+        for line in case_file(KB_ENCODINGS / f"{name}.lp").read_text().split("%% ")[1].splitlines()[1:]
         if not line.startswith("%")
         for fact in line.split(". ")
         if fact.strip(" .")
     ]
     facts = [fact.removesuffix(".") for fact in facts]
-    assert solve([KB / f"{name}.lp", *paths], facts) == solve([KB / f"{name}.lp"], facts)
+    assert solve([KB_ENCODINGS / f"{name}.lp", *paths], facts) == solve([KB_ENCODINGS / f"{name}.lp"], facts)
 
 
 PIECES = """
@@ -274,8 +274,8 @@ def test_any_rule_file_is_accepted_or_refused_with_a_place(
     path = tmp_path_factory.mktemp("rules") / "rules.lp"
     path.write_text(text)
     try:
-        checked_rules([path])
-        solve([KB / "interpretation.lp", path], FACTS)
+        read_tested_rules([path])
+        solve([KB_ENCODINGS / "interpretation.lp", path], FACTS)
     except BadInputError as bad:
         for problem in bad.problems:
             assert problem.file == str(path)

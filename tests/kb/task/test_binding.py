@@ -6,14 +6,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.language.diagnostics import Span
+from kb.language.diagnostics import SourceSpan
 from kb.language.terms import Symbol
 from kb.task.binding import reconcile
 from kb.task.task import Claim, Parameter, Task
 from kb.world.model import Node
 from tests.kb.drawings import seen_whole
 
-NOWHERE = Span(0, 0, 0)
+NOWHERE = SourceSpan(0, 0, 0)
 MODEL = seen_whole(["bbbbbbbbb", "b.......b", "b.ggg.h.b", "b.ggg...b", "b....U..b", "bbbbbbbbb"])
 SHAPES, COLOURS = ("square", "brick", "disc"), ("g", "h")
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.task.task import Task, read_task
 
 
@@ -123,7 +123,7 @@ def test_the_problems_of_both_files_are_reported_together(tmp_path: Path) -> Non
 @given(st.from_regex(r"\A(_{0,2}[a-z][A-Za-z0-9_']{0,4}|not)\Z"))
 def test_clingo_accepts_every_parameter_name(name: str) -> None:
     try:
-        facts_of(f"object({name}).")
+        facts_from_text(f"object({name}).")
     except BadInputError:
         return
     assert str(clingo.parse_term(f"wanted({name})")) == f"wanted({name})"

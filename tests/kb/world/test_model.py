@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from kb.body import Grasp, Move, Release
 from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
-from kb.mapping.patch import Patch, covered, patch_of
+from kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from kb.objects.held_object import HeldObject
 from kb.objects.shape_fit import ShapeMeasurer
 from kb.perception.frame import Frame
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
-from kb.world.model import SPACE, count_open_squares
+from kb.world.model import MAX_FREE_PROBABILITY, count_open_squares
 from kb.world.object_names import ObjectNames
 from kb.world.objects import lay_upon
 from kb.world.rooms import rooms_of
@@ -176,7 +176,7 @@ def test_squares_within_the_tolerance_of_a_held_object_count_as_floor() -> None:
     inside = {(x, y) for x in (-3, -2, -1) for y in (1, 2, 3, 4)}
     may_be = {(x, y) for x in range(-4, 1) for y in range(1, 5)} - inside
     assert min(chances(inside)) == 1.0
-    assert 0.0 < min(chances(may_be)) <= max(chances(may_be)) <= SPACE
+    assert 0.0 < min(chances(may_be)) <= max(chances(may_be)) <= MAX_FREE_PROBABILITY
     assert not any(model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FREE for x, y in may_be)
 
 
@@ -204,7 +204,7 @@ def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
         knowledge.tracker.state = replace(memory, frame=Frame(angle, memory.frame.origin))
         thing, (i, j) = walk.model.objects[0], memory.square
         polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
-        knowledge.objects = (replace(thing, polygon=polygon, patch=covered(polygon), colour="g"),)
+        knowledge.objects = (replace(thing, polygon=polygon, patch=patch_of_polygon(polygon), colour="g"),)
         for column in (i - 1, i, i + 1):
             memory.occupancy.state[memory.occupancy.index(column, j + 1)] = FULL if wall else OPEN
         knowledge._grasp("north")

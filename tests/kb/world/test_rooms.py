@@ -7,7 +7,7 @@ import pytest
 
 from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
-from kb.world.model import SPACE, WorldModel
+from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from kb.world.rooms import rooms_of
 from planner.deciding.search import perhaps_islands
 from tests.kb.drawings import seen_whole, unclear
@@ -50,7 +50,7 @@ def unclear_between(first: int, last: int, chance: float) -> WorldModel:
     """
     model = unclear(seen_whole(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
     seen = model.view.seen
-    percept, labels = map_regions(seen & (model.view.probability > SPACE), seen, seen)
+    percept, labels = map_regions(seen & (model.view.probability > MAX_FREE_PROBABILITY), seen, seen)
     return replace(model, labels=labels, percept=percept, kinds=interpret_regions(percept))
 
 

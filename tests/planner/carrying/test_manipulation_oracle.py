@@ -11,12 +11,12 @@ import shapely.affinity
 
 from geometry.cspace.bottleneck import Bottleneck
 from geometry.manipulation.plan_carrying import CarryingPlan, Inside
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.mapping.occupancy import FULL
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.task.task import Task
 from kb.world.model import Node
-from kb.world.rooms import SURE
+from kb.world.rooms import MIN_DOOR_CONFIDENCE
 from planner.carrying.infeasibility import Infeasibility, certify, closest_refuted
 from planner.carrying.manipulation_oracle import (
     CONTACTS_FOR_CLEARANCE,
@@ -102,7 +102,7 @@ def test_an_object_stopped_off_the_grid_that_no_wider_passage_helps_proves_nothi
     moved: bool, west: float, opens: bool, proved: bool
 ) -> None:
     shape = shapely.box(west, 5, west + 4, 9)
-    node = Node("o1", "object", 60, "part1", covered(shape), 0, polygon=shape, moved=moved)
+    node = Node("o1", "object", 60, "part1", patch_of_polygon(shape), 0, polygon=shape, moved=moved)
     plan = CarryingPlan("impossible", reason="body")
     neck = Bottleneck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
     plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
@@ -146,8 +146,8 @@ def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool
     x, y = model.view.west + 11, model.view.south + 5
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
-    beside = Node("o1", "object", LIKELY - 1, "part1", covered(small), 0, polygon=small)
-    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square, moved=True, inexact=inexact)
+    beside = Node("o1", "object", LIKELY - 1, "part1", patch_of_polygon(small), 0, polygon=small)
+    node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
     assert isinstance(answer, Infeasibility) == proved
@@ -167,8 +167,8 @@ def test_an_immovable_obstacle_may_cover_the_squares_at_its_rim_in_part(movable:
     x, y = model.view.west + 11 - half, model.view.south + 6 - half
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
     fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
-    other = Node("o1", "object", 60, "part1", covered(fixed), 0, polygon=fixed, movable=movable)
-    node = Node("o2", "object", 99, "part2", covered(square), 0, polygon=square)
+    other = Node("o1", "object", 60, "part1", patch_of_polygon(fixed), 0, polygon=fixed, movable=movable)
+    node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square)
     model = replace(model, objects=(other, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 12))}), situation_of(model))
     assert isinstance(answer, Infeasibility) == proved
@@ -231,7 +231,7 @@ def test_no_object_is_carried_through_a_forbidden_door(who: str, found: bool, pr
     left, bottom = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(left, bottom, left + 2, bottom + 4))
     model = replace(model, objects=(node,), held=node.name, place=(left + 2.5, bottom + 1.5))
-    task = Task({}, (), facts_of(f"not_through({who}, d).") if who else ())
+    task = Task({}, (), facts_from_text(f"not_through({who}, d).") if who else ())
     situation = situation_of(model, {"x": node.name}, task)
     assert len(situation.rooms.sure) == 1
     request = Request(node, {"r": Inside(shapely.box(13, 1, 23, 13))}, held=True)
@@ -239,6 +239,8 @@ def test_no_object_is_carried_through_a_forbidden_door(who: str, found: bool, pr
     assert isinstance(answer, ManipulationPlan) == found
     assert not isinstance(answer, Infeasibility) or answer.proved == proved
     (door,) = situation.rooms.doors
-    likely = replace(situation, rooms=replace(situation.rooms, doors=(replace(door, confidence=SURE - 1),)))
+    likely = replace(
+        situation, rooms=replace(situation.rooms, doors=(replace(door, confidence=MIN_DOOR_CONFIDENCE - 1),))
+    )
     assert bool(likely.forbidden(node.name)) == (who == "x")  # an object is kept from whatever may be a door
     assert bool(likely.forbidden("utak")) == (who == "utak")  # and so is the robot, while no door is sure

@@ -9,10 +9,10 @@ import shapely.affinity
 
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
-from geometry.raster.geodesic import UNREACHED, reach
-from geometry.raster.rasterize import areas
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.rasterize import covered_areas
 from kb.body import Grasp, Move, Push, Turn
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.mapping.patch import Patch
 from kb.world.model import Node
 from planner.deciding.clearing import Obstacle, ObstacleClearer, obstacles
@@ -37,7 +37,7 @@ ELSEWHERE = rooms(["b..gg" + "." * 20 + "b"] * 3)
 BEHIND = rooms(["b" + "." * 9 + "gg" + ".." + "kk" + "." * 9 + "b"] * 3)  # each other
 WITHIN = rooms(["b" + "." * 9 + "ggb" + "." * 12 + "b"] * 3)  # one column of the door
 AGAINST = rooms(["b" + "." * 9 + "gg" + "bb" + "." * 11 + "b"] * 3)  # a wall
-UTAK = Stage(facts_of("in(utak, room(next))."))
+UTAK = Stage(facts_from_text("in(utak, room(next))."))
 GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
 
 
@@ -85,8 +85,8 @@ def test_an_object_before_the_only_door_is_an_obstacle() -> None:
     for there, fit in zip(lying, fits, strict=True):  # where it may lie, the robot comes to the other room
         if fit:
             free = situation.model.space | situation.model.mask(node.patch)
-            free &= areas(there, free.shape[1], free.shape[0]) == 0.0
-            assert reach(free, *situation.cost_maps.here)[5, 20] != UNREACHED
+            free &= covered_areas(there, free.shape[1], free.shape[0]) == 0.0
+            assert reach(free, *situation.cost_maps.here)[5, 20] != GEODESIC_UNREACHED
 
 
 @pytest.mark.parametrize("rows", [ELSEWHERE, AGAINST])
@@ -145,7 +145,7 @@ def test_an_obstacle_that_may_be_wall_is_felt_first() -> None:
 
 def test_an_object_that_the_goal_is_about_stays() -> None:
     situation = replace(known(BEFORE), binding={"x": "g"})
-    decided = Clearing().before(GIVEN_UP, Stage(facts_of("circled(utak, x).")), situation)
+    decided = Clearing().before(GIVEN_UP, Stage(facts_from_text("circled(utak, x).")), situation)
     assert (decided.command, decided.verdict) == (None, "limit")  # nothing is proved of what lies behind it
     assert Clearing().before(GIVEN_UP, UTAK, situation).command is not None
 

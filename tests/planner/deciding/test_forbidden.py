@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kb.task.task import Task
-from kb.world.rooms import Door, crosses, went_through
+from kb.world.rooms import Door, count_crossings, went_through
 from planner.situation import Situation
 from tests.kb.drawings import seen_whole
 from tests.planner.carrying.test_carrying import run, scene
@@ -39,7 +39,7 @@ def test_a_track_over_the_neck_of_a_door_goes_through_it(track: list[tuple[float
 
 
 def test_a_track_there_and_back_crosses_nothing_in_all() -> None:
-    assert crosses(np.array([(1, 3), (8, 3), (1, 3)], float), DOOR) == 0
+    assert count_crossings(np.array([(1, 3), (8, 3), (1, 3)], float), DOOR) == 0
 
 
 def situation(rows: list[str], confidence: int, *track: tuple[float, float]) -> Situation:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geometry.raster.components import edged
+from geometry.raster.components import with_edge_neighbours
 from planner.deciding.search import Candidate, chance_of_none
 from planner.navigation.subgoals import Subgoal
 from planner.screen.projection import grown, marked
@@ -19,8 +19,8 @@ def test_an_edged_mask_has_all_squares_that_share_an_edge_with_it(rows: int, col
     mask = np.random.default_rng(seed).random((rows, columns)) < 0.2
     marked = np.argwhere(mask)
     want = [np.abs(marked - square).sum(1).min(initial=9) <= 1 for square in np.ndindex(rows, columns)]
-    assert edged(mask).ravel().tolist() == want
-    assert not (edged(mask) & ~grown(mask, 1)).any()
+    assert with_edge_neighbours(mask).ravel().tolist() == want
+    assert not (with_edge_neighbours(mask) & ~grown(mask, 1)).any()
 
 
 def candidate(squares: list[int], chance: int) -> Candidate:

@@ -11,9 +11,9 @@ import shapely
 from geometry.manipulation.plan_carrying import CarryingPlan, Inside, Leg
 from geometry.motion.se2 import Rotate, Translate
 from kb.body import Command, Grasp, Move, Push, Release
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.mapping.occupancy import OPEN
-from kb.task.binding import Reconciled
+from kb.task.binding import Reconciliation
 from kb.world.model import Node, WorldModel
 from planner.advice import Act, Go
 from planner.carrying.infeasibility import Infeasibility
@@ -31,7 +31,7 @@ from tests.kb.drawings import seen_whole
 from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with
 
 NOTHING: tuple[str | None, ...] = (None,) * 8
-NOTHING_DOUBTFUL = Reconciled({}, (), (), ())
+NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 EAST, NORTHWEST = 2, 7
 
 
@@ -202,7 +202,10 @@ def test_a_held_object_is_not_released_to_look_at_its_way_unless_that_is_long(
 def test_after_a_restart_an_object_is_not_said_to_be_in_the_next_room(lost: bool) -> None:
     situation = beside(())
     (node,) = situation.model.objects
-    transporter, stage = Transporter(place=lambda *_: Placement({}, holds=True)), Stage(facts_of("through(x, d)."))
+    transporter, stage = (
+        Transporter(place=lambda *_: Placement({}, holds=True)),
+        Stage(facts_from_text("through(x, d).")),
+    )
     transporter.origin_of("x", node, situation)
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
     decision = transporter.towards(stage.goals[0], stage, after, NOTHING_DOUBTFUL, tools_with())
@@ -222,7 +225,7 @@ def about_to_turn(spread: float, turn: float, looks: int) -> tuple[Situation, Re
     motions = (Rotate(turn, (0.5, 0.5)),) if turn else (Translate(3.0, 0.0),)
     leg = Leg((0.5, 0.5), (1, 0), motions)
     plan = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
-    return situation, plan, node, Stage(facts_of("at(x, corner(northeast))."))
+    return situation, plan, node, Stage(facts_from_text("at(x, corner(northeast))."))
 
 
 class AdvisingExecutor:
@@ -258,7 +261,7 @@ def test_an_object_that_does_not_move_proves_nothing_while_the_frame_is_open(
     tools = tools_with(PlanExecutor(plan=plan))
     view = situation.model.view._replace(sure=sure)
     fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
-    reconciled = Reconciled({}, ("x",), (), (), (("x", node.name),))
+    reconciled = Reconciliation({}, ("x",), (), (), (("x", node.name),))
     looking = Transporter().towards(stage.goals[0], stage, situation_of(fixed, {}), reconciled, tools)
     assert looking is not None and looking.command is not None  # for another x
     seen_all = Transporter(search=lambda *_: [])

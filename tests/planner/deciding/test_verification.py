@@ -9,10 +9,10 @@ import shapely
 
 from geometry.manipulation.plan_carrying import Inside
 from kb.body import Move
-from kb.language.reader import facts_of
-from kb.task.binding import Reconciled
+from kb.language.reader import facts_from_text
+from kb.task.binding import Reconciliation
 from kb.world.model import WorldModel
-from kb.world.rooms import SURE
+from kb.world.rooms import MIN_DOOR_CONFIDENCE
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import ManipulationOracle, Request
 from planner.carrying.open_facts import qualify
@@ -31,7 +31,7 @@ from planner.stages import Stage
 from tests.kb.drawings import seen_whole, walked
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, tools_with
 
-AT_START = replace(NO_TASK, goals=facts_of("at(utak, start)."))
+AT_START = replace(NO_TASK, goals=facts_from_text("at(utak, start)."))
 NARROW = [
     "b" * 30,
     *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5,
@@ -146,8 +146,8 @@ def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> N
     model = seen_whole(BESIDE_A_THING)
     model = replace(model, objects=(), view=model.view._replace(sure=sure))
     transporter = Transporter(search=lambda *_: [])
-    (goal,) = facts_of("in(x, room(next)).")
-    unseen = Reconciled({}, ("x",), (), ())
+    (goal,) = facts_from_text("in(x, room(next)).")
+    unseen = Reconciliation({}, ("x",), (), ())
     decision = transporter.towards(goal, Stage((goal,)), situation_of(model), unseen, tools_with())
     assert decision is not None
     found = qualify(decision, model)
@@ -209,4 +209,4 @@ def test_a_floor_that_is_seen_to_be_wide_is_another_room() -> None:
     situation = situation_of(walked(NEXT, [*WAY, (10, 2)]).model)
     covered = situation.model.squares([(24, -10), (25, -10)])
     assert unseen_beyond_door("in", (0.5, 5.0), covered, situation) is None
-    assert situation.next_to((0.5, 5.0), situation.rooms, SURE)[covered].all()
+    assert situation.next_to((0.5, 5.0), situation.rooms, MIN_DOOR_CONFIDENCE)[covered].all()

@@ -5,7 +5,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geometry.manipulation.goals import At, End, InCorner, Inside, met, placed
+from geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
 from geometry.motion.se2 import Pose
 from planner.goals.joint import conflict, enclosing_region, opposite_corners
 from planner.goals.placement import Placement
@@ -52,8 +52,8 @@ def test_a_shape_that_meets_an_end_lies_within_its_enclosing_region(
     end: End, dx: float, dy: float, degrees: float
 ) -> None:
     pose = end.pose if isinstance(end, At) else Pose(dx, dy, degrees)
-    lying = placed(THING, pose)
-    if met(end, THING, lying):
+    lying = shape_at_pose(THING, pose)
+    if is_goal_met(end, THING, lying):
         assert enclosing_region(end, THING).buffer(1e-5).covers(lying)
 
 

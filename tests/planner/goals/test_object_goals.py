@@ -8,8 +8,8 @@ import pytest
 import shapely
 import shapely.affinity
 
-from kb.language.reader import facts_of
-from kb.mapping.patch import covered
+from kb.language.reader import facts_from_text
+from kb.mapping.patch import patch_of_polygon
 from kb.world.model import Node, WorldModel
 from planner.carrying.plan_executor import PlanExecutor
 from planner.goals.object_goals import landing
@@ -26,13 +26,13 @@ SHUT_IN = [
     *["b" + "." * 18 + "b"] * 5,
     "b" * 20,
 ]
-NORTHEAST = facts_of("at(x, corner(northeast)).")[0]
+NORTHEAST = facts_from_text("at(x, corner(northeast)).")[0]
 
 
 def landing_of(model: WorldModel, held: bool) -> Placement:
     """Return the placement of a ring around the robot in the northeast corner. held : whether the robot holds it."""
     ring = shapely.box(-1, -1, 4, 2) - shapely.box(0, 0, 1, 1) - shapely.box(-1, 0, 0, 1)
-    node = Node("o1", "object", 95, "part1", covered(ring), 0, polygon=ring, moved=held)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(ring), 0, polygon=ring, moved=held)
     situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
     return landing(NORTHEAST, node, (0.0, 0.0), situation)
 
@@ -47,7 +47,7 @@ def test_a_carried_object_does_not_shut_the_robot_in(held: bool) -> None:
 def test_walls_do_shut_the_robot_in() -> None:
     model = seen_whole([row.replace("g", "b") for row in SHUT_IN])
     square = shapely.box(8, 0, 11, 3)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square)
     found = landing(NORTHEAST, node, (0.0, 0.0), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
     assert not found.ends
     assert "passage" in found.missing
@@ -60,7 +60,7 @@ def test_an_object_before_a_door_is_refused_only_where_it_is_too_wide(wide: int)
     rows += ["b" + "." * 18 + "b"] * 6 + ["b..U" + "." * 15 + "b", "b" * 20]
     model = seen_whole(rows)
     square = shapely.box(5, 4, 8, 7)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square, moved=True, movable=99)
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
     found = landing(NORTHEAST, node, (0.0, 0.0), situation)
     assert not found.ends
@@ -86,7 +86,7 @@ OPEN_ENDED = [
 def test_an_object_is_brought_into_the_corner_of_the_seen_floor_while_the_true_corner_is_unseen() -> None:
     model = seen_whole(OPEN_ENDED)
     square = shapely.box(2, 0, 5, 3)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square)
     situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
     found = landing(NORTHEAST, node, (3.5, 1.5), situation)
     assert not found.ends
@@ -98,7 +98,7 @@ def test_an_object_is_brought_into_the_corner_of_the_seen_floor_while_the_true_c
     assert not lands(corner, shapely.affinity.translate(shape, -2, 0))
     assert lands(about, shapely.affinity.translate(shape, -2, 0))
     there = shapely.transform(shape, lambda points: points + np.array([model.view.west, model.view.south]))
-    arrived = replace(node, patch=covered(there), polygon=there)
+    arrived = replace(node, patch=patch_of_polygon(there), polygon=there)
     situation = situation_of(replace(model, objects=(arrived,)), {"x": "o1"})
     assert not landing(NORTHEAST, arrived, (3.5, 1.5), situation).approach
 
@@ -117,7 +117,7 @@ def test_a_rotated_object_in_a_corner_must_not_reach_far_from_the_walls(turned: 
     askew = shapely.affinity.rotate(shapely.box(0, 0, 4, 4), turned)
     _, _, x, y = askew.bounds
     there = shapely.affinity.translate(askew, east - x - gap, north - y - gap)
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, turned=turned)
+    node = Node("o1", "object", 100, "part1", patch_of_polygon(there), 0, polygon=there, moved=True, turned=turned)
     situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
     found = landing(NORTHEAST, node, (3.5, 1.5), situation)
     assert found.holds == holds
@@ -134,7 +134,7 @@ def test_an_object_at_an_inexact_place_must_be_nearer_to_the_corner_if_possible(
     row, column = np.argwhere(model.space)[-1]
     east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
     there = shapely.box(east - 4, north - 4, east, north)
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, inexact=inexact)
+    node = Node("o1", "object", 100, "part1", patch_of_polygon(there), 0, polygon=there, moved=True, inexact=inexact)
     found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
@@ -153,7 +153,7 @@ def test_an_object_that_may_be_smaller_is_in_a_corner_only_if_it_is_at_its_small
     east, north = model.view.west + column + 1 - gap, model.view.south + row + 1 - gap
     there = shapely.box(east - 4, north - 4, east, north)
     sides = (1.0, short, 1.0, short)  # the other sides do not matter
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, short=sides)
+    node = Node("o1", "object", 100, "part1", patch_of_polygon(there), 0, polygon=there, moved=True, short=sides)
     found = landing(NORTHEAST, node, (3.5, 1.5), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
     shape = shapely.affinity.translate(there, -model.view.west, -model.view.south)
     assert found.holds == holds
@@ -170,7 +170,7 @@ def test_an_optimistic_corner_lies_where_the_floor_likely_goes_on(chance: float,
     top = int(np.argwhere(model.space)[-1][0])
     model = unclear(model, slice(top + 1, top + 1 + rows_open), slice(1, 21), chance)
     square = shapely.box(2, 0, 5, 3)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square)
     situation = situation_of(replace(model, objects=(node,)), {"x": "o1"})
     found = landing(NORTHEAST, node, (3.5, 1.5), situation)
     (name, end), *_ = [*found.ends.items(), *found.approach.items()]
@@ -189,7 +189,7 @@ def test_a_robot_shut_in_by_its_held_object_must_look_into_unseen_rooms(behind: 
     rows += [door if behind == "?" else wall] * 2
     model = seen_whole([*rows, *[behind * 18] * 3])
     there = shapely.box(-2.75, -2.75, 0.25, 0.25)  # 0.75 squares from the two walls of the corner
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
+    node = Node("o1", "object", 100, "part1", patch_of_polygon(there), 0, polygon=there, moved=True, movable=99)
     for held in ("o1", None):
         situation = situation_of(replace(model, objects=(node,), held=held), {"x": "o1"})
         assert np.count_nonzero(situation.cost_maps.floor) <= 1
@@ -210,7 +210,7 @@ def test_unseen_rooms_are_looked_into_on_the_way_with_the_object_in_hand(behind:
     rows += [door if behind == "?" else wall] * 2
     model = seen_whole([*rows, *[behind * 18] * 3])
     there = shapely.box(1, -2, 4, 1)
-    node = Node("o1", "object", 100, "part1", covered(there), 0, polygon=there, moved=True, movable=99)
+    node = Node("o1", "object", 100, "part1", patch_of_polygon(there), 0, polygon=there, moved=True, movable=99)
     situation = situation_of(replace(model, objects=(node,), held="o1" if held else None), {"x": "o1"})
     found = landing(NORTHEAST, node, (2.5, -0.5), situation)
     assert found.ends and not found.holds
@@ -231,9 +231,9 @@ def test_a_refusal_of_all_ends_proves_nothing_when_others_exist(goal: str) -> No
     """The object may be across the corner of the start, or nearly at its pose."""
     model = seen_whole(NOOK)
     square = shapely.box(5, -6, 10, -1)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square, moved=True, movable=99)
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
-    found = landing(facts_of(goal)[0], node, (0.0, 0.0), situation)
+    found = landing(facts_from_text(goal)[0], node, (0.0, 0.0), situation)
     assert found.some
     refused = PlanExecutor().infeasibility(node, found.ends, situation)
     assert refused is not None
@@ -244,9 +244,9 @@ def test_a_refusal_of_all_ends_proves_nothing_when_others_exist(goal: str) -> No
 def test_a_loose_end_near_a_target_is_within_one_square_of_it() -> None:
     model = seen_whole(NOOK)
     square = shapely.box(5, -6, 9, -3)
-    node = Node("o1", "object", 95, "part1", covered(square), 0, polygon=square, moved=True, movable=99)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(square), 0, polygon=square, moved=True, movable=99)
     situation = situation_of(replace(model, objects=(node,)), {"x": node.name})
-    found = landing(facts_of("at(x, start).")[0], node, (0.0, 0.0), situation)
+    found = landing(facts_from_text("at(x, start).")[0], node, (0.0, 0.0), situation)
     (end,) = found.loose.values()
     start = shapely.box(1, 9, 2, 10)  # view frame
     near = 0

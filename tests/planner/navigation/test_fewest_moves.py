@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kb.language.diagnostics import Span
+from kb.language.diagnostics import SourceSpan
 from kb.language.terms import Symbol
 from kb.task.task import Task
 from kb.world.rooms import rooms_of
@@ -47,7 +47,7 @@ def subgoal(*squares: tuple[int, int]) -> Subgoal:
 
 
 def symbol(name: str, *args: Symbol) -> Symbol:
-    return Symbol(name, args, Span(0, 0, 0))
+    return Symbol(name, args, SourceSpan(0, 0, 0))
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.raster.components import edged
-from kb.language.reader import facts_of
+from geometry.raster.components import with_edge_neighbours
+from kb.language.reader import facts_from_text
 from kb.mapping.occupancy import FULL, OPEN
 from kb.world.corners import Corner
 from planner.goals.corner_goal import approach
@@ -52,7 +52,7 @@ def test_a_likely_object_is_approached(to: Approach) -> None:
     cost_maps, mask = room()
     squares = inspection_squares(cost_maps, mask, 0.8, to)
     assert (distance_from(squares, mask) == 1).all()
-    assert edged(mask).ravel()[squares].all()
+    assert with_edge_neighbours(mask).ravel()[squares].all()
 
 
 def test_an_object_to_take_is_approached_where_it_surely_is() -> None:
@@ -63,9 +63,9 @@ def test_an_object_to_take_is_approached_where_it_surely_is() -> None:
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
     cost_maps = CostMaps(replace(cost_maps.model, view=view._replace(probability=doubtful)))
     squares = inspection_squares(cost_maps, mask, 0.8, TAKE)
-    assert edged(mask & ~rim).ravel()[squares].all()
+    assert with_edge_neighbours(mask & ~rim).ravel()[squares].all()
     only = CostMaps(replace(cost_maps.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
-    assert edged(mask).ravel()[inspection_squares(only, mask, 0.8, TAKE)].all()
+    assert with_edge_neighbours(mask).ravel()[inspection_squares(only, mask, 0.8, TAKE)].all()
 
 
 def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
@@ -118,7 +118,7 @@ def test_the_robot_stands_in_the_way_where_no_other_side_is_floor() -> None:
 def test_a_side_that_one_straight_move_reaches_is_preferred() -> None:
     cost_maps, mask = room()
     met = one_move(cost_maps, "inspect").ravel()
-    at_sides = np.flatnonzero(edged(mask) & cost_maps.floor)
+    at_sides = np.flatnonzero(with_edge_neighbours(mask) & cost_maps.floor)
     assert met[at_sides].any()
     assert not met[at_sides].all()
     assert met[inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, TAKE)].all()
@@ -132,9 +132,9 @@ def test_an_approach_crosses_squares_beside_an_object_that_may_be_floor() -> Non
     cost_maps = looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[1], OPEN)
     assert not cost_maps.believed[ring].any()
     assert (HURRY.passable(cost_maps, "inspect") == cost_maps.approachable).all()
-    assert (cost_maps.approachable & ~cost_maps.believed == edged(mask) & ring).all()
+    assert (cost_maps.approachable & ~cost_maps.believed == with_edge_neighbours(mask) & ring).all()
     squares = inspection_squares(cost_maps, mask, 1.0, TAKE)
-    assert edged(mask).ravel()[squares].all()
+    assert with_edge_neighbours(mask).ravel()[squares].all()
     fewest, subgoal = FewestMoves(cost_maps), Subgoal("inspect", squares, "a thing")
     way, dear = fewest.way(subgoal), fewest.priced([subgoal])[0]
     assert way is not None
@@ -148,8 +148,8 @@ def test_an_approach_crosses_squares_beside_an_object_that_may_be_floor() -> Non
 def test_no_such_approach_leads_beside_the_verge() -> None:
     cost_maps, _ = room()
     verge = cost_maps.model.verge & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
-    assert (edged(verge) & cost_maps.believed).any()
-    beside = edged(verge) & ~verge
+    assert (with_edge_neighbours(verge) & cost_maps.believed).any()
+    beside = with_edge_neighbours(verge) & ~verge
     cost_maps = looking(cost_maps, beside, LEVEL_MAX_PROBABILITY[1], OPEN)
     assert not cost_maps.approachable[beside].any()
 
@@ -166,11 +166,11 @@ def test_the_distance_of_an_unreachable_square_is_straight() -> None:
 def test_an_object_for_a_corner_is_approached_from_the_side_away_from_its_walls() -> None:
     cost_maps, _ = room()
     corners = {"northeast": Corner((9.0, 5.0), (8, 5)), "southwest": Corner((2.0, 3.0), (2, 3))}
-    goals = {name: facts_of(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
+    goals = {name: facts_from_text(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
     situation = situation_of(cost_maps.model, {})
     situation = replace(situation, corners=corners)
     assert approach([goals["northeast"]], situation) == TAKE._replace(corner=(1, -1))
     assert approach([goals["southwest"]], situation) == TAKE._replace(corner=(-1, -1))
     assert approach([goals["southeast"]], situation) == TAKE
-    assert approach([facts_of("in(x, room(next)).")[0], goals["northeast"]], situation).corner == (1, -1)
-    assert approach([facts_of("beside(x, y).")[0]], situation) == TAKE
+    assert approach([facts_from_text("in(x, room(next)).")[0], goals["northeast"]], situation).corner == (1, -1)
+    assert approach([facts_from_text("beside(x, y).")[0]], situation) == TAKE

@@ -14,9 +14,9 @@ from geometry.manipulation.plan_carrying import Leg
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Grasp, Move, Push, Release
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.mapping.patch import Patch
-from kb.task.binding import Reconciled
+from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act, See
 from planner.carrying.plan_executor import Advice, PlanExecutor
@@ -37,7 +37,7 @@ from tests.kb.drawings import seen_whole
 from tests.planner.situations import situation_of, tools_with
 
 EAST = 2
-NOTHING_DOUBTFUL = Reconciled({}, (), (), ())
+NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 ROOM = [
     "b" * 24,
     *["b" + "." * 22 + "b"] * 5,
@@ -103,7 +103,7 @@ def asked_to_see(situation: Situation, squares: Squares, pull: bool = True) -> t
 
 def command_to_see(transporter: Transporter, situation: Situation, tools: Tools) -> object:
     """Return the command towards a goal for the held object."""
-    (goal,) = facts_of("at(x, corner(northeast)).")
+    (goal,) = facts_from_text("at(x, corner(northeast)).")
     decision = transporter.towards(goal, Stage((goal,)), situation, NOTHING_DOUBTFUL, tools)
     assert decision is not None
     return decision.command
@@ -132,7 +132,7 @@ def exploring(situation: Situation, squares: Squares, viewpoints: bool, pursuer:
     nowhere = Placement({}, "it is not seen yet", looks if viewpoints else ())
     subgoals = [Subgoal(SubgoalKind.EXPLORE, squares, "it goes on unseen")]
     transporter = Transporter(lambda *_: nowhere, lambda *_: subgoals)
-    (goal,) = facts_of("around(x, corner).")
+    (goal,) = facts_from_text("around(x, corner).")
     tools = tools_with(pursuer=pursuer)
     decision = transporter.towards(goal, Stage((goal,)), situation, NOTHING_DOUBTFUL, tools)
     assert decision is not None
@@ -236,7 +236,7 @@ def test_an_object_that_shuts_the_robot_in_is_taken_along_once() -> None:
     land = Placement({}, "a room is not seen", looks, shut_in=True)
     subgoals = [Subgoal(SubgoalKind.INSPECT, looks[0].squares, looks[0].what)]
     transporter, tools = Transporter(lambda *_: land, lambda *_: subgoals), tools_with()
-    (goal,) = facts_of("at(x, corner(northeast)).")
+    (goal,) = facts_from_text("at(x, corner(northeast)).")
     stage = Stage((goal,))
     decisions = [transporter.towards(goal, stage, situation, NOTHING_DOUBTFUL, tools) for _ in range(2)]
     assert [decision and decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]

@@ -11,7 +11,7 @@ from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
 from kb.mapping.occupancy import FULL
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.world.model import Node, WorldModel
 from planner.skills.failed_grasps import MAX_RETRIES, FailedGrasps
 from planner.skills.unjam import RETREAT, ROOM_AHEAD, ROOM_TO_SPARE, retreat_push
@@ -34,7 +34,7 @@ def before_the_door(x: float, wide: float, inexact: bool = True) -> tuple[Node, 
     model = seen_whole(DOOR)
     sill = min(row for row in range(1, 12) if model.view.state[model.view.locate(0, row)] == FULL)
     polygon = shapely.box(x, sill - 4.0, x + wide, sill)
-    node = Node("o1", "object", 95, "part1", covered(polygon), 0, polygon=polygon, moved=True, inexact=inexact)
+    node = Node("o1", "object", 95, "part1", patch_of_polygon(polygon), 0, polygon=polygon, moved=True, inexact=inexact)
     return node, replace(model, objects=(node,))
 
 

@@ -101,7 +101,7 @@ from geometry.kernels import jit
 jit.PATIENCE, jit.OFTEN = 0.0, 0.0
 from geometry.homotopy.funnel import measure_line
 measure_line(np.zeros((2, 2)), 2)
-print(*jit.ready())
+print(*jit.kernel_status())
 """
 
 

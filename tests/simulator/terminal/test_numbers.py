@@ -14,10 +14,10 @@ from random_scenes import write_scene
 
 from geometry.io.movingai import MapError, parse_map
 from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_of
+from kb.language.reader import facts_from_text
 from kb.language.wkt import WktError, parse_wkt
 from kb.reasoning.query import QueryEngine
-from kb.reasoning.user_rules import checked_rules
+from kb.reasoning.user_rules import read_tested_rules
 from simulator.cli import parsing
 from simulator.cli.main import main
 from simulator.terminal.printing import as_json
@@ -42,7 +42,7 @@ def test_no_integer_beyond_32_bits_enters(engine: QueryEngine, number: int) -> N
     with pytest.raises(BadInputError, match="beyond 32 bits"):
         engine.ask([f"offset(o1,{number},50)."], "node(X)")  # as an episode may state it
     with pytest.raises(BadInputError, match="beyond 32 bits"):
-        facts_of(f"p(f({number})).")
+        facts_from_text(f"p(f({number})).")
 
 
 @settings(max_examples=60, deadline=None)
@@ -51,7 +51,7 @@ def test_every_integer_of_32_bits_enters_as_it_is(engine: QueryEngine, number: i
     assert engine.ask([f"offset(o1,{number},50)."], "offset(o1, X, _)").rows == ((number,),)
     assert engine.ask([f"offset(o1,{number},50)."], f"offset(o1, {number}, 50)").kind == "yes"
     assert engine.ask([], f"X = {number}").rows == ((number,),)
-    assert [str(fact) for fact in facts_of(f"p({number}).")] == [f"p({number})"]
+    assert [str(fact) for fact in facts_from_text(f"p({number}).")] == [f"p({number})"]
 
 
 @pytest.mark.parametrize("number", ["2147483648", "-2147483649", "4294967546", "0x100000000", "9" * 200])
@@ -60,9 +60,9 @@ def test_rules_hold_no_integer_beyond_32_bits(tmp_path: Path, number: str) -> No
     for rules in (f"p({number}).", f"#const n={number}.\np(n).", f"p(X) :- q(X), X < {number}. q(1)."):
         path.write_text(rules)
         with pytest.raises(BadInputError, match="beyond 32 bits"):
-            checked_rules([path])
+            read_tested_rules([path])
     path.write_text(f'p("{number}"). % {number}\n%* {number} *%')
-    checked_rules([path])
+    read_tested_rules([path])
 
 
 SPELT = ["99999999999999999999", "1_0", "\uff11", "1.0", "1e1", "0x1", "", " ", "--1", "nan", "inf", "1" * 5000]

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.counts.gibbs import CORNER
+from geometry.counts.gibbs import CORNER_COST
 from kb.localisation.hypotheses.frames import (
     ALL_HYPOTHESES,
     CENTRED_HYPOTHESES,
@@ -131,7 +131,7 @@ def test_straight_walls_cost_nothing_at_any_length(room: list[str]) -> None:
     near, far = cost(looked(room, LOOKS[:1])), cost(looked(room, LOOKS))
     corners = 4 + 4 * (room != LARGE_ROOM)
     assert near <= far + 1e-9
-    assert far <= LOG_ODDS_PER_COST * CORNER * corners + 1e-9
+    assert far <= LOG_ODDS_PER_COST * CORNER_COST * corners + 1e-9
 
 
 def test_an_observation_at_a_wrong_place_raises_the_cost_of_the_map() -> None:

@@ -10,7 +10,7 @@ from shapely.affinity import rotate, translate
 
 from kb.localisation.hypotheses.frames import ObjectPose, Observation
 from kb.localisation.hypotheses.remap import RemapCache, ReplayPrefixes, object_pose, remap, shift_object
-from kb.objects.held_object import HeldObject, whole
+from kb.objects.held_object import HeldObject, snap_to_grid
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, retina, world_of
@@ -75,7 +75,7 @@ def test_remapping_in_two_steps_equals_remapping_at_once(heading: int, other: Fr
     straight = rotate(_felt(thing, start, heading), heading)
     x0, y0 = straight.bounds[:2]
     observations, held, new, truth = carried(
-        thing, whole(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
+        thing, snap_to_grid(translate(straight, round(x0) - x0, round(y0) - y0)), start, heading
     )
     at_once = remap(new, Frame(), observations, [held])
     later = remap(new, other, observations, remap(other, Frame(), observations, [held]).held_objects.values())

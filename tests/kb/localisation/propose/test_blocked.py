@@ -12,7 +12,7 @@ from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES
 from kb.localisation.propose.blocked import NEGLIGIBLE_CONTACT_CHANCE, possible_ends
 from kb.localisation.state import TrackerState
 from kb.localisation.tracker import Tracker
-from kb.mapping.completions import NO_COMPLETIONS, draw_completions, ground_of
+from kb.mapping.completions import NO_COMPLETIONS, draw_completions, given_squares
 from kb.mapping.occupancy import FREE
 from kb.objects.held_object import HeldObject
 from kb.perception.retina import count_ranges
@@ -33,7 +33,7 @@ def awake(room: Occupied, square: tuple[int, int], thing: shapely.Polygon | None
         lies = translate(thing, -square[0], -square[1])
         tracker.grasp(HeldObject("o1", lies, lies, proven=True))
     view = tracker.state.occupancy.view()
-    tracker.keep_completions(draw_completions(view, ground_of(view), NO_COMPLETIONS))
+    tracker.keep_completions(draw_completions(view, given_squares(view), NO_COMPLETIONS))
     return tracker
 
 

@@ -14,7 +14,7 @@ from kb.localisation.hypotheses.remap import object_pose, remap
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.localisation.propose.contradicted_motion import shortened_turn
 from kb.mapping.occupancy import OPEN
-from kb.mapping.patch import covered
+from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import CENTRE, Frame
 from kb.perception.retina import count_ranges
@@ -47,7 +47,7 @@ def turned_by(commanded: float, truly: float) -> tuple[Surprise, HeldObject, Rot
     brought = Observation(count_ranges(retina(around(thing, HALL), here)), (0.0, 0.0), (object_pose(held, frame),))
     observations = [observation, observation._replace(moved=(object_pose(taken, frame),)), brought]
     occupancy, held_objects = remap(frame, frame, observations, [held]).occupancy, {"o1": held}
-    for square in covered(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
+    for square in patch_of_polygon(rotate(lies, commanded, origin=CENTRE).buffer(1.5)).squares():
         occupancy.state[occupancy.index(*square)] = OPEN  # no earlier observation shows them
     after = count_ranges(retina(around(rotate(thing, truly, origin=HERE), HALL), here))
     surprise = Surprise(

@@ -10,7 +10,7 @@ import pytest
 
 from geometry import Screen
 from geometry.io.movingai import read_trips
-from geometry.io.svg import draw, width_of
+from geometry.io.svg import draw, route_line_width
 from simulator.cli.main import main
 
 MAP = "type octile\nheight 5\nwidth 8\nmap\n........\n.@@@@@@.\n....@...\n.@..@...\n.@......\n"
@@ -93,6 +93,6 @@ def test_lines_and_sizes_are_in_proportion(side: int) -> None:
     assert 144 <= float(tree.get("height", "0")) <= 1100
     scale = min(48.0, 960 / side)
     for number in range(8):
-        wide = width_of(number, 8, scale)
+        wide = route_line_width(number, 8, scale)
         assert wide * scale >= 1.5
         assert wide <= 0.25 or wide * scale <= 3.0
