@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kb.body import Command, Grasp, Impression
-from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.hypotheses.explanation import Accommodation
 from kb.localisation.state import TrackerState
 from kb.localisation.tracker import Tracker
 from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
@@ -67,7 +67,7 @@ class Knowledge:
         """Return what the localisation tracker believes now."""
         return self.tracker.state
 
-    def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
+    def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """Take in the first impression.
 
         Parameters
@@ -79,7 +79,7 @@ class Knowledge:
         -------
         model : WorldModel
             The default model, an empty floor about the robot, changed as the impression says.
-        accommodated : Accommodated
+        accommodated : Accommodation
             How the impression was explained.
 
         Raises
@@ -89,7 +89,7 @@ class Knowledge:
         """
         return self._update(impression, self.tracker.wake(impression))
 
-    def perceive(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodated]:
+    def perceive(self, command: Command, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """Take in the impression that followed a command.
 
         Parameters
@@ -103,7 +103,7 @@ class Knowledge:
         -------
         model : WorldModel
             The new world model. When localisation failed with empty hands, the map is forgotten and a new one begun.
-        accommodated : Accommodated
+        accommodated : Accommodation
             What happened, as the impression is explained.
 
         Raises
@@ -118,7 +118,7 @@ class Knowledge:
             return self.begin_anew(impression, lost=True)
         return self._update(impression, accommodated)
 
-    def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodated]:
+    def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
         """Forget all but the track, and begin a new map with the newest impression.
 
         Parameters
@@ -147,7 +147,7 @@ class Knowledge:
         if node is not None and node.polygon is not None and memory.in_hand is None:
             self.tracker.grasp(grasped(node))
 
-    def _update(self, impression: Impression, accommodated: Accommodated) -> tuple[WorldModel, Accommodated]:
+    def _update(self, impression: Impression, accommodated: Accommodation) -> tuple[WorldModel, Accommodation]:
         """Return the world model after an impression that localisation has taken in already."""
         if accommodated.explanation.remaps:  # all squares are those of another frame now
             self._touches.forget_squares()
@@ -186,7 +186,7 @@ class Knowledge:
         return separate_felt_things(regions, view, felt)
 
     def _world(
-        self, impression: Impression, accommodated: Accommodated, view: MapView, regions: MapRegions
+        self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
     ) -> WorldModel:
         """Return the world model without objects."""
         memory = self.memory

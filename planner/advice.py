@@ -9,7 +9,7 @@ from geometry.kernels.arrays import XY
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Command, Push, Turn
 from kb.world.model import WorldModel
-from planner.screen.projection import Squares
+from planner.screen.projection import SquareIndices
 from planner.sights.frontiers import Viewpoint
 
 
@@ -41,7 +41,7 @@ class Go:
     why : the reason, in words.
     """
 
-    square: Squares
+    square: SquareIndices
     place: XY
     why: str
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
-from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.hypotheses.explanation import Accommodation
 from kb.task.task import Task
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
@@ -145,7 +145,7 @@ class Robot:
         """Choose the next command, or the verdict."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
-    def _restart(self, impression: Impression) -> Accommodated | None:
+    def _restart(self, impression: Impression) -> Accommodation | None:
         """Forget all beliefs and begin anew from an impression; release a held object first and return None then."""
         held = self.model.held
         if held is not None:
@@ -158,7 +158,7 @@ class Robot:
         return accommodated
 
     def _report(
-        self, command: Command | None, impression: Impression, accommodated: Accommodated, why: str
+        self, command: Command | None, impression: Impression, accommodated: Accommodation, why: str
     ) -> StepReport:
         """Return the report of one turn of the cycle."""
         places = Places(self.decider.rooms, self.decider.corners)

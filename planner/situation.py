@@ -13,8 +13,8 @@ from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
-from planner.screen.projection import CostMaps, grown
-from planner.sights.frontiers import Viewpoint, sight_of
+from planner.screen.projection import CostMaps, dilate
+from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
 
 
@@ -136,10 +136,10 @@ def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     If one of them is an object, rooms end elsewhere.
     """
     model = situation.model
-    pieces = model.verge & ~model.walls & grown(~model.view.seen, 1)
+    pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)
     labels = np.where(pieces, model.labels, 0)
     views = (
-        sight_of(situation.cost_maps, labels == n, "what seems to be a wall may be an object")
+        viewpoint_of(situation.cost_maps, labels == n, "what seems to be a wall may be an object")
         for n in np.unique(labels[pieces])
     )
     return tuple(view for view in views if len(view.squares))

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from kb.language.terms import Fact, Symbol
 from kb.task.task import Task
 
-BY_THE_WAY = ("circled",)  # goals that a track fulfils, not a place
+TRACK_GOALS = ("circled",)  # goals that a track fulfils, not a place
 CONSTRAINT_GOALS = ("not_through",)  # what must hold all the time
-FROM_THE_START = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
+ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
 
 
 @dataclass(frozen=True)
@@ -83,6 +83,6 @@ def _inner(fact: Fact) -> Fact:
 
 def _ordered(goals: list[Fact]) -> list[Stage]:
     """Order the goals of one step: each goal of the track alone, then the others together."""
-    of_track = [Stage((goal,)) for goal in goals if goal.name in BY_THE_WAY]
-    of_place = tuple(goal for goal in goals if goal.name not in BY_THE_WAY)
+    of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]
+    of_place = tuple(goal for goal in goals if goal.name not in TRACK_GOALS)
     return of_track + ([Stage(of_place)] if of_place else [])

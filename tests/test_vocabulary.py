@@ -11,7 +11,7 @@ from kb.reasoning.query import QUERY_PREDICATES
 from kb.world.corners import corners
 from kb.world.facts import Places, model_facts
 from kb.world.rooms import rooms_of
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = ROOT / "docs" / "build_vocabulary.py"
@@ -53,7 +53,7 @@ def test_the_world_model_writes_declared_facts_alone() -> None:
     left, right, wall = "b" + "." * 14 + "bb", "." * 14 + "b", "b" * 32
     rows = [wall, *[left + right] * 5, *["b" + "." * 30 + "b"] * 4, *["b..ggg" + left[6:] + right] * 2]
     rows += ["b.....U" + left[7:] + right, left + right, wall]
-    model = seen_whole(rows)
+    model = known_model(rows)
     facts = parse_facts(
         source_from_bytes("facts", "".join(f"{fact}.\n" for fact in model_facts(model, places(model))).encode())
     )

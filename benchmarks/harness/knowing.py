@@ -14,7 +14,7 @@ from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario
 from kb.body import Body, Impression
 from kb.knowledge import Knowledge
-from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.hypotheses.explanation import Accommodation
 from kb.localisation.hypotheses.frames import FrameHypothesis
 from kb.mapping.occupancy import FREE, FULL
 from kb.perception.frame import Frame, turned
@@ -34,7 +34,7 @@ class Informed(Knowledge):
         super().__init__()
         self._world = world
 
-    def wake(self, impression: Impression) -> tuple[WorldModel, Accommodated]:
+    def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """As of Knowledge, after the whole table was settled."""
         self.learn()
         return super().wake(impression)

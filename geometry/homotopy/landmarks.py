@@ -10,7 +10,7 @@ from geometry.kernels.arrays import Floats, Ints, SquaredDistances
 from geometry.kernels.heap import pop, push
 from geometry.kernels.jit import bare
 from geometry.skeleton.chains import Chains
-from geometry.skeleton.graph import find, first_way, is_node, onward
+from geometry.skeleton.graph import find, first_direction, is_node, other_direction
 from geometry.skeleton.skeleton import Flags, Heights, steepest, stride
 
 LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement on record
@@ -215,10 +215,10 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     """
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
-    direction, steps, here = first_way(int(states[cell])), 0, cell
+    direction, steps, here = first_direction(int(states[cell])), 0, cell
     while steps == 0 or not is_node(0 + states[here]):
         if steps > 0:
-            direction = onward(0 + states[here], direction ^ 2)
+            direction = other_direction(0 + states[here], direction ^ 2)
         here += stride(direction, width)
         steps += 1
     chain = leave[find(node, here), direction ^ 2]

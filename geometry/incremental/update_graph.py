@@ -13,7 +13,7 @@ from geometry.incremental.splice_arrays import splice_chains, splice_nodes
 from geometry.incremental.update_skeleton import JOINED, MOVED, PASSED, ChangeLog
 from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import SkeletonGraph, find, first_way, is_node, onward
+from geometry.skeleton.graph import SkeletonGraph, find, first_direction, is_node, other_direction
 from geometry.skeleton.skeleton import HALT, LINKS, Flags, Heights, stride
 
 IS_NODE_STATE = np.array([bool(state) and is_node.function(state) for state in range(256)])
@@ -96,7 +96,7 @@ def find_open(
             direction = first
             cell = cells[k] + stride(direction, width)
             while not mark[cell] & JOINED and not is_node(states[cell]):
-                direction = onward(states[cell], direction ^ 2)
+                direction = other_direction(states[cell], direction ^ 2)
                 cell += stride(direction, width)
             if mark[cell] & JOINED:
                 continue
@@ -122,13 +122,13 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
         if states[cell] & LINKS == 0 or is_node(states[cell]) or mark[cell] & PASSED:
             continue
         mark[cell] |= PASSED
-        direction, lowest = first_way(int(states[cell])), cell
+        direction, lowest = first_direction(int(states[cell])), cell
         cell += stride(direction, width)
         while cell != cells[k] and not is_node(states[cell]) and not mark[cell] & PASSED:
             if mark[cell] & JOINED:
                 mark[cell] |= PASSED
             lowest = cell if cell < lowest else lowest
-            direction = onward(states[cell], direction ^ 2)
+            direction = other_direction(states[cell], direction ^ 2)
             cell += stride(direction, width)
         if cell == cells[k]:
             states[lowest] |= HALT

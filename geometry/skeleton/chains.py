@@ -6,7 +6,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Ints
 from geometry.kernels.jit import bare
-from geometry.skeleton.graph import SkeletonGraph, onward
+from geometry.skeleton.graph import SkeletonGraph, other_direction
 from geometry.skeleton.skeleton import Flags, States, stride
 
 
@@ -71,5 +71,5 @@ def fill_cells(
             if cell == lowest[chain] and (k == first or cell != cells[first]):
                 neck[chain] = k
             if k > first and k < start[chain + 1] - 1:
-                direction = onward(states[cell], direction ^ 2)
+                direction = other_direction(states[cell], direction ^ 2)
             cell += stride(direction, width)

@@ -108,7 +108,7 @@ def walk_rings(
     """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps."""
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
-        direction = first_way(int(states[cell] & LINKS))
+        direction = first_direction(int(states[cell] & LINKS))
         _, back, steps[k], noted = walk_chain(cell, direction, heights, states, width, notes, 0)
         port[k, 0], port[k, 1] = 4 * ring[k] + direction, 4 * ring[k] + back
         neck[k] = lowest_of(notes, 0, noted, heights)
@@ -133,7 +133,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
     -1 when the ring has a node or a lower saddle.
     """
-    cell, direction, first = saddle, first_way(int(states[saddle])), saddle
+    cell, direction, first = saddle, first_direction(int(states[saddle])), saddle
     while True:
         cell += stride(direction, width)
         here = states[cell]
@@ -142,7 +142,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
         if is_node(here) or (here & SADDLE and above(saddle, cell, heights)):
             return -1
         first = cell if cell < first else first
-        direction = onward(here, direction ^ 2)
+        direction = other_direction(here, direction ^ 2)
 
 
 @bare
@@ -179,7 +179,7 @@ def walk_chains(
             cell = int(node[n])
             ends = int(states[cell]) & LINKS & ~int(seen[n])
             while ends != 0:
-                direction = first_way(ends)
+                direction = first_direction(ends)
                 last, back, steps[chain], noted = walk_chain(cell, direction, heights, states, width, notes[0], noted)
                 other = node_number(last, words, base, since)
                 seen[n] |= 1 << direction
@@ -225,14 +225,14 @@ def walk_chain(
 
 
 @bare
-def onward(here: int, back: int) -> int:
+def other_direction(here: int, back: int) -> int:
     """Return the direction of the other link of a cell that has two links. ``back`` : the direction of the one."""
     rest = int(here & LINKS) ^ (1 << back)
     return (rest >> 1) - (rest >> 3)
 
 
 @bare
-def first_way(here: int) -> int:
+def first_direction(here: int) -> int:
     """Return the first direction in which a cell of this state (links only, not 0) has a link."""
     first = here & -here
     return (first >> 1) - (first >> 3)

@@ -19,7 +19,7 @@ from kb.localisation.after_carry import (
     refined_extent,
 )
 from kb.localisation.after_walk import DeadReckoning, explain_walk
-from kb.localisation.hypotheses.explanation import Accommodated, Explanation, field_statuses
+from kb.localisation.hypotheses.explanation import Accommodation, Explanation, field_statuses
 from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
 from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from kb.localisation.hypotheses.walk_outcomes import (
@@ -64,7 +64,7 @@ class Tracker:
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
         return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
 
-    def wake(self, impression: Impression) -> Accommodated:
+    def wake(self, impression: Impression) -> Accommodation:
         """Explain and integrate the first impression.
 
         Parameters
@@ -73,12 +73,12 @@ class Tracker:
 
         Returns
         -------
-        Accommodated
+        Accommodation
             The chosen explanation, and how each of the 160 fields is accounted for.
         """
         return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
 
-    def accommodate(self, command: Command, impression: Impression) -> Accommodated:
+    def accommodate(self, command: Command, impression: Impression) -> Accommodation:
         """Explain and integrate the impression that followed a command.
 
         Parameters
@@ -88,7 +88,7 @@ class Tracker:
 
         Returns
         -------
-        Accommodated
+        Accommodation
             The chosen explanation, and how each of the 160 fields is accounted for.
         """
         ranges, state = count_ranges(impression.retina), self.state
@@ -139,7 +139,7 @@ class Tracker:
 
     # -- after a walk, on waking, after a release ------------------------------------------------
 
-    def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodated:
+    def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodation:
         """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
         if walk.blocked and isinstance(command, Move):
             self._remember(command)
@@ -173,7 +173,7 @@ class Tracker:
 
     # -- after a push or a turn ------------------------------------------------------------------
 
-    def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodated:
+    def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodation:
         """Explain and integrate an observation after a push or a turn of the held object `name`."""
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
@@ -260,7 +260,7 @@ class Tracker:
         squares = occupancy.squares(patch.west, patch.south, patch.mask)
         occupancy.declare(squares, FREE, len(self.state.observations) - 1)
 
-    def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodated:
+    def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
         """Integrate an explained observation into the map, without what the held objects show of themselves."""
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
@@ -281,7 +281,7 @@ class Tracker:
             residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
             place=_standing_place(state, explanation.place),
         )
-        return Accommodated(explanation, cells)
+        return Accommodation(explanation, cells)
 
 
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:

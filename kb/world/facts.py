@@ -13,7 +13,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.raster.contours import Ring, outline
-from kb.localisation.hypotheses.explanation import Accommodated
+from kb.localisation.hypotheses.explanation import Accommodation
 from kb.mapping.occupancy import OPEN
 from kb.world.corners import Corner
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel
@@ -40,7 +40,7 @@ class Places(NamedTuple):
     corners: Mapping[str, Corner]
 
 
-def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound: Mapping[str, str]) -> dict[str, Any]:
+def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound: Mapping[str, str]) -> dict[str, Any]:
     """Return the `belief` of an episode's line, ready for JSON.
 
     Parameters
@@ -49,7 +49,7 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodated, bound:
         The world model after an impression.
     places : Places
         The rooms and corners of that model.
-    accommodated : Accommodated
+    accommodated : Accommodation
         How the impression was explained, and the status of each of its fields.
     bound : mapping of str to str
         Parameter of the task -> node of the model.

@@ -8,7 +8,7 @@ from geometry.manipulation.plan_carrying import CarryingPlan
 from kb.objects.held_object import is_grid_aligned
 from kb.world.model import Node, WorldModel
 from planner.carrying.open_facts import possible_width
-from planner.goals.placement import lies_askew
+from planner.goals.placement import is_off_quarter_turn
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
         return "what is seen does not agree with it"
     if node.stuck and not model.view.sure:
         return "it did not move where there seemed to be room"
-    if lies_askew(node):  # then the walls beside it are not known well either
+    if is_off_quarter_turn(node):  # then the walls beside it are not known well either
         return "it was turned askew"
     # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against walls.
     if model.anew and node.polygon is not None and not is_grid_aligned(node.polygon):

@@ -19,21 +19,32 @@ from geometry.manipulation.goals import End, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
-from kb.localisation.propose.larger_object import DEEPEST, SIDES
+from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.objects.held_object import is_grid_aligned
 from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
-from planner.goals.optimistic import BEYOND, BOLD, framed, hoped_floor
-from planner.goals.placement import LIKELY, SURELY, barred, hidden_behind, in_view, region_of
-from planner.navigation.subgoals import ASP
-from planner.screen.moves import is_open
-from planner.screen.projection import UNSEEN, grown
+from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor, with_unseen_margin
+from planner.goals.placement import (
+    CERTAIN_OBJECT,
+    POSSIBLE_OBJECT,
+    forbidden_necks,
+    mask_to_polygon,
+    possible_extension,
+    to_view_frame,
+)
+from planner.navigation.subgoals import PLANNER_ASP
+from planner.screen.moves import orientation_is_uncertain
+from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import Situation
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
-TRIED_LEVELS = (0, BOLD, UNSEEN)  # certainty levels of squares (planner.screen.projection), the surest first
+TRIED_LEVELS = (
+    0,
+    OPTIMISTIC_LEVEL,
+    UNSEEN_LEVEL,
+)  # certainty levels of squares (planner.screen.projection), the surest first
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square
@@ -159,7 +170,7 @@ class ManipulationOracle:
         ManipulationPlan or Infeasibility
             The plan is in the view frame.
         """
-        shape, utak = in_view(request.node.polygon, situation), situation.model.place_on_view
+        shape, utak = to_view_frame(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
         options = [
             f"option({name},{level},{others},{round(10 * _least_way(end, shape))})"
@@ -197,7 +208,7 @@ class ManipulationOracle:
         A plan over squares that are surely free is compared with optimistic ones if one of these may take fewer
         commands. A plan over hoped squares is begun without a look where it does not leave the object askew.
         """
-        if found.level == BOLD:
+        if found.level == OPTIMISTIC_LEVEL:
             return replace(found, hopes=not found.askew)
         fewest = MIN_PLAN_COMMANDS if request.held else MIN_PLAN_COMMANDS + 1
         further = isinstance(hoped().get(found.target), InCorner | Between)
@@ -210,7 +221,7 @@ class ManipulationOracle:
             short = further and not one.hopes
             holds = {"hopes": one.hopes, "askew": one.askew, "aside": bool(one.aside), "short": short}
             facts += [f"{fact}({number})" for fact, so in holds.items() if so]
-        answer = solve([ASP / "boldness.lp"], facts)
+        answer = solve([PLANNER_ASP / "boldness.lp"], facts)
         return plans[answer[0].arguments[0].number] if answer else found
 
     def _optimistic_plans(
@@ -222,18 +233,20 @@ class ManipulationOracle:
         impression tells well where a motion was stopped.
         """
         model, node = situation.model, request.node
-        own, walk = framed(model.mask(node.patch)), framed(situation.cost_maps.free(0))
-        free = (hoped_floor(situation) | own) & ~framed(barred(node, situation))
+        own, walk = with_unseen_margin(model.mask(node.patch)), with_unseen_margin(situation.cost_maps.free(0))
+        free = (optimistic_floor(situation) | own) & ~with_unseen_margin(forbidden_necks(node, situation))
         if (free == walk | own).all():
             return
-        shape, (x, y) = in_view(node.polygon, situation), model.place_on_view
-        floor = CarryingFloor(Translate(BEYOND, BEYOND).carry(shape), (x + BEYOND, y + BEYOND), free, walk)
-        ends = {**request.ends, **({} if is_open(model) else hoped())}
+        shape, (x, y) = to_view_frame(node.polygon, situation), model.place_on_view
+        floor = CarryingFloor(
+            Translate(UNSEEN_MARGIN, UNSEEN_MARGIN).carry(shape), (x + UNSEEN_MARGIN, y + UNSEEN_MARGIN), free, walk
+        )
+        ends = {**request.ends, **({} if orientation_is_uncertain(model) else hoped())}
         for name, end in sorted(ends.items()):
-            plan = self._ask_geometry(request, moved(end, BEYOND, BEYOND), floor, model)
+            plan = self._ask_geometry(request, moved(end, UNSEEN_MARGIN, UNSEEN_MARGIN), floor, model)
             if plan.legs:
-                shifted = plan.shifted(-BEYOND, -BEYOND)
-                yield replace(_manipulation_plan(shifted, shape, name, UNSEEN, situation, node), hopes=True)
+                shifted = plan.shifted(-UNSEEN_MARGIN, -UNSEEN_MARGIN)
+                yield replace(_manipulation_plan(shifted, shape, name, UNSEEN_LEVEL, situation, node), hopes=True)
 
     def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
         """Return what geometry says of one end; from memory where the same was asked before."""
@@ -270,10 +283,10 @@ def _may_use_other_doors(node: Node, situation: Situation) -> bool:
 def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
     """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches."""
     rows, columns = free.shape
-    walls = shapely.box(0, 0, columns, rows).difference(region_of(free))
+    walls = shapely.box(0, 0, columns, rows).difference(mask_to_polygon(free))
     near_shape = shape.buffer(2 * WALL_CLEARANCE, join_style="mitre")
     thick = walls.union(walls.buffer(WALL_CLEARANCE, join_style="mitre").difference(near_shape))
-    return free & ~grown(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
+    return free & ~dilate(~np.pad(free, 1), 1)[1:-1, 1:-1], thick
 
 
 def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
@@ -313,22 +326,24 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     model = situation.model
     own = model.mask(node.patch)
     free = situation.cost_maps.free(level) | own
-    if level == UNSEEN:
+    if level == UNSEEN_LEVEL:
         for other in (other for other in model.objects if other.name != node.name):
             mask = model.mask(other.patch)
             if other.movable == 0:
-                free |= mask & grown(~mask, 1)
-            if node.inexact and (grown(own, 1) & mask).any():
+                free |= mask & dilate(~mask, 1)
+            if node.inexact and (dilate(own, 1) & mask).any():
                 free |= mask
     if others == OtherObjects.ASIDE:
         for other in (other for other in model.objects if other.name != node.name):
-            if other.movable > 0 and other.confidence >= SURELY:
+            if other.movable > 0 and other.confidence >= CERTAIN_OBJECT:
                 free |= model.mask(other.patch)
-            if level == UNSEEN and other.confidence >= LIKELY:
-                hidden = np.any([hidden_behind(other, side, DEEPEST, model) for side in SIDES], axis=0)
+            if level == UNSEEN_LEVEL and other.confidence >= POSSIBLE_OBJECT:
+                hidden = np.any(
+                    [possible_extension(other, side, MAX_HIDDEN_DEPTH, model) for side in SIDE_DIRECTIONS], axis=0
+                )
                 if other.movable > 0 or hidden.any():
                     free |= hidden | model.mask(other.patch)
-    return free & ~barred(node, situation)
+    return free & ~forbidden_necks(node, situation)
 
 
 def _least_way(end: End, shape: Any) -> float:
@@ -342,7 +357,7 @@ def _least_way(end: End, shape: Any) -> float:
 
 def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None:
     """Return the end, the level and the treatment of other objects that are tried next; None when none is left."""
-    answer = solve([ASP / "transport.lp"], facts)
+    answer = solve([PLANNER_ASP / "transport.lp"], facts)
     if not answer:
         return None
     name, level, others = answer[0].arguments

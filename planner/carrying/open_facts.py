@@ -15,8 +15,8 @@ from geometry.raster.components import with_edge_neighbours
 from kb.perception.protrusions import VERGE_COLOUR
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import LIKELY
-from planner.screen.moves import is_settled
+from planner.goals.placement import POSSIBLE_OBJECT
+from planner.screen.moves import orientation_is_settled
 
 
 def qualify(decision: Decision, model: WorldModel) -> Decision:
@@ -57,7 +57,7 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     TaskVerdict
         IMPOSSIBLE when it is proved, else LIMIT.
     """
-    proved = model.view.sure and is_settled(model) if immovable else not model.shaken
+    proved = model.view.sure and orientation_is_settled(model) if immovable else not model.shaken
     return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
 
 
@@ -75,7 +75,7 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
     unseen = _nearest_square(with_edge_neighbours(model.space) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
-    unmoved = [node for node in model.objects if not node.moved and node.confidence >= LIKELY]
+    unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
 
 

@@ -33,8 +33,8 @@ from planner.carrying.remaining_plan import (
     is_at,
     square_index,
 )
-from planner.goals.placement import drawn_out, region_of
-from planner.screen.projection import Squares
+from planner.goals.placement import mask_to_polygon, pull_out_end
+from planner.screen.projection import SquareIndices
 from planner.situation import Situation
 from planner.skills.failed_grasps import FailedGrasps
 from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
@@ -169,7 +169,7 @@ class PlanExecutor:
         advice = self._next_step(plan, {}, situation)
         return advice if isinstance(advice, Act) else None
 
-    def take_along(self, node: Node, squares: Squares, fetch: bool, situation: Situation) -> Act | Go | None:
+    def take_along(self, node: Node, squares: SquareIndices, fetch: bool, situation: Situation) -> Act | Go | None:
         """Return what takes an object along to where the robot wants to look; None when it had better walk there.
 
         A held object is taken along by one straight push, if that leads there.
@@ -190,7 +190,7 @@ class PlanExecutor:
             return unplanned_act(push, f"{node.name} is taken along", model)
         return self._bring_near(node, squares, situation) if fetch else None
 
-    def detour(self, node: Node, squares: Squares, situation: Situation) -> Act | None:
+    def detour(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | None:
         """Return the push with the held object to one of some squares, from which one more leads to the plan's end.
 
         It may take the place of the command that was advised last. Returns None when there is no such push.
@@ -233,7 +233,7 @@ class PlanExecutor:
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
-    def _bring_near(self, node: Node, squares: Squares, situation: Situation) -> Act | Go | None:
+    def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | Go | None:
         """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
@@ -345,7 +345,7 @@ class PlanExecutor:
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
-        end = drawn_out(other, found.swept, situation) or Inside(region_of(room & ~found.swept))
+        end = pull_out_end(other, found.swept, situation) or Inside(mask_to_polygon(room & ~found.swept))
         request = self._request(other, {AWAY_TARGET: end}, "", situation.model)
         plan = self._oracle.find(request, situation)
         return (other, plan) if isinstance(plan, ManipulationPlan) and plan.plan.legs and not plan.aside else None

@@ -6,11 +6,11 @@ from kb.mapping.occupancy import OPEN
 from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from planner.advice import See
 from planner.carrying.manipulation_oracle import ManipulationPlan
-from planner.goals.placement import SURELY
-from planner.screen.moves import is_open
-from planner.screen.projection import grown
-from planner.sights.frontiers import Viewpoint, by_touch, sight_of
-from planner.sights.viewpoints import TAKE, inspection
+from planner.goals.placement import CERTAIN_OBJECT
+from planner.screen.moves import orientation_is_uncertain
+from planner.screen.projection import dilate
+from planner.sights.frontiers import Viewpoint, touch_viewpoint, viewpoint_of
+from planner.sights.viewpoints import TO_TAKE, inspection
 from planner.situation import Situation
 
 PLACE_SLACK = 0.02  # squares by which the robot may stand elsewhere in its square before a turn needs more room; tuned
@@ -34,14 +34,14 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
     unsure = found.swept & ~situation.cost_maps.free(0)
     if is_long:
         unsure |= (
-            grown(found.swept, DETOUR_ROOM)
+            dilate(found.swept, DETOUR_ROOM)
             & (model.view.state == OPEN)
             & (model.view.probability > MAX_FREE_PROBABILITY)
         )
     unsure &= ~model.mask(node.patch)
     if not unsure.any():
         return None
-    viewpoint = sight_of(situation.cost_maps, unsure, f"it is not clear whether the way for {node.name} is free")
+    viewpoint = viewpoint_of(situation.cost_maps, unsure, f"it is not clear whether the way for {node.name} is free")
     return See(viewpoint) if len(viewpoint.squares) else None
 
 
@@ -54,7 +54,9 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     situation : what is believed.
     """
     things = (thing for thing in situation.model.objects if thing.name in found.aside)
-    return _first_see(by_touch(situation.cost_maps, thing) for thing in things if thing.confidence < SURELY)
+    return _first_see(
+        touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT
+    )
 
 
 def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
@@ -67,7 +69,7 @@ def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | Non
     """
     named = (situation.model.object(name) for name in found.aside)
     unclear = (other for other in named if other is not None and other.open)
-    return _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TAKE) for other in unclear)
+    return _first_see(inspection(situation.cost_maps, other, chance=1.0, to=TO_TAKE) for other in unclear)
 
 
 def turn_cost(model: WorldModel) -> float:
@@ -76,7 +78,7 @@ def turn_cost(model: WorldModel) -> float:
     A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
     place of the robot within its square is open.
     """
-    if is_open(model):
+    if orientation_is_uncertain(model):
         return TURN_COST_OPEN_FRAME
     return TURN_COST_OPEN_PLACE if max(model.leeway) > PLACE_SLACK else 1.0
 

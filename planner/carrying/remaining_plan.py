@@ -22,8 +22,8 @@ from kb.body import DIRECTIONS
 from kb.mapping.patch import Patch
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
-from planner.goals.placement import barred, in_view, lands_in_one
-from planner.screen.projection import Squares
+from planner.goals.placement import forbidden_necks, meets_any_end, to_view_frame
+from planner.screen.projection import SquareIndices
 from planner.situation import Situation
 
 PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
@@ -114,10 +114,10 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     if shapely.symmetric_difference(node.polygon, plan.polygon).area < AREA_TOLERANCE:
         if ends is None or plan.target in ends:
             return plan
-        end = in_view(plan.end, situation)
+        end = to_view_frame(plan.end, situation)
     else:
         end = None if node.stuck else _end_outline(plan, node, free, situation)
-    if end is None or (ends is not None and not lands_in_one(ends, end)):
+    if end is None or (ends is not None and not meets_any_end(ends, end)):
         return None
     return replace(plan, polygon=node.polygon)
 
@@ -140,7 +140,7 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
     here = shifted(first, model.place[0] - first.place[0], model.place[1] - first.place[1])
     near = replace(plan, legs=(here, *others))
     end = _end_outline(near, node, _kept_squares(plan, node, situation), situation)
-    return near if end is not None and lands_in_one(ends, end) else None
+    return near if end is not None and meets_any_end(ends, end) else None
 
 
 def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
@@ -160,7 +160,7 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
     if others or len(pushes) < len(first.motions):
         return None
     workspace = Workspace(situation.cost_maps.safe | situation.model.mask(node.patch))
-    start = in_view(node.polygon, situation)
+    start = to_view_frame(node.polygon, situation)
     shape, place = start, first.place
     safe: list[Motion] = []
     for push in pushes:
@@ -193,7 +193,7 @@ class PlanOperations:
     safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
 
 
-def square_index(place: XY, model: WorldModel) -> Squares:
+def square_index(place: XY, model: WorldModel) -> SquareIndices:
     """Return the flat index, as an array of one, of the view's square in which a point (x, y) of the map frame lies."""
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
@@ -245,7 +245,7 @@ def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) 
 def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bools:
     """Return the mask (rows, columns) of squares over which a plan made before may still lead."""
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
-    return free & ~barred(node, situation)
+    return free & ~forbidden_necks(node, situation)
 
 
 def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:
@@ -253,4 +253,6 @@ def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situat
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs
     legs = [first if plan.place is None else replace(first, place=plan.place), *others]
-    return verified(Workspace(free), in_view(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs])
+    return verified(
+        Workspace(free), to_view_frame(node.polygon, situation), [shifted(leg, -west, -south) for leg in legs]
+    )

@@ -14,16 +14,23 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
-from kb.localisation.propose.larger_object import DEEPEST, SIDES
+from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import LIKELY, SURELY, hidden_behind, leads_away, out_of_wall, region_of
-from planner.navigation.routes import PlannedRoute, ways
+from planner.goals.placement import (
+    CERTAIN_OBJECT,
+    POSSIBLE_OBJECT,
+    floor_leads_away,
+    mask_to_polygon,
+    possible_extension,
+    pull_out_pose,
+)
+from planner.navigation.routes import PlannedRoute, find_routes
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import UNSEEN, CostMaps
-from planner.sights.frontiers import by_touch
+from planner.screen.projection import UNSEEN_LEVEL, CostMaps
+from planner.sights.frontiers import touch_viewpoint
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
@@ -65,8 +72,8 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
         columns, rows = np.array(way.squares).T
         room = situation.cost_maps.free(0) | model.mask(thing.patch)
         room[rows, columns] = False
-        yield Obstacle(thing, Inside(region_of(room)))
-    for depth, thing in product(range(1, 1 + DEEPEST), things if not found else []):
+        yield Obstacle(thing, Inside(mask_to_polygon(room)))
+    for depth, thing in product(range(1, 1 + MAX_HIDDEN_DEPTH), things if not found else []):
         yield from _hidden_in_doors(thing, depth, situation)
 
 
@@ -74,11 +81,13 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; none into a mere nook."""
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (
-        (without.distances[UNSEEN] != GEODESIC_UNREACHED) & (cost_maps.distances[UNSEEN] == GEODESIC_UNREACHED) & ~under
+        (without.distances[UNSEEN_LEVEL] != GEODESIC_UNREACHED)
+        & (cost_maps.distances[UNSEEN_LEVEL] == GEODESIC_UNREACHED)
+        & ~under
     )
-    if not leads_away(beyond, under):
+    if not floor_leads_away(beyond, under):
         return []
-    return ways(without, UNSEEN, np.flatnonzero(beyond), "grid")
+    return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(beyond), "grid")
 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
@@ -93,10 +102,10 @@ def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[
     It is drawn out by one square more than that, or as far as there is room: so all of it is seen.
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
-    for side in SIDES:
-        behind = hidden_behind(thing, side, depth, model)
+    for side in SIDE_DIRECTIONS:
+        behind = possible_extension(thing, side, depth, model)
         blocks = behind.any() and _routes_opened(mask | behind, situation)
-        pose = out_of_wall(thing, side, depth, situation) if blocks else None
+        pose = pull_out_pose(thing, side, depth, situation) if blocks else None
         if pose is not None:
             yield Obstacle(thing, At(pose))
 
@@ -151,14 +160,14 @@ class ObstacleClearer:
         instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools)
         if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
             return instead or decision
-        things = [node for node in situation.model.objects if node.confidence >= LIKELY]
+        things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
         blocking = next((node.name for node, _ in obstacles(things, situation)), "")
         why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
         return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside. stays : the names of those that may not."""
-        things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= LIKELY)
+        things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in stays]
 
     def _move_first(
@@ -175,8 +184,8 @@ class ObstacleClearer:
 
 def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none."""
-    if node.confidence < SURELY:
-        touch = Subgoal(SubgoalKind.INSPECT, *by_touch(situation.cost_maps, node))
+    if node.confidence < CERTAIN_OBJECT:
+        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
         look = tools.pursuer.pursue_look(touch, stage, situation)
         return None if look is None or look.command is None else look
     if node.polygon is None or node.vague:

@@ -27,16 +27,16 @@ from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
 from planner.deciding.verification import Verifier, check_elsewhere, look_at_contradiction, robot_square
 from planner.decision import Decision, TaskVerdict
-from planner.goals.joint import opposite_corners
-from planner.goals.robot_goals import contains, destination, no_way
-from planner.navigation.encircle import pivot, ways_round, winding
+from planner.goals.joint import opposite_corners_reason
+from planner.goals.robot_goals import destination, robot_stands_on, unreachable_reason
+from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import next_move
-from planner.screen.projection import CostMaps, ways_to_objects
-from planner.sights.viewpoints import ARRIVE
+from planner.screen.projection import CostMaps, costs_to_objects
+from planner.sights.viewpoints import TO_REACH
 from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import BY_THE_WAY, FROM_THE_START, Stage, stages
+from planner.stages import ORIGIN_GOALS, TRACK_GOALS, Stage, stages
 from planner.subgoal_kind import SubgoalKind
 
 
@@ -157,25 +157,25 @@ class Decider:
         if situation.model.held is not None:
             why = f"{situation.model.held} is released, because the robot must walk; {stage}"
             return Decision(Release(), why)
-        if goals[0].name in BY_THE_WAY:
+        if goals[0].name in TRACK_GOALS:
             node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
                 return self._go_round(stage, node.name, situation, track)
             where = [destination(goals[0], situation)]
         else:
             where = [destination(goal, situation) for goal in goals]
-            there = all(not d.missing and contains(d.squares, situation.model) for d in where)
+            there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
             there = there or self._into_corner.is_pressing(stage, situation)
             look = self._make_sure(goals, there, stage, situation)
             if look is None and there and (nearer := self._into_corner.next(stage, situation)) is not None:
                 return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
             if there or look is not None:
                 return look
-        if opposite := opposite_corners(goals, situation):
+        if opposite := opposite_corners_reason(goals, situation):
             why = f"{stage} cannot be attained: {opposite}"
             return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
-        missing = "; ".join(d.missing for d in where if d.missing) or no_way(where)
-        subgoals = subgoals_towards(where, situation, reconciled, ARRIVE)
+        missing = "; ".join(d.missing for d in where if d.missing) or unreachable_reason(where)
+        subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         verdict = verdict_if_not_found(situation.model) if unseen else TaskVerdict.IMPOSSIBLE
         ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: missing, verdict)
@@ -185,7 +185,7 @@ class Decider:
     def _doubt(self, stage: Stage, situation: Situation) -> Subgoal | None:
         """Return what to look at before a stage is believed to be attained; None for nothing."""
         model, doubt = situation.model, look_at_contradiction(situation)
-        for goal in (goal for goal in stage.goals if goal.name in FROM_THE_START):
+        for goal in (goal for goal in stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = model.object(self.bound.get(x, ""))
             began = model.frame.origin if node is None else self._transporter.origin_of(x, node, situation)
@@ -210,9 +210,9 @@ class Decider:
         node = model.object(name)
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
-        if is_home and abs(winding(track, node)) == 1:
+        if is_home and abs(winding_number(track, node)) == 1:
             return None
-        offered = ways_round(cost_maps, track, node)
+        offered = encircling_routes(cost_maps, track, node)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
         route = self.pursuer.choose_route(begun, situation)
         if route is None:
@@ -220,7 +220,7 @@ class Decider:
             return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         self._turn = next(turn for turn, other in offered.items() if other is route)
         self.pursuer.keep_route(route, model)
-        x, y = pivot(node)
+        x, y = encircled_point(node)
         about = (x - model.view.west, y - model.view.south)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
@@ -228,7 +228,7 @@ class Decider:
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
         """Return what the parameters of the task mean now, and remember it as bound."""
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
-        known = ways_to_objects(cost_maps)
+        known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding
         return reconciled

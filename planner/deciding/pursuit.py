@@ -14,11 +14,11 @@ from planner.deciding.search import contact_subgoals
 from planner.decision import Decision, TaskVerdict
 from planner.navigation.fewest_moves import FewestMoves
 from planner.navigation.loop_guard import LoopGuard
-from planner.navigation.routes import PlannedRoute, choose_way, ways
-from planner.navigation.sticky_route import StickyRoute, lattice_squares
+from planner.navigation.routes import PlannedRoute, choose_route, find_routes
+from planner.navigation.sticky_route import StickyRoute, to_map_squares
 from planner.navigation.subgoals import Subgoal, choose
-from planner.screen.moves import HURRY, STROLL, halting, next_move
-from planner.screen.projection import Squares
+from planner.screen.moves import CARRYING_PACE, WALKING_PACE, halt_exactly_at, next_move
+from planner.screen.projection import SquareIndices
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
@@ -88,7 +88,7 @@ class Pursuer:
             decision = self._walk(subgoal, stage, situation, fewest)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
-            self._circles.tire(lattice_squares(subgoal.squares, model))
+            self._circles.tire(to_map_squares(subgoal.squares, model))
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
@@ -100,7 +100,7 @@ class Pursuer:
         """Return the next command to a square where an object is grasped, so that the last move halts at its place."""
         subgoal = Subgoal(SubgoalKind.ATTAIN, go.square, go.why)
         walk = self.pursue([subgoal], stage, situation, lambda: "no way leads there")
-        return replace(walk, command=halting(walk.command, go.place, situation.model))
+        return replace(walk, command=halt_exactly_at(walk.command, go.place, situation.model))
 
     def prepare(self, advice: Advice, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command to where an object is grasped, or to see what must be seen first.
@@ -142,13 +142,15 @@ class Pursuer:
         straight = None if fewest is None else fewest.way(subgoal)
         route = None if straight is None else self.choose_route([straight], situation)
         route = route or self._route_left(subgoal, reached.level, situation)
-        route = route or self.choose_route(ways(cost_maps, reached.level, subgoal.squares, self._paths), situation)
+        route = route or self.choose_route(
+            find_routes(cost_maps, reached.level, subgoal.squares, self._paths), situation
+        )
         if route is None:
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
             return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         self.keep_route(route, model, subgoal.squares)
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
-        move = next_move(cost_maps, route.squares, kind, pace=STROLL if fewest is None else HURRY)
+        move = next_move(cost_maps, route.squares, kind, pace=WALKING_PACE if fewest is None else CARRYING_PACE)
         return Decision(move, f"{subgoal.what}; {stage}")
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
@@ -156,9 +158,9 @@ class Pursuer:
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
-    def keep_route(self, route: PlannedRoute, model: WorldModel, towards: Squares | None = None) -> None:
+    def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
         """Remember the present route. towards : the flat indices of the subgoal's squares; None for no subgoal."""
-        self._kept.keep(route, frozenset() if towards is None else lattice_squares(towards, model), model)
+        self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
     def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
         """Return the route that planner/asp/routes.lp chooses; None when all lead through forbidden doors.
@@ -172,7 +174,7 @@ class Pursuer:
             return None
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.forbidden("utak"))
-        return choose_way(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)
+        return choose_route(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)
 
 
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:

@@ -11,12 +11,12 @@ from kb.task.binding import Reconciliation
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
 from planner.goals.robot_goals import Destination
-from planner.navigation.fewest_moves import MOVE, WAY
+from planner.navigation.fewest_moves import MOVE_COST, SQUARE_COST
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import one_move
-from planner.screen.projection import CostMaps, Squares, grown
+from planner.screen.moves import one_move_squares
+from planner.screen.projection import CostMaps, SquareIndices, dilate
 from planner.sights import frontiers
-from planner.sights.viewpoints import TAKE, Approach, inspection, sightings
+from planner.sights.viewpoints import TO_TAKE, Approach, inspection, sightings
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
@@ -39,12 +39,12 @@ class Candidate(NamedTuple):
     subgoal : a look at it.
     """
 
-    squares: Squares
+    squares: SquareIndices
     subgoal: Subgoal
 
 
 def subgoals_towards(
-    where: Sequence[Destination], situation: Situation, reconciled: Reconciliation, to: Approach = TAKE
+    where: Sequence[Destination], situation: Situation, reconciled: Reconciliation, to: Approach = TO_TAKE
 ) -> list[Subgoal]:
     """Return the subgoals that may lead to where all of some goals hold.
 
@@ -61,7 +61,7 @@ def subgoals_towards(
     cost_maps = situation.cost_maps
     missing = [d for d in where if d.missing]
     if not missing:
-        squares: Squares = where[0].squares
+        squares: SquareIndices = where[0].squares
         for other in where[1:]:
             squares = np.intersect1d(squares, other.squares)
         return [Subgoal(SubgoalKind.ATTAIN, squares, "the way to the goal is known")]
@@ -82,16 +82,16 @@ def contact_subgoals(situation: Situation) -> list[Subgoal]:
     ----------
     situation : what is believed.
     """
-    return wall_contacts(situation) or perhaps_islands(situation)
+    return wall_contacts(situation) or island_contacts(situation)
 
 
 def wall_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each part of a wall that may be an object standing against it, where it can be felt."""
-    looks = [frontiers.against_the_wall(situation.cost_maps, mask) for mask in situation.model.protruding]
+    looks = [frontiers.wall_touch_viewpoint(situation.cost_maps, mask) for mask in situation.model.protruding]
     return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
 
 
-def perhaps_islands(situation: Situation) -> list[Subgoal]:
+def island_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each free-standing object that would make more doors if it were wall, where it can be felt."""
     model = situation.model
     subgoals = []
@@ -99,7 +99,7 @@ def perhaps_islands(situation: Situation) -> list[Subgoal]:
         if node.colour is None and not node.moved:
             rooms = rooms_of(model, situation.rules, model.verge | model.mask(node.patch))
             if len(rooms.doors) > len(situation.rooms.doors):
-                look = frontiers.by_touch(situation.cost_maps, node)
+                look = frontiers.touch_viewpoint(situation.cost_maps, node)
                 subgoals += [Subgoal(SubgoalKind.INSPECT, *look)] if len(look.squares) else []
     return subgoals
 
@@ -128,7 +128,7 @@ def _doubtful_objects(
         if node is None or x not in reconciled.hypothesised:
             continue
         chance = ANY_SHAPE_CHANCE if likely is None else _chance(node, likely, model)
-        look = inspection(cost_maps, node, chance, to) if node.open else frontiers.by_touch(cost_maps, node)
+        look = inspection(cost_maps, node, chance, to) if node.open else frontiers.touch_viewpoint(cost_maps, node)
         what = f"{look.what}: it may be {x}"
         squares = np.flatnonzero(model.mask(node.patch))
         percent = max(MIN_OBJECT_CHANCE, round(100 * chance))
@@ -140,7 +140,7 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
     """Return the probability that an object is what is looked for, by map completions or by the part that is seen."""
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
-    cut = (grown(mask, 1) & ~model.view.seen).any()
+    cut = (dilate(mask, 1) & ~model.view.seen).any()
     return max(shown, float(chance_by_seen_squares(mask.sum()))) if cut else shown
 
 
@@ -156,15 +156,19 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     unseen : the probability that what is missing was not seen yet. A robot that is to carry it counts moves: it looks
     from where most comes into sight, and must set out once more to what it sees from there.
     """
-    views = frontiers.best_views(cost_maps, one_move(cost_maps, SubgoalKind.EXPLORE), MOVE, WAY) if to.take else []
+    views = (
+        frontiers.best_views(cost_maps, one_move_squares(cost_maps, SubgoalKind.EXPLORE), MOVE_COST, SQUARE_COST)
+        if to.take
+        else []
+    )
     promise = unseen * (DISTANT_LOOK_SHARE if to.take else 1.0)
-    for apart in (frontiers.APART, 0):
-        borders = [*views, *frontiers.promised(cost_maps, frontiers.frontiers(cost_maps, apart))]
+    for apart in (frontiers.VIEW_SPACING, 0):
+        borders = [*views, *frontiers.with_chances(cost_maps, frontiers.find_frontiers(cost_maps, apart))]
         explored = [
             Subgoal(SubgoalKind.EXPLORE, *look)._replace(chance=max(1, round(look.chance * promise)))
             for look in borders
         ]
-        odd, plain = (frontiers.vague_places(cost_maps, apart, odd=odd) for odd in (True, False))
+        odd, plain = (frontiers.unsettled_boundaries(cost_maps, apart, odd=odd) for odd in (True, False))
         settled = [
             Subgoal(SubgoalKind.SETTLE, *look, price=UNEXPLAINED_BONUS)._replace(chance=UNEXPLAINED_CHANCE)
             for look in odd
@@ -172,7 +176,7 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
         settled += [Subgoal(SubgoalKind.SETTLE, *look)._replace(chance=LIKELY_WALL_CHANCE) for look in plain]
         if explored or settled:
             break
-    beyond = frontiers.rooms_beyond(cost_maps)
+    beyond = frontiers.unreached_rooms(cost_maps)
     passages = [Subgoal(SubgoalKind.PASS, *look)._replace(chance=PASSAGE_CHANCE) for look in beyond]
     return [*explored, *settled, *passages]
 

@@ -22,18 +22,18 @@ from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
 from planner.deciding.verification import look_before_grasp, look_for_more
 from planner.decision import Decision, TaskVerdict
-from planner.goals.corner_goal import approach, may_move
-from planner.goals.joint import conflict
-from planner.goals.object_goals import landing
+from planner.goals.corner_goal import approach_for_goals, corner_may_move
+from planner.goals.joint import conflicting_goals
+from planner.goals.object_goals import goal_placement
 from planner.goals.origins import Origins
-from planner.goals.placement import Placement, can_leave, in_view, lands_in_one
-from planner.goals.robot_goals import nowhere
+from planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
+from planner.goals.robot_goals import unknown_destination
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import is_open
+from planner.screen.moves import orientation_is_uncertain
 from planner.situation import Situation
 from planner.skills.measure_size import SizeEstimator, least_outline
 from planner.skills.press import Presser
-from planner.stages import FROM_THE_START, Stage
+from planner.stages import ORIGIN_GOALS, Stage
 from planner.subgoal_kind import SubgoalKind
 
 SIZE_TARGET = "size"  # the end of a push whose only purpose is to measure an object
@@ -45,14 +45,14 @@ class Transporter:
 
     def __init__(
         self,
-        place: Callable[[Fact, Node, XY, Situation], Placement] = landing,
+        place: Callable[[Fact, Node, XY, Situation], Placement] = goal_placement,
         search: Callable[..., Sequence[Subgoal]] = subgoals_towards,
     ) -> None:
         """Make a transporter that remembers nothing.
 
         Parameters
         ----------
-        place : returns where a goal holds for an object; as planner.goals.object_goals.landing.
+        place : returns where a goal holds for an object; as planner.goals.object_goals.goal_placement.
         search : returns what is worth doing while something is missing; as planner.deciding.search.subgoals_towards.
         """
         self._place, self._search = place, search
@@ -104,7 +104,7 @@ class Transporter:
         land = self._place(goal, node, self.origin_of(x, node, situation), situation)
         lost = self._origins.lost(x, node, situation)
         if land.holds:
-            if lost and goal.name in FROM_THE_START:
+            if lost and goal.name in ORIGIN_GOALS:
                 why = f"it cannot be told whether {stage} holds: {lost} since {node.name} was grasped"
                 return Decision(None, why, TaskVerdict.LIMIT)
             if self._origins.left(x, node, situation) and situation.forbidden(node.name):
@@ -114,7 +114,7 @@ class Transporter:
             return self._press_on(node, stage, situation, tools)
         advice = self._advice(node, land, situation, tools)
         if isinstance(advice, Infeasibility) and land.loose:
-            if lands_in_one(land.loose, in_view(node.polygon, situation)):
+            if meets_any_end(land.loose, to_view_frame(node.polygon, situation)):
                 return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
             advice = tools.executor.advise(node, land.loose, situation)
         if isinstance(advice, Infeasibility) and land.some:
@@ -133,7 +133,7 @@ class Transporter:
             along = partial(_take_along, node, stage, situation, tools)
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
             return tools.pursuer.pursue([subgoal], stage, situation, lambda: "", along=along)
-        unknown = nowhere(land.missing or "no way is known to carry it there", land.viewpoints)
+        unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
         subgoals = self._search([unknown], situation, reconciled)
         decision = self._look_for_way(advice, node, land, subgoals, stage, situation, tools)
         return self._check_proof(advice, decision, node, land, stage, situation, tools)
@@ -149,11 +149,16 @@ class Transporter:
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
             node = situation.model.object(situation.binding.get(x, ""))
-            if len(goals) < 2 or node is None or node.polygon is None or any(may_move(g, situation) for g in goals):
+            if (
+                len(goals) < 2
+                or node is None
+                or node.polygon is None
+                or any(corner_may_move(g, situation) for g in goals)
+            ):
                 continue
             began = self.origin_of(x, node, situation)
             lands = [self._place(goal, node, began, situation) for goal in goals]
-            found = conflict(lands, in_view(node.polygon, situation))
+            found = conflicting_goals(lands, to_view_frame(node.polygon, situation))
             if found is not None:
                 one, other = (goals[number] for number in found)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
@@ -181,9 +186,9 @@ class Transporter:
     def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools) -> Decision:
         """Return the next command to find what a parameter means, or the verdict when nothing can be that."""
         immovable = dict(reconciled.unmovable).get(x)
-        unseen = nowhere(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
+        unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
-        subgoals = self._search([unseen], situation, reconciled, approach(goals, situation))
+        subgoals = self._search([unseen], situation, reconciled, approach_for_goals(goals, situation))
         verdict = verdict_if_not_found(situation.model, bool(immovable))
         ask = partial(tools.pursuer.pursue, subgoals, stage, situation, lambda: unseen.missing, verdict)
         decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
@@ -224,7 +229,7 @@ class Transporter:
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
         """
-        fetch = land.shut_in or not (land.viewpoints or land.ends or is_open(situation.model))
+        fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
         along = partial(_take_along, node, stage, situation, tools, fetch=fetch)
         brought = None if land.there or again else along
@@ -304,7 +309,7 @@ class Transporter:
 
         shut_in : it is known that it does.
         """
-        out = tools.executor.lead_out(node, situation) if shut_in or not can_leave(node, situation) else None
+        out = tools.executor.lead_out(node, situation) if shut_in or not robot_can_leave(node, situation) else None
         if out is None:
             return None
         self._presser.forget()

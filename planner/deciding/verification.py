@@ -17,11 +17,11 @@ from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, Door, rooms_of
 from planner.carrying.infeasibility import Infeasibility
-from planner.goals.robot_goals import contains, out_of_sight
+from planner.goals.robot_goals import hidden_from, robot_stands_on
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import is_open
+from planner.screen.moves import orientation_is_uncertain
 from planner.sights import frontiers
-from planner.sights.viewpoints import TAKE, inspection
+from planner.sights.viewpoints import TO_TAKE, inspection
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
@@ -49,7 +49,7 @@ class Verifier:
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
             return None
-        look = inspection(situation.cost_maps, node, chance=1.0, to=TAKE)
+        look = inspection(situation.cost_maps, node, chance=1.0, to=TO_TAKE)
         if not len(look.squares):
             return None
         self._unsettled.add(node.name)
@@ -71,10 +71,10 @@ class Verifier:
         if neck is None:
             return None
         where = (neck[0] + model.view.west, neck[1] + model.view.south)
-        near = frontiers.close_to(situation.cost_maps, *where)
-        if contains(near, model):
+        near = frontiers.fovea_squares(situation.cost_maps, *where)
+        if robot_stands_on(near, model):
             self._rechecked.append(where)
-        if any(math.dist(where, looked) <= frontiers.CLOSE for looked in self._rechecked):
+        if any(math.dist(where, looked) <= frontiers.FOVEA_RANGE for looked in self._rechecked):
             return None
         return Subgoal(SubgoalKind.INSPECT, near, "it is not sure that the passage is that narrow")
 
@@ -93,10 +93,12 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
     situation : what is believed.
     """
     model = situation.model
-    if not (is_open(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck):
+    if not (
+        orientation_is_uncertain(model) and (turns or node.stuck) and len(model.looked_from) <= FEW_LOOKS + node.stuck
+    ):
         return None
     what = "it is not clear how the squares of the map lie"
-    aside = frontiers.sight_of(situation.cost_maps, model.mask(node.patch), what)
+    aside = frontiers.viewpoint_of(situation.cost_maps, model.mask(node.patch), what)
     return Subgoal(SubgoalKind.INSPECT, *aside) if len(aside.squares) else None
 
 
@@ -109,7 +111,7 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     if not model.contradicted:
         return None
     what = "what is seen differs from what is believed"
-    look = frontiers.sight_of(situation.cost_maps, robot_square(model), what)
+    look = frontiers.viewpoint_of(situation.cost_maps, robot_square(model), what)
     return Subgoal(SubgoalKind.INSPECT, *look)
 
 
@@ -133,7 +135,7 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
     for mask in () if alone else model.protruding:
-        look = frontiers.against_the_wall(situation.cost_maps, mask)
+        look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
         if (mask & rim).any() and len(look.squares):
             return Subgoal(SubgoalKind.INSPECT, *look)
     return None
@@ -165,9 +167,9 @@ def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> S
     for mask in situation.model.protruding:
         if any(_are_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
             continue
-        look = frontiers.against_the_wall(situation.cost_maps, mask)
+        look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
         if not len(look.squares):  # one that lies askew must be seen better before the robot can stand right beside it
-            look = frontiers.sight_of(situation.cost_maps, mask, look.what)
+            look = frontiers.viewpoint_of(situation.cost_maps, mask, look.what)
         if len(look.squares) and depends_on(mask):
             return Subgoal(SubgoalKind.INSPECT, *look)
     return None
@@ -196,7 +198,7 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
-    nearest = min(frontiers.frontiers(situation.cost_maps, frontiers.APART), key=distance, default=None)
+    nearest = min(frontiers.find_frontiers(situation.cost_maps, frontiers.VIEW_SPACING), key=distance, default=None)
     return None if nearest is None else Subgoal(SubgoalKind.INSPECT, *nearest)
 
 
@@ -223,8 +225,8 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
     """Return a function that tells whether the goal holds only if some squares of the verge are wall."""
     model = situation.model
     if goal == "around":
-        hidden = covered & out_of_sight(model.verge, model, began)
-        return lambda mask: bool((hidden & ~out_of_sight(model.verge & ~mask, model, began)).any())
+        hidden = covered & hidden_from(model.verge, model, began)
+        return lambda mask: bool((hidden & ~hidden_from(model.verge & ~mask, model, began)).any())
     beyond = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
 
     def moves_the_room(mask: Bools) -> bool:

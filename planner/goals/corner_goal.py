@@ -16,17 +16,25 @@ from geometry.raster.components import components
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from kb.language.terms import Fact
 from kb.world.model import MAX_CLEAR_PROBABILITY, Node
-from planner.goals.placement import NEGLIGIBLE_LENGTH, Placement, can_leave, in_view, lands, lies_askew, region_of
+from planner.goals.placement import (
+    NEGLIGIBLE_LENGTH,
+    Placement,
+    is_off_quarter_turn,
+    mask_to_polygon,
+    meets_end,
+    robot_can_leave,
+    to_view_frame,
+)
 from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see
-from planner.screen.projection import grown
-from planner.sights.frontiers import Viewpoint, short_of, sight_of
-from planner.sights.viewpoints import TAKE, Approach
+from planner.screen.projection import dilate
+from planner.sights.frontiers import Viewpoint, look_ahead_squares, viewpoint_of
+from planner.sights.viewpoints import TO_TAKE, Approach
 from planner.situation import Situation
 
 CORNER_VIEW_RANGE = 6  # squares from a corner within which it is seen well (tuned on random worlds)
 CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at most (convention)
 ROTATED_ALLOWANCE = 1.25  # squares that a rotated object may reach further from its walls than a straight one (tuned)
-WALL = 1.0  # squares: so deep a wall may lie in the squares in which it was seen (derived)
+WALL_DEPTH = 1.0  # squares: so deep a wall may lie in the squares in which it was seen (derived)
 STAIR_DEPTH = math.sqrt(2)  # squares: so far behind its stairs of squares a slanted wall may be (derived: a diagonal)
 WALL_RELEASE = (
     0.4  # squares away from one slanted wall while pressed on the other: the first would stop it else (tuned)
@@ -118,7 +126,7 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
         held = situation.model.held == node.name
         return replace(found, by_the_way=RoomsByTheWay(side, situation)) if held else found
     viewpoints = _room_viewpoints(side, situation)
-    shut_in = not viewpoints and not can_leave(node, situation)
+    shut_in = not viewpoints and not robot_can_leave(node, situation)
     if shut_in:
         viewpoints = _room_viewpoints(side, situation.along_with(node.patch))
     if not viewpoints:
@@ -126,13 +134,13 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
     return Placement({}, viewpoints[0].what, viewpoints, there=not shut_in, shut_in=shut_in)
 
 
-def may_move(goal: Fact, situation: Situation) -> bool:
+def corner_may_move(goal: Fact, situation: Situation) -> bool:
     """Return whether a goal is about a corner that rooms not seen yet may put elsewhere."""
     side = corner_side(goal)
     return bool(side and rooms_to_see(side, situation))
 
 
-def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
+def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
     """Choose how the robot goes up to an object that it shall carry to where some goals hold.
 
     Parameters
@@ -144,14 +152,14 @@ def approach(goals: Iterable[Fact], situation: Situation) -> Approach:
     Returns
     -------
     Approach
-        TAKE; for a goal of a known corner with the direction of its walls.
+        TO_TAKE; for a goal of a known corner with the direction of its walls.
     """
     for goal in goals:
         side = corner_side(goal)
         if side in situation.corners:
             end = _corner_end(side, situation)
-            return TAKE._replace(corner=(end.sx, end.sy))
-    return TAKE
+            return TO_TAKE._replace(corner=(end.sx, end.sy))
+    return TO_TAKE
 
 
 def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
@@ -160,7 +168,9 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     What lies behind their squares is seen from there, too.
     """
     rooms = rooms_to_see(side, situation)
-    return tuple(r._replace(squares=np.union1d(r.squares, short_of(situation.cost_maps, r.squares))) for r in rooms)
+    return tuple(
+        r._replace(squares=np.union1d(r.squares, look_ahead_squares(situation.cost_maps, r.squares))) for r in rooms
+    )
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
@@ -172,12 +182,12 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     model = situation.model
     view = model.view
-    around = grown(model.squares([(column + view.west, row + view.south)]), 1)
+    around = dilate(model.squares([(column + view.west, row + view.south)]), 1)
     under = model.mask(node.patch)  # what lies under the object cannot be seen; the squares around it must do
     if (around & under).any():
-        around = grown(around, 1) & ~under
+        around = dilate(around, 1) & ~under
     unclear = around & ~model.told
-    shape = in_view(node.polygon, situation)
+    shape = to_view_frame(node.polygon, situation)
     hoped = FurtherCorner(side, side, situation)
     between = _between_walls(side, situation)
     if between is not None and not (unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)).any():
@@ -185,11 +195,11 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     if not unclear.any():
         return replace(_settled_placement(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
-    viewpoint = sight_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
+    viewpoint = viewpoint_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
     may_go_on = unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)
-    if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and lands(near, shape))):
+    if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and meets_end(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)
-    return Placement({side: near}, viewpoint.what, (viewpoint,), holds=lands(near, shape), hoped=hoped)
+    return Placement({side: near}, viewpoint.what, (viewpoint,), holds=meets_end(near, shape), hoped=hoped)
 
 
 def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Placement:
@@ -201,18 +211,18 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     object whose place is inexact is brought nearer if possible.
     """
     close = replace(end, slack=APPROACH_GAP)
-    if not lies_askew(node):
+    if not is_off_quarter_turn(node):
         if node.inexact:
-            return Placement({side: close}, holds=lands(close, shape), loose={side: end})
+            return Placement({side: close}, holds=meets_end(close, shape), loose={side: end})
         goals = [_pressed(end), replace(close, press=APPROACH_GAP), replace(end, slack=CONTACT_GAP, press=1.0)]
-        goal = next((one for one in goals if not lands(one, shape)), goals[-1])
-        holds = _surely(end, node, shape) or lands(goals[-1], shape)
-        return Placement({side: goal}, holds=holds, presses=_presses(end, node, shape) if holds else {})
+        goal = next((one for one in goals if not meets_end(one, shape)), goals[-1])
+        holds = _surely(end, node, shape) or meets_end(goals[-1], shape)
+        return Placement({side: goal}, holds=holds, presses=_wall_pushes(end, node, shape) if holds else {})
     x0, y0, x1, y1 = shape_at_pose(shape, Pose(0.0, 0.0, -node.turned % 90.0)).bounds
     near, far = sorted((x1 - x0, y1 - y0))
     flat = replace(close if node.inexact else end, within=(near + ROTATED_ALLOWANCE, far + ROTATED_ALLOWANCE))
-    loose = {} if lands(flat, shape) else {side: close}
-    return Placement({side: replace(flat, slack=APPROACH_GAP)}, holds=lands(flat, shape), loose=loose)
+    loose = {} if meets_end(flat, shape) else {side: close}
+    return Placement({side: replace(flat, slack=APPROACH_GAP)}, holds=meets_end(flat, shape), loose=loose)
 
 
 def _between_walls(side: str, situation: Situation) -> Between | None:
@@ -232,7 +242,7 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
         "one": (one + STAIR_DEPTH, -WALL_RELEASE),
         "two": (-WALL_RELEASE, two + STAIR_DEPTH),
     }
-    holds = lands(end, shape)
+    holds = meets_end(end, shape)
     presses = {name: Translate(*end.move(gap)) for name, gap in gaps.items() if holds}
     return Placement({side: end}, holds=holds, presses=presses)
 
@@ -242,7 +252,7 @@ def _pressed(end: InCorner) -> InCorner:
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
 
-def _presses(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
+def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
     """Return the pushes towards the walls of a corner that an object may not touch, as far as these may be away.
 
     A wall lies anywhere in the squares in which it was seen, and so does a side of the object that is not settled.
@@ -250,7 +260,10 @@ def _presses(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translate]:
     With a part of a square free in between, seen or not, it may not be.
     """
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
-    pushes = {"across": (x, Translate(end.sx * (x + WALL), 0.0)), "up": (y, Translate(0.0, end.sy * (y + WALL)))}
+    pushes = {
+        "across": (x, Translate(end.sx * (x + WALL_DEPTH), 0.0)),
+        "up": (y, Translate(0.0, end.sy * (y + WALL_DEPTH))),
+    }
     return {name: push for name, (gap, push) in pushes.items() if gap > CONTACT_GAP}
 
 
@@ -263,11 +276,12 @@ def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
 def _surely(end: InCorner, node: Node, shape: Any) -> bool:
     """Return whether an object is in a corner, however far in its sides lie.
 
-    It may lie up to WALL within the wall's squares, for the wall may lie deeper in them.
+    It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
     """
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
     return all(
-        gap >= -WALL and gap + far <= end.slack + NEGLIGIBLE_LENGTH for gap, far in zip(gaps, further, strict=True)
+        gap >= -WALL_DEPTH and gap + far <= end.slack + NEGLIGIBLE_LENGTH
+        for gap, far in zip(gaps, further, strict=True)
     )
 
 
@@ -302,12 +316,12 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
     that is the true corner, the object is there already. Second best is anywhere around it.
     floor : (rows, columns), the squares that the robot can reach.
     """
-    end, shape = _corner_end(side, situation), in_view(node.polygon, situation)
-    if lands(end, shape):
+    end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
+    if meets_end(end, shape):
         return {}
     mask = situation.model.space & floor | situation.model.mask(node.patch)
-    around = Inside(region_of(mask & _around(side, CORNER_VIEW_RANGE, situation)))
-    there = around.polygon.is_empty or lands(around, shape)
+    around = Inside(mask_to_polygon(mask & _around(side, CORNER_VIEW_RANGE, situation)))
+    there = around.polygon.is_empty or meets_end(around, shape)
     return {f"near_{side}": _pressed(end)} | ({} if there else {f"about_{side}": around})
 
 
@@ -318,7 +332,7 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
     around = _around(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
     labels = components(situation.model.space & around).labels
     mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
-    return {side: Inside(region_of(mask))}
+    return {side: Inside(mask_to_polygon(mask))}
 
 
 def _around(side: str, squares: int, situation: Situation) -> Bools:

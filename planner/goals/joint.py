@@ -21,7 +21,7 @@ CORNER_REACH = (
 OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
 
 
-def conflict(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
+def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
     """Find two of some goals that cannot hold at once for one object.
 
     Parameters
@@ -44,7 +44,7 @@ def conflict(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | N
     return None
 
 
-def opposite_corners(goals: Sequence[Fact], situation: Situation) -> str:
+def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
     """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
     However much more floor becomes known, such corners only move further apart.

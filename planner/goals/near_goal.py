@@ -12,7 +12,7 @@ from geometry.motion.se2 import Pose
 from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
-from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, in_view, region_of
+from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, mask_to_polygon, to_view_frame
 from planner.situation import Situation
 
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
@@ -24,8 +24,8 @@ POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the me
 
 def start_placement(node: Node, situation: Situation) -> Placement:
     """Return where an object is at the start: within one square of the place where the robot woke."""
-    place = in_view(shapely.Point(*situation.model.frame.origin), situation)
-    return _touching(in_view(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
+    place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
+    return _touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
@@ -36,8 +36,8 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
     target = situation.model.object(situation.binding.get(other, ""))
     if target is None:
         return Placement({}, f"nothing seen so far is {other}")
-    squares = region_of(situation.model.mask(target.patch))
-    return _touching(in_view(node.polygon, situation), squares, target.name)
+    squares = mask_to_polygon(situation.model.mask(target.patch))
+    return _touching(to_view_frame(node.polygon, situation), squares, target.name)
 
 
 def _touching(shape: Any, target: Any, name: str) -> Placement:
@@ -79,7 +79,7 @@ def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
     left = (degrees.value - node.turned + 180.0) % 360.0 - 180.0
     holds = math.dist((x, y), (middle.x, middle.y)) <= POSE_TOLERANCE and abs(left) <= ANGLE_TOLERANCE
     there = Pose(x - middle.x, y - middle.y, left)
-    outline = shape_at_pose(in_view(node.polygon, situation), there)
+    outline = shape_at_pose(to_view_frame(node.polygon, situation), there)
     west, south, east, north = outline.bounds
     margin = POSE_TOLERANCE + math.hypot(east - west, north - south) * math.radians(ANGLE_TOLERANCE)
     near = Inside(outline.buffer(margin, join_style="mitre"))

@@ -14,9 +14,9 @@ from kb.world.model import Node
 from kb.world.rooms import Rooms
 from planner.goals.corner_goal import corner_placement
 from planner.goals.near_goal import beside_placement, pose_placement, start_placement
-from planner.goals.optimistic import BEYOND, spread_into_unseen
-from planner.goals.placement import Placement, RegionEnds, in_view, lands_in_one, region_of
-from planner.goals.robot_goals import corner_side, door_viewpoints, next_room_missing, out_of_sight, room_numbers
+from planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
+from planner.goals.placement import Placement, RegionEnds, mask_to_polygon, meets_any_end, to_view_frame
+from planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
 from planner.situation import Situation
 
 REGION_RIM = 1.0  # squares from the edge of a region in which an object may not be within it after all (convention)
@@ -40,7 +40,7 @@ class OptimisticEnds:
         return {name: _optimistic_end(mask, self.situation) for name, mask in self.masks.items()}
 
 
-def landing(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
+def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object.
 
     Parameters
@@ -98,7 +98,7 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
     """Return whether an object meets one of some ends as it is now."""
-    return lands_in_one(ends, in_view(node.polygon, situation))
+    return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
 
 def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
@@ -125,7 +125,7 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 
 def _optimistic_end(mask: Bools, situation: Situation) -> End:
     """Return the end inside squares of the view, or inside the unseen squares that these lead to."""
-    return moved(Inside(region_of(spread_into_unseen(mask, situation))), -BEYOND, -BEYOND)
+    return moved(Inside(mask_to_polygon(spread_into_unseen(mask, situation))), -UNSEEN_MARGIN, -UNSEEN_MARGIN)
 
 
 def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
@@ -136,10 +136,10 @@ def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
 def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
     """Return the placement out of sight of `began`, with a corner of the verge in between."""
     model = situation.model
-    hidden = out_of_sight(model.verge, model, began) & (model.space | model.mask(node.patch))
+    hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:
         # Wherever the object ends, it lies on squares that are hidden or were never seen.
         rest = {"hidden": hidden | ~model.view.seen} if hidden.any() else {}
         missing = "no corner is seen yet that hides a place for it"
         return Placement({}, missing, must_reach=RegionEnds(rest))
-    return Placement({"hidden": Inside(region_of(hidden))}, hoped=OptimisticEnds({"hidden": hidden}, situation))
+    return Placement({"hidden": Inside(mask_to_polygon(hidden))}, hoped=OptimisticEnds({"hidden": hidden}, situation))

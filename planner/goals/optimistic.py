@@ -1,7 +1,7 @@
 """Optimistic planning: floor that is likely there where it was never seen or is not settled.
 
 A robot that carries objects takes such a risk: being stopped costs it a command or two, and mostly it is not stopped.
-The floor may go on beyond all that was seen. So masks of it have a margin of BEYOND squares around the arrays
+The floor may go on beyond all that was seen. So masks of it have a margin of UNSEEN_MARGIN squares around the arrays
 of the view.
 """
 
@@ -11,26 +11,26 @@ from geometry.kernels.arrays import Bools
 from geometry.raster.components import with_edge_neighbours
 from planner.situation import Situation
 
-BEYOND = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned)
-BOLD = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)
+UNSEEN_MARGIN = 6  # squares that the floor is assumed to go on unseen, and the margin of masks (tuned)
+OPTIMISTIC_LEVEL = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)
 
 
-def framed(mask: Bools) -> Bools:
-    """Return a mask of the view, (rows, columns), with a margin of BEYOND False squares on each side."""
-    return np.pad(mask, BEYOND)
+def with_unseen_margin(mask: Bools) -> Bools:
+    """Return a mask of the view, (rows, columns), with a margin of UNSEEN_MARGIN False squares on each side."""
+    return np.pad(mask, UNSEEN_MARGIN)
 
 
 def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
-    """Add to a mask the unseen squares that BEYOND steps from square to neighbouring square lead to from it.
+    """Add to a mask the unseen squares that UNSEEN_MARGIN steps from square to neighbouring square lead to from it.
 
-    mask : (rows, columns) of the view. Returns it with the margin of `framed`.
+    mask : (rows, columns) of the view. Returns it with the margin of `with_unseen_margin`.
     """
-    unseen, wider = ~framed(situation.model.view.seen), framed(mask)
-    for _ in range(BEYOND):
+    unseen, wider = ~with_unseen_margin(situation.model.view.seen), with_unseen_margin(mask)
+    for _ in range(UNSEEN_MARGIN):
         wider |= with_edge_neighbours(wider) & unseen
     return wider
 
 
-def hoped_floor(situation: Situation) -> Bools:
-    """Return all squares that are assumed to be free, with the margin of `framed`."""
-    return spread_into_unseen(situation.cost_maps.free(BOLD), situation)
+def optimistic_floor(situation: Situation) -> Bools:
+    """Return all squares that are assumed to be free, with the margin of `with_unseen_margin`."""
+    return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

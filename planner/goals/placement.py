@@ -15,15 +15,15 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.rasterize import squares
-from kb.localisation.propose.larger_object import DEEPEST, SIDES
+from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
-from planner.screen.projection import grown, shifted
+from planner.screen.projection import dilate, shift_mask
 from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
-SURELY = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
-LIKELY = 20  # percent: what is an object with less hardly is one (tuned on random worlds)
+CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
+POSSIBLE_OBJECT = 20  # percent: what is an object with less hardly is one (tuned on random worlds)
 NOOK_RANGE = 2  # squares around an object within which floor leads nowhere (tuned on random worlds)
 ANGLE_TOLERANCE = 2.0  # degrees within which an object has the orientation that it shall have (meaning of the goal)
 
@@ -71,7 +71,7 @@ class RegionEnds:
 
     def ends(self) -> Mapping[str, End]:
         """Compute the region of each mask as an end, in the view frame."""
-        return {name: Inside(region_of(mask)) for name, mask in self.masks.items()}
+        return {name: Inside(mask_to_polygon(mask)) for name, mask in self.masks.items()}
 
 
 @dataclass(frozen=True)
@@ -122,29 +122,29 @@ class Placement:
     some: bool = False
 
 
-def lands(end: End, shape: Any) -> bool:
+def meets_end(end: End, shape: Any) -> bool:
     """Return whether a shape meets an end as it is now; both in the view frame."""
     return is_goal_met(end, shape, shape)
 
 
-def lands_in_one(ends: Mapping[str, End], shape: Any) -> bool:
+def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
     """Return whether a shape meets any of some ends as it is now; all in the view frame."""
-    return any(lands(end, shape) for end in ends.values())
+    return any(meets_end(end, shape) for end in ends.values())
 
 
-def lies_askew(node: Node) -> bool:
+def is_off_quarter_turn(node: Node) -> bool:
     """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns."""
     over = node.turned % 90.0
     return min(over, 90.0 - over) > ANGLE_TOLERANCE
 
 
-def in_view(shape: Any, situation: Situation) -> Any:
+def to_view_frame(shape: Any, situation: Situation) -> Any:
     """Convert a shape (shapely geometry, in squares) from the map frame to the view frame."""
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
 
 
-def region_of(mask: Bools) -> Any:
+def mask_to_polygon(mask: Bools) -> Any:
     """Convert a mask (rows, columns) to one shapely geometry, in squares, in the frame of the array."""
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
@@ -152,7 +152,7 @@ def region_of(mask: Bools) -> Any:
     return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
 
 
-def barred(node: Node, situation: Situation) -> Bools:
+def forbidden_necks(node: Node, situation: Situation) -> Bools:
     """Compute the squares on the necks of doors through which an object may not be carried.
 
     The robot holds the object wherever that goes, so a door that is forbidden to either is forbidden to both. Squares
@@ -177,7 +177,7 @@ def barred(node: Node, situation: Situation) -> Bools:
     return mask & ~situation.model.mask(node.patch)
 
 
-def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
+def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
     """Compute the squares straight behind an object that seem to be wall and may belong to the object.
 
     Parameters
@@ -185,7 +185,7 @@ def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldMod
     node : Node
         The object. One that was moved has none: it was seen to end.
     side : tuple[int, int]
-        The direction (columns, rows), one of SIDES.
+        The direction (columns, rows), one of SIDE_DIRECTIONS.
     depth : int
         How far the object may go on, in squares.
     model : WorldModel
@@ -198,12 +198,12 @@ def hidden_behind(node: Node, side: tuple[int, int], depth: int, model: WorldMod
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
     for _ in range(depth if not node.moved else 0):
-        last = shifted(last, *side) & model.verge & ~mask
+        last = shift_mask(last, *side) & model.verge & ~mask
         found |= last
     return found
 
 
-def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
+def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
     """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole.
 
     Parameters
@@ -211,7 +211,7 @@ def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situat
     node : Node
         The object.
     side : tuple[int, int]
-        The direction (columns, rows) in which it may go on, one of SIDES.
+        The direction (columns, rows) in which it may go on, one of SIDE_DIRECTIONS.
     depth : int
         How far, in squares. It is pulled by one square more, or as far as the floor is free.
     situation : Situation
@@ -229,25 +229,25 @@ def out_of_wall(node: Node, side: tuple[int, int], depth: int, situation: Situat
     return Pose(-float(far * dx), -float(far * dy), 0.0) if far else None
 
 
-def drawn_out(node: Node, needed: Bools, situation: Situation) -> At | None:
+def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
     """Return the pose to which an object is pulled out of a wall, when squares are needed that it may cover there.
 
     needed : (rows, columns). Returns None when none of them may belong to the object, or when it cannot be pulled.
     """
-    for depth, side in product(range(DEEPEST, 0, -1), SIDES):
-        if (hidden_behind(node, side, depth, situation.model) & needed).any():
-            pose = out_of_wall(node, side, depth, situation)
+    for depth, side in product(range(MAX_HIDDEN_DEPTH, 0, -1), SIDE_DIRECTIONS):
+        if (possible_extension(node, side, depth, situation.model) & needed).any():
+            pose = pull_out_pose(node, side, depth, situation)
             if pose is not None:
                 return At(pose)
     return None
 
 
-def can_leave(node: Node, situation: Situation) -> bool:
+def robot_can_leave(node: Node, situation: Situation) -> bool:
     """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it."""
     held = situation.model.held == node.name
-    return not held or leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
+    return not held or floor_leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
 
 
-def leads_away(floor: Bools, thing: Bools) -> bool:
+def floor_leads_away(floor: Bools, thing: Bools) -> bool:
     """Return whether reachable floor leads further than NOOK_RANGE from an object; both masks (rows, columns)."""
-    return bool((floor & ~grown(thing, NOOK_RANGE)).any())
+    return bool((floor & ~dilate(thing, NOOK_RANGE)).any())

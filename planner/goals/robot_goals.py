@@ -13,16 +13,16 @@ from geometry.raster.components import with_edge_neighbours
 from kb.language.terms import Fact, Symbol
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
-from planner.screen.projection import Squares, grown
+from planner.screen.projection import SquareIndices, dilate
 from planner.sights.frontiers import (
-    APART,
+    VIEW_SPACING,
     Viewpoint,
     door_jambs,
-    frontiers,
+    find_frontiers,
     likely_gaps,
-    promised,
-    rooms_beyond,
-    short_of,
+    look_ahead_squares,
+    unreached_rooms,
+    with_chances,
 )
 from planner.situation import Situation
 
@@ -53,12 +53,12 @@ class Destination:
     viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
     """
 
-    squares: Squares
+    squares: SquareIndices
     missing: str = ""
     viewpoints: tuple[Viewpoint, ...] = ()
 
 
-def no_way(where: Sequence[Destination]) -> str:
+def unreachable_reason(where: Sequence[Destination]) -> str:
     """Return in words why goals cannot be attained although it is known where each of them holds.
 
     Parameters
@@ -74,7 +74,7 @@ def no_way(where: Sequence[Destination]) -> str:
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
-def nowhere(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
+def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
     """Return the destination of a goal of which it is not known yet where it holds.
 
     missing : in words, what must be known first. viewpoints : where that may be seen.
@@ -143,12 +143,14 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
     column, row = situation.corners[side].square
     best = row * model.labels.shape[1] + column
     if not floor[row, column]:
-        rooms = tuple(room for room in rooms_beyond(cost_maps) if best in room.squares)
-        return nowhere(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
+        rooms = tuple(room for room in unreached_rooms(cost_maps) if best in room.squares)
+        return unknown_destination(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        viewpoint = Viewpoint(short_of(cost_maps, np.array([best])), f"the floor goes on to the {side}, unseen")
-        return nowhere(viewpoint.what, (viewpoint,))
+        viewpoint = Viewpoint(
+            look_ahead_squares(cost_maps, np.array([best])), f"the floor goes on to the {side}, unseen"
+        )
+        return unknown_destination(viewpoint.what, (viewpoint,))
     return None
 
 
@@ -176,24 +178,24 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         """Return how much less far than the known corner a viewpoint lies towards the side, in squares."""
         return known - _furthest_towards(side, view.squares, model)
 
-    unreached = [view for view in rooms_beyond(cost_maps) if short(view) <= UNREACHED_REACH]
+    unreached = [view for view in unreached_rooms(cost_maps) if short(view) <= UNREACHED_REACH]
     found = [view for view in unreached if cost_maps.nearest(view.squares) is not None]
-    open_ends = [view for view in frontiers(cost_maps, APART) if short(view) <= MAX_UNSEEN_REACH]
+    open_ends = [view for view in find_frontiers(cost_maps, VIEW_SPACING) if short(view) <= MAX_UNSEEN_REACH]
     gaps = [view for view in likely_gaps(cost_maps) if short(view) <= MAX_UNSEEN_REACH and _is_narrow(view, model)]
-    ends = promised(cost_maps, [*open_ends, *gaps])
+    ends = with_chances(cost_maps, [*open_ends, *gaps])
     for view in ends[: len(open_ends)]:
         limits = _reach_limits(side, view, situation)
         if limits is not None and short(view) <= _unseen_reach(side, view, *limits, model):
             found.append(view)
     for view in ends[len(open_ends) :]:
-        near = short_of(cost_maps, view.squares)
+        near = look_ahead_squares(cost_maps, view.squares)
         if len(near) and short(view) <= _unseen_reach(side, view, MAX_UNSEEN_REACH, DOOR_SIDEWARD_REACH, model):
             found.append(view._replace(squares=near))
     what = f"a room is not seen that may go further to the {side}"
     return tuple(view._replace(what=what) for view in found)
 
 
-def _corner_square(side: str, situation: Situation) -> Squares:
+def _corner_square(side: str, situation: Situation) -> SquareIndices:
     """Return the square of the known corner towards a side, as a flat index, (1,)."""
     column, row = situation.corners[side].square
     return np.array([row * situation.model.labels.shape[1] + column])
@@ -233,7 +235,7 @@ def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: 
     return min(promise, MAX_UNSEEN_REACH, ONWARD_REACH * max(onward, 0.0) + sideward * sideways)
 
 
-def _onward(side: str, squares: Squares, model: WorldModel) -> float:
+def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
     """Compute how much further towards a corner (east and north added) one step into the unseen leads, in squares.
 
     The step goes in the mean of the directions in which the squares have unseen neighbours; 1 where they cancel out.
@@ -251,7 +253,7 @@ def _along(side: str, east: Any, north: Any) -> Any:
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 
 
-def _furthest_towards(side: str, squares: Squares, model: WorldModel) -> float:
+def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> float:
     """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
@@ -268,9 +270,9 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     """
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
-        return nowhere(f"nothing seen so far is {parameter}")
+        return unknown_destination(f"nothing seen so far is {parameter}")
     mask = situation.model.mask(node.patch)
-    around = grown(mask, 1)
+    around = dilate(mask, 1)
     near = around & situation.cost_maps.floor
     touching = near & with_edge_neighbours(mask)
     if touching.any():
@@ -278,7 +280,7 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     squares = np.flatnonzero(near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"
-        return nowhere(what, (Viewpoint(np.flatnonzero(around & situation.model.space), what),))
+        return unknown_destination(what, (Viewpoint(np.flatnonzero(around & situation.model.space), what),))
     if node.polygon is not None:
         rows, columns = np.divmod(squares, near.shape[1])
         view = situation.model.view
@@ -291,13 +293,13 @@ def _room(situation: Situation) -> Destination:
     """Return the floor of the rooms next to the one in which the robot woke."""
     beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
     if viewpoints:
-        return nowhere(viewpoints[0].what, viewpoints)
+        return unknown_destination(viewpoints[0].what, viewpoints)
     squares = np.flatnonzero(beyond & situation.cost_maps.floor)
     if len(squares):
         return Destination(squares)
     what = next_room_missing(situation)
     likely = _likely_rooms(situation)
-    return nowhere(what, (*likely, *door_viewpoints(situation, tried=bool(likely))))
+    return unknown_destination(what, (*likely, *door_viewpoints(situation, tried=bool(likely))))
 
 
 def next_room_missing(situation: Situation) -> str:
@@ -315,7 +317,7 @@ def next_room_missing(situation: Situation) -> str:
     at = model.point_in_words(opening.place)
     return (
         f"no door is seen yet: the opening {opening.width:.1f} squares wide at {at} is none, "
-        f"for the floor {where} it is nowhere wider than {opening.least:.1f}, less than twice as wide"
+        f"for the floor {where} it is unknown_destination wider than {opening.least:.1f}, less than twice as wide"
     )
 
 
@@ -341,17 +343,17 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
     tried : whether likely doors are left out, because the robot goes through them anyway.
     """
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
-    return (*door_jambs(situation.cost_maps, doors), *rooms_beyond(situation.cost_maps))
+    return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
 
 
 def around_corner_destination(situation: Situation) -> Destination:
     """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between."""
     model = situation.model
-    squares = np.flatnonzero(out_of_sight(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
-    return Destination(squares) if len(squares) else nowhere("no corner is seen yet that hides a place")
+    squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
+    return Destination(squares) if len(squares) else unknown_destination("no corner is seen yet that hides a place")
 
 
-def out_of_sight(verge: Bools, model: WorldModel, place: XY) -> Bools:
+def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
     """Compute the squares none of whose corners is seen from a point past a verge.
 
     Parameters
@@ -378,7 +380,7 @@ def out_of_sight(verge: Bools, model: WorldModel, place: XY) -> Bools:
     return mask
 
 
-def _within(model: WorldModel, point: XY, reach: float) -> Squares:
+def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
     """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own."""
     row, column = model.view.locate(*point)
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
@@ -388,7 +390,7 @@ def _within(model: WorldModel, point: XY, reach: float) -> Squares:
     return np.flatnonzero(near)
 
 
-def contains(squares: Squares, model: WorldModel) -> bool:
+def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
     """Return whether the robot stands on one of some squares (flat indices on the view)."""
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())

@@ -13,18 +13,18 @@ from geometry.kernels.arrays import XY, Floats, Square
 from geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
 from kb.world.model import Node, WorldModel
 from planner.navigation.routes import PlannedRoute
-from planner.screen.projection import UNSEEN, CostMaps
+from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
 
-def winding(track: Sequence[XY], node: Node) -> int:
+def winding_number(track: Sequence[XY], node: Node) -> int:
     """Compute how many turns a track makes around an object, counter-clockwise positive.
 
     track : points of the map frame, closed by its first point.
     """
-    return crossing_number(_centred([*track, track[0]]), pivot(node))
+    return crossing_number(_centred([*track, track[0]]), encircled_point(node))
 
 
-def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
+def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
     """Find the routes that complete one turn around an object and end where the track began.
 
     Parameters
@@ -42,11 +42,11 @@ def ways_round(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int
         which there is one; empty when there is none at any level.
     """
     model = cost_maps.model
-    x, y = pivot(node)
+    x, y = encircled_point(node)
     about = (x - model.view.west, y - model.view.south)
     goal = _square(track[0], model)
     done = crossing_number(_centred(track), (x, y))
-    for level in range(UNSEEN + 1):
+    for level in range(UNSEEN_LEVEL + 1):
         free = cost_maps.free(level) & ~model.mask(node.patch)
         free[cost_maps.here[1], cost_maps.here[0]] = True  # an object seen coarsely may seem to cover it
         if not free[goal[1], goal[0]]:
@@ -83,7 +83,7 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
     return PlannedRoute(tuple(path), length, 0.5, level)
 
 
-def pivot(node: Node) -> XY:
+def encircled_point(node: Node) -> XY:
     """Return a point within the object, map frame: the centre of its square nearest to its middle."""
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))

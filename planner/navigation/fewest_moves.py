@@ -14,11 +14,11 @@ from geometry.kernels.arrays import Bools, Square
 from geometry.raster.line_of_sight import straight
 from planner.navigation.routes import PlannedRoute
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import HURRY, one_move
-from planner.screen.projection import CostMaps, Squares
+from planner.screen.moves import CARRYING_PACE, one_move_squares
+from planner.screen.projection import CostMaps, SquareIndices
 from planner.subgoal_kind import SubgoalKind
 
-MOVE, WAY = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares (tuned)
+MOVE_COST, SQUARE_COST = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares (tuned)
 SEEN_SQUARE_VALUE = (
     0.05  # squares of way that an unseen square in sight from the turn is worth (tuned on random worlds)
 )
@@ -69,18 +69,18 @@ class FewestMoves:
         else:
             turning = reached.level == 0 and self._turning(subgoal) is not None
             moves = 2 if turning else ASSUMED_MOVES
-        return subgoal._replace(price=subgoal.price + MOVE * moves - (1 - WAY) * reached.cost)
+        return subgoal._replace(price=subgoal.price + MOVE_COST * moves - (1 - SQUARE_COST) * reached.cost)
 
-    def _met(self, subgoal: Subgoal) -> Squares:
+    def _met(self, subgoal: Subgoal) -> SquareIndices:
         """Return the squares of a subgoal that one move reaches."""
-        near: Squares = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
+        near: SquareIndices = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
         return near
 
     def _first(self, kind: str) -> Bools:
         """Return all squares that one move reaches, (rows, columns), by the kind of the subgoal."""
-        key = HURRY.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
+        key = CARRYING_PACE.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
         if key not in self._reached:
-            self._reached[key] = one_move(self._cost_maps, kind)
+            self._reached[key] = one_move_squares(self._cost_maps, kind)
         return self._reached[key]
 
     def _turning(self, subgoal: Subgoal) -> Square | None:
@@ -92,13 +92,13 @@ class FewestMoves:
 
     def _best_turn(self, subgoal: Subgoal) -> Square | None:
         """Search the turn of least way, less the worth of the unseen squares in sight from it."""
-        cost_maps, passable = self._cost_maps, HURRY.passable(self._cost_maps, subgoal.kind)
+        cost_maps, passable = self._cost_maps, CARRYING_PACE.passable(self._cost_maps, subgoal.kind)
         sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & passable.ravel()[subgoal.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
         if len(nearest):
             nearest = nearest[np.unique(np.linspace(0, len(nearest) - 1, MAX_TRIED_SQUARES).astype(int))]
         (x, y), best, found = cost_maps.here, np.inf, None
-        first, longest = self._first(subgoal.kind), HURRY.longest_by_kind[subgoal.kind]
+        first, longest = self._first(subgoal.kind), CARRYING_PACE.longest_by_kind[subgoal.kind]
         for end in nearest.tolist():
             column, row = self._square(end)
             rows, columns = np.nonzero(straight(passable, column, row, longest, first))

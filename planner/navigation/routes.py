@@ -15,8 +15,8 @@ from geometry.pathfinders.grid_astar import grid_path
 from geometry.pathfinders.visibility_graph import visibility_path
 from kb.reasoning.solver import solve
 from kb.world.rooms import Door, count_crossings
-from planner.navigation.subgoals import ASP, TENTHS_PER_SQUARE
-from planner.screen.projection import CostMaps, Squares
+from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
+from planner.screen.projection import CostMaps, SquareIndices
 from planner.screen.sweeps import squares_along
 
 MAX_ROUTES = 4  # topologically distinct routes that are offered for a choice (tuned on random worlds)
@@ -79,7 +79,7 @@ def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
 PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
 
 
-def ways(cost_maps: CostMaps, level: int, goals: Squares, finder: str) -> list[PlannedRoute]:
+def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
     """Find topologically distinct routes to the nearest reachable square of `goals`.
 
     Parameters
@@ -87,7 +87,7 @@ def ways(cost_maps: CostMaps, level: int, goals: Squares, finder: str) -> list[P
     cost_maps : CostMaps
     level : int
         The certainty level of the squares that may be crossed; at least one goal can be reached at it.
-    goals : Squares
+    goals : SquareIndices
         Flat indices on the screen.
     finder : str
         A key of PATH_FINDERS.
@@ -106,7 +106,7 @@ def ways(cost_maps: CostMaps, level: int, goals: Squares, finder: str) -> list[P
     return [PlannedRoute(tuple(squares_along(free, points)), length, clear, level) for points, length, clear in lines]
 
 
-def choose_way(
+def choose_route(
     offered: Sequence[PlannedRoute],
     cost_maps: CostMaps,
     before: frozenset[Square],
@@ -140,7 +140,7 @@ def choose_way(
         facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
         if len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares):
             facts.append(f"last({number})")
-    answer = solve([ASP / "routes.lp"], facts)
+    answer = solve([PLANNER_ASP / "routes.lp"], facts)
     return offered[answer[0].arguments[0].number] if answer else None
 
 

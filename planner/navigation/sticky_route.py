@@ -9,7 +9,7 @@ from geometry.kernels.arrays import Square
 from kb.world.model import WorldModel
 from planner.navigation.routes import PlannedRoute
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import CostMaps, Squares
+from planner.screen.projection import CostMaps, SquareIndices
 
 
 class StickyRoute:
@@ -64,7 +64,7 @@ class StickyRoute:
         return PlannedRoute(tuple(rest), float(len(rest)), 0.0, level)
 
 
-def lattice_squares(squares: Squares, model: WorldModel) -> frozenset[Square]:
+def to_map_squares(squares: SquareIndices, model: WorldModel) -> frozenset[Square]:
     """Convert flat indices on the view to squares (x, y) of the map frame."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

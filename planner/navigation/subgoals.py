@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from kb.reasoning.solver import solve
-from planner.screen.projection import CostMaps, Squares
+from planner.screen.projection import CostMaps, SquareIndices
 from planner.subgoal_kind import SubgoalKind
 
-ASP = Path(__file__).resolve().parent.parent / "asp"  # the folder of the planner's encodings
+PLANNER_ASP = Path(__file__).resolve().parent.parent / "asp"  # the folder of the planner's encodings
 TENTHS_PER_SQUARE = 10  # the encodings count lengths and costs in tenths of squares
 
 
@@ -25,7 +25,7 @@ class Subgoal(NamedTuple):
     """
 
     kind: str
-    squares: Squares
+    squares: SquareIndices
     what: str
     chance: int = 100
     price: float = 0.0
@@ -56,5 +56,5 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
             facts.append(f"aim({number},{kind},{round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price))})")
             facts.append(f"chance({number},{subgoal.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
-    answer = solve([ASP / "aims.lp"], facts) if facts else None
+    answer = solve([PLANNER_ASP / "aims.lp"], facts) if facts else None
     return subgoals[answer[0].arguments[0].number] if answer else None

@@ -1,7 +1,7 @@
 """From a route to the next command: the longest straight move along it that is safe.
 
-A robot that only walks (STROLL) makes short moves, and so looks often.
-One that carries objects (HURRY) counts commands, and makes long moves.
+A robot that only walks (WALKING_PACE) makes short moves, and so looks often.
+One that carries objects (CARRYING_PACE) counts commands, and makes long moves.
 """
 
 import math
@@ -14,10 +14,10 @@ from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.line_of_sight import straight
 from geometry.raster.winding import crossing_number
 from kb.body import Command, Move
-from kb.localisation.hypotheses.walk_outcomes import on_line
+from kb.localisation.hypotheses.walk_outcomes import snap_to_line
 from kb.perception.frame import turned
 from kb.world.model import WorldModel
-from planner.screen.projection import CostMaps, grown
+from planner.screen.projection import CostMaps, dilate
 from planner.screen.sweeps import line_sweep_is_free, sweep_is_free
 from planner.subgoal_kind import SubgoalKind
 
@@ -31,7 +31,7 @@ GRID_LINE_TOLERANCE = 1e-3  # squares from the line between two squares that cou
 UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no whole-degree turn leads to a grid line
 
 
-def is_open(model: WorldModel) -> bool:
+def orientation_is_uncertain(model: WorldModel) -> bool:
     """Return whether the orientation of the map frame is still uncertain by more than ORIENTATION_TOLERANCE.
 
     Orientations that are unlikely by all sampled completions of the map do not count.
@@ -39,7 +39,7 @@ def is_open(model: WorldModel) -> bool:
     return model.likely_spread > ORIENTATION_TOLERANCE
 
 
-def is_settled(model: WorldModel) -> bool:
+def orientation_is_settled(model: WorldModel) -> bool:
     """Return whether the orientation of the map frame is known within ORIENTATION_TOLERANCE beyond doubt."""
     return model.spread <= ORIENTATION_TOLERANCE
 
@@ -61,7 +61,11 @@ class Pace(NamedTuple):
 
     def most(self, kind: str, model: WorldModel) -> int:
         """Return the greatest length of a move now, in squares along rows or columns. kind : of the subgoal."""
-        return min(self.longest_by_kind[kind], self.longest_uncertain) if is_open(model) else self.longest_by_kind[kind]
+        return (
+            min(self.longest_by_kind[kind], self.longest_uncertain)
+            if orientation_is_uncertain(model)
+            else self.longest_by_kind[kind]
+        )
 
     def passable(self, cost_maps: CostMaps, kind: str) -> Bools:
         """Return the squares that a move may cross, (rows, columns). kind : of the subgoal."""
@@ -77,8 +81,8 @@ _WALKING_LENGTHS: Mapping[str, int] = {
     SubgoalKind.PASS: 8,
     SubgoalKind.SETTLE: 12,
 }
-STROLL = Pace(_WALKING_LENGTHS, 9, bold=False)  # of a robot that only walks (lengths tuned on random worlds)
-HURRY = Pace(
+WALKING_PACE = Pace(_WALKING_LENGTHS, 9, bold=False)  # of a robot that only walks (lengths tuned on random worlds)
+CARRYING_PACE = Pace(
     {**_WALKING_LENGTHS, SubgoalKind.INSPECT: 48, SubgoalKind.EXPLORE: 48}, 48, bold=True
 )  # of one that carries
 
@@ -88,7 +92,7 @@ def next_move(
     path: Sequence[Square],
     kind: str,
     about: XY | None = None,
-    pace: Pace = STROLL,
+    pace: Pace = WALKING_PACE,
 ) -> Move:
     """Choose the longest straight move along a path that stays on passable squares.
 
@@ -125,8 +129,8 @@ def next_move(
     return move_to(cost_maps.model, there, offset)
 
 
-def one_move(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
-    """Compute the squares that one straight move at the pace HURRY reaches from where the robot stands.
+def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
+    """Compute the squares that one straight move at the pace CARRYING_PACE reaches from where the robot stands.
 
     Parameters
     ----------
@@ -141,13 +145,13 @@ def one_move(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) ->
     Bools
         (rows, columns).
     """
-    longest = HURRY.most(kind, cost_maps.model)
-    return straight(HURRY.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
+    longest = CARRYING_PACE.most(kind, cost_maps.model)
+    return straight(CARRYING_PACE.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
 
 
 def _roomy(cost_maps: CostMaps) -> Bools | None:
     """Return the safe squares with safe squares all around; None while the orientation is certain enough."""
-    return ~grown(~cost_maps.safe, 1) if is_open(cost_maps.model) else None
+    return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
 
 def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
@@ -177,7 +181,7 @@ def move_by(model: WorldModel, dx: float, dy: float) -> Move:
 
 def _straight_to(place: XY, model: WorldModel) -> Move:
     """Return the move from the robot's believed place to a point of the map frame."""
-    here = on_line(model.place)
+    here = snap_to_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
     return Move(round(east, COMMAND_DIGITS) + 0.0, round(north, COMMAND_DIGITS) + 0.0)
 
@@ -191,7 +195,7 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
     within its square than believed, the robot sees itself in the next square then.
     """
     model = cost_maps.model
-    if is_open(model):
+    if orientation_is_uncertain(model):
         return UNAMBIGUOUS_OFFSET if _may_end_on_grid_line(model, square) else (0.0, 0.0)
     west, south, east, north = model.leeway
     test = tuple(
@@ -212,7 +216,7 @@ def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
     return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - GRID_LINE_TOLERANCE).any())
 
 
-def halting(command: Command | None, place: XY, model: WorldModel) -> Command | None:
+def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:
     """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`.
 
     Parameters

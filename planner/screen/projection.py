@@ -1,7 +1,7 @@
 """Cost maps: the world model projected on the screen, at several certainty levels.
 
 The screen is the paper's map in the head: an array of squares, [row, column], cut to the window that was seen.
-Certainty level 0 holds the squares that are surely floor. Each further level holds more, up to UNSEEN, which
+Certainty level 0 holds the squares that are surely floor. Each further level holds more, up to UNSEEN_LEVEL, which
 holds all that is not excluded. A way over a less certain level leads to its goal only if what is assumed proves true.
 
 Two frames are used throughout the planner. The map frame has whole squares at whole coordinates, and does not change
@@ -23,7 +23,7 @@ from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from planner.screen.unseen_gain import expected_gain
 
 Mask = Bools  # (rows, columns)
-Squares = NDArray[np.int64]  # flat indices on a screen: row * columns + column
+SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column
 FIFTHS_PER_SQUARE = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
 LEVEL_MAX_PROBABILITY = (
     MAX_FREE_PROBABILITY,
@@ -31,7 +31,7 @@ LEVEL_MAX_PROBABILITY = (
     0.3,
     0.45,
 )  # by level: a square occupied with at most this may be crossed (tuned)
-UNSEEN = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
+UNSEEN_LEVEL = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
 APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
 MAX_TRUSTED_PROBABILITY = 0.04  # a square occupied with at most this probability may be crossed without a look (tuned)
@@ -83,7 +83,7 @@ class CostMaps:
         """
         view = self.model.view
         mask = view.probability <= LEVEL_MAX_PROBABILITY[min(level, len(LEVEL_MAX_PROBABILITY) - 1)]
-        if level == UNSEEN:  # the counts alone decide, whatever the sampled completions show
+        if level == UNSEEN_LEVEL:  # the counts alone decide, whatever the sampled completions show
             mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVEL_MAX_PROBABILITY[-1])
         else:
             mask &= view.seen
@@ -95,15 +95,15 @@ class CostMaps:
 
     @cached_property
     def distances(self) -> "DistanceMaps":
-        """The distance of every square from the robot, by certainty level (UNSEEN included)."""
+        """The distance of every square from the robot, by certainty level (UNSEEN_LEVEL included)."""
         return DistanceMaps(self)
 
-    def nearest(self, squares: Squares) -> Reached | None:
+    def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
 
         Returns None when none can be reached at any level.
         """
-        for level in range(UNSEEN + 1):
+        for level in range(UNSEEN_LEVEL + 1):
             far = self.distances[level].ravel()[squares]
             if (far != GEODESIC_UNREACHED).any():
                 return Reached(
@@ -130,7 +130,7 @@ class CostMaps:
         """
         view = self.model.view
         doubtful_squares = view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY)
-        doubtful = grown(doubtful_squares, 1) | grown(~view.seen, 1)
+        doubtful = dilate(doubtful_squares, 1) | dilate(~view.seen, 1)
         mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= MAX_FREE_PROBABILITY) & ~doubtful)
         mask &= ~self._barred
         mask[self.here[1], self.here[0]] = True
@@ -143,7 +143,7 @@ class CostMaps:
         For the case that being stopped costs less than looking first.
         """
         view = self.model.view
-        return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~grown(~view.seen, 1))
+        return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
 
     @cached_property
     def approachable(self) -> Bools:
@@ -160,7 +160,7 @@ class CostMaps:
         """(rows, columns): the weighted number of unseen squares that come into sight from each square."""
         return expected_gain(self.model.view)
 
-    def far(self, squares: Squares) -> Floats:
+    def far(self, squares: SquareIndices) -> Floats:
         """Compute the length of the sure way to each of `squares`, in squares, (n,) float64.
 
         Where no way is sure, the straight distance stands instead.
@@ -186,7 +186,7 @@ class DistanceMaps:
         return self._known[level]
 
 
-def ways_to_objects(cost_maps: CostMaps) -> dict[str, float]:
+def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     """Compute the cost of the way to each object's vicinity, by the object's name.
 
     Parameters
@@ -206,31 +206,31 @@ def ways_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     return found
 
 
-def _vicinity(model: WorldModel, patch: Patch) -> Squares:
+def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
     """List the squares of a patch and all squares around it that lie within the view."""
-    rows, columns = np.nonzero(grown(np.pad(patch.mask, 1), 1))
+    rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))
     rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west
     high, wide = model.labels.shape
     inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
-    flat: Squares = rows[inside] * wide + columns[inside]
+    flat: SquareIndices = rows[inside] * wide + columns[inside]
     return flat
 
 
-def marked(squares: Squares, shape: tuple[int, ...]) -> Bools:
+def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
     """Return the mask of `shape` (rows, columns) that is True on the given flat indices only."""
     mask: Bools = np.zeros(shape, np.bool_)
     mask.flat[squares] = True
     return mask
 
 
-def shifted(mask: Bools, columns: int, rows: int) -> Bools:
+def shift_mask(mask: Bools, columns: int, rows: int) -> Bools:
     """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False."""
     high, wide = mask.shape
     padded = np.pad(mask, 1)
     return padded[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
 
 
-def grown(mask: Bools, squares: int) -> Bools:
+def dilate(mask: Bools, squares: int) -> Bools:
     """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one."""
     for axis in (0, 1):
         done = 0

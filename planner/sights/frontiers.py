@@ -16,15 +16,22 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.mapping.occupancy import OPEN
 from kb.world.model import MAX_FREE_PROBABILITY, Node
 from kb.world.rooms import Door
-from planner.screen.projection import FIFTHS_PER_SQUARE, SURELY_OCCUPIED, CostMaps, Squares, grown, marked
+from planner.screen.projection import (
+    FIFTHS_PER_SQUARE,
+    SURELY_OCCUPIED,
+    CostMaps,
+    SquareIndices,
+    dilate,
+    indices_to_mask,
+)
 from planner.screen.unseen_gain import VERGE_WEIGHT
 
-CLOSE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
+FOVEA_RANGE = 3  # squares, in rows and columns, from which a square lies within the fovea (derived: -4..3)
 MIDDLE_ZONE_RANGE = 7  # squares from which a square lies within the middle zone of the retina (derived: offsets -8..7)
 JAMB_RANGE = 8  # squares around the end of a door's neck within which its walls are looked at (tuned on random worlds)
-APART = 2  # squares from earlier viewpoints beyond which a new one is sought first (tuned on random worlds)
+VIEW_SPACING = 2  # squares from earlier viewpoints beyond which a new one is sought first (tuned on random worlds)
 GAP_LEVEL = 2  # certainty level at which a way leads through a likely gap (tuned on random worlds)
-SHORT_OF = 5  # squares before a place from which what lies behind it comes into sight (tuned on random worlds)
+LOOK_AHEAD_RANGE = 5  # squares before a place from which what lies behind it comes into sight (tuned on random worlds)
 MIN_UNREACHED_SQUARES = 6  # squares of floor for which a hidden passage is assumed (tuned on random worlds)
 EQUAL_VALUE_SHARE = 0.9  # viewpoints worth at least this share of the best one count as equal (tuned on random worlds)
 SQUARES_PER_OBJECT = 800  # squares of unseen floor among which one wanted object is expected (tuned on random worlds)
@@ -41,12 +48,12 @@ class Viewpoint(NamedTuple):
     chance : percent of belief that it is what is looked for; 100 when nothing tells that it is less.
     """
 
-    squares: Squares
+    squares: SquareIndices
     what: str
     chance: int = 100
 
 
-def frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
+def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch.
 
     Parameters
@@ -59,7 +66,7 @@ def frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     -------
     list[Viewpoint]
     """
-    border = unlooked_floor(cost_maps, apart) & grown(~cost_maps.model.view.seen, 1)
+    border = unlooked_floor(cost_maps, apart) & dilate(~cost_maps.model.view.seen, 1)
     return [Viewpoint(squares, FRONTIER_REASON) for squares in group_by_label(_stretches(border))]
 
 
@@ -69,14 +76,14 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     A stretch next to floor that surely goes on unseen is left out: it belongs to a frontier.
     """
     view = cost_maps.model.view
-    edge = view.seen & grown(~view.seen, 1)
+    edge = view.seen & dilate(~view.seen, 1)
     border = edge & (cost_maps.distances[GAP_LEVEL] != GEODESIC_UNREACHED)
-    surely = grown(edge & cost_maps.floor, 1).ravel()
+    surely = dilate(edge & cost_maps.floor, 1).ravel()
     stretches = [squares for squares in group_by_label(_stretches(border)) if not surely[squares].any()]
     return [Viewpoint(squares, "there may be a gap in what bounds the floor") for squares in stretches]
 
 
-def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
+def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
     """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely.
 
     Parameters
@@ -93,20 +100,20 @@ def vague_places(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
         One for each connected stretch of such squares.
     """
     view = cost_maps.model.view
-    open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & grown(cost_maps.floor, 1)
+    open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & dilate(cost_maps.floor, 1)
     if odd:
         open_ &= view.probability < SURELY_OCCUPIED
-    near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), CLOSE), 0)
+    near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), FOVEA_RANGE), 0)
     return [Viewpoint(squares, "what bounds the floor is not clear") for squares in group_by_label(near)]
 
 
-def by_touch(cost_maps: CostMaps, node: Node) -> Viewpoint:
+def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
     """Return the floor beside an object from which the robot feels its colour and did not look yet."""
-    beside = grown(cost_maps.model.mask(node.patch), 1)
+    beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
 
 
-def against_the_wall(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
+def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     """Return the floor from which the robot feels whether something is part of a wall.
 
     mask : (rows, columns), its squares.
@@ -115,7 +122,7 @@ def against_the_wall(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     return Viewpoint(beside, "whether something stands against the wall was not felt")
 
 
-def sight_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
+def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     """Return the floor from which some squares are seen best, where the robot did not look yet.
 
     Parameters
@@ -131,29 +138,29 @@ def sight_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     Viewpoint
         Within the range of the fovea, or else of the middle zone; without squares when all of that was looked from.
     """
-    for reach, apart in ((CLOSE, APART), (CLOSE, 0), (MIDDLE_ZONE_RANGE, APART)):
-        near = np.flatnonzero(unlooked_floor(cost_maps, apart) & grown(mask, reach))
+    for reach, apart in ((FOVEA_RANGE, VIEW_SPACING), (FOVEA_RANGE, 0), (MIDDLE_ZONE_RANGE, VIEW_SPACING)):
+        near = np.flatnonzero(unlooked_floor(cost_maps, apart) & dilate(mask, reach))
         if len(near):
             return Viewpoint(near, what)
     return Viewpoint(np.zeros(0, np.int64), what)
 
 
-def close_to(cost_maps: CostMaps, x: float, y: float) -> Squares:
+def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
     """Return the floor from which all squares around a point lie within the fovea, whether looked from or not.
 
     x, y : the point, in squares, map frame. Returns flat indices, (n,).
     """
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
-    return np.flatnonzero(cost_maps.floor & grown(mask, CLOSE - 1))
+    return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
 
 
-def short_of(cost_maps: CostMaps, squares: Squares) -> Squares:
+def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareIndices:
     """Return the floor from which the robot sees what lies behind `squares`, as flat indices, (n,).
 
-    The squares themselves count, if they can be reached, and floor within SHORT_OF of them.
+    The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them.
     """
-    mask = marked(squares, cost_maps.floor.shape)
-    near = unlooked_floor(cost_maps, APART) & grown(mask, SHORT_OF)
+    mask = indices_to_mask(squares, cost_maps.floor.shape)
+    near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
     return np.flatnonzero(near | (mask & cost_maps.floor))
 
 
@@ -172,12 +179,12 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
             rows = slice(max(row - JAMB_RANGE, 0), row + JAMB_RANGE)
             columns = slice(max(column - JAMB_RANGE, 0), column + JAMB_RANGE)
             ends[rows, columns] = True
-        view_of_ends = sight_of(cost_maps, vague & ends, "whether there is a door is not clear")
+        view_of_ends = viewpoint_of(cost_maps, vague & ends, "whether there is a door is not clear")
         found += [view_of_ends] * bool(not door.sure and len(view_of_ends.squares))
     return found
 
 
-def rooms_beyond(cost_maps: CostMaps) -> list[Viewpoint]:
+def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
     """Find connected floor that is seen and cannot be reached yet.
 
     All floor is connected, so a passage that is not seen yet must lead there.
@@ -187,7 +194,7 @@ def rooms_beyond(cost_maps: CostMaps) -> list[Viewpoint]:
     return [Viewpoint(squares, what) for squares in group_by_label(apart) if len(squares) >= MIN_UNREACHED_SQUARES]
 
 
-def promised(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint]:
+def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint]:
     """Return the viewpoints with their chance that a wanted object comes into sight at their nearest square."""
     if not viewpoints:
         return []
@@ -213,7 +220,7 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
     list[Viewpoint]
         One, or none when nothing unseen comes into sight.
     """
-    candidates = np.flatnonzero(reachable & unlooked_floor(cost_maps, APART))
+    candidates = np.flatnonzero(reachable & unlooked_floor(cost_maps, VIEW_SPACING))
     gain = cost_maps.information_gain.ravel()[candidates]
     if gain.max(initial=0.0) < VERGE_WEIGHT:
         return []
@@ -229,7 +236,7 @@ def _chance(gain: float) -> int:
     return max(1, min(90, round(100 * gain / SQUARES_PER_OBJECT)))
 
 
-def _nearest(cost_maps: CostMaps, squares: Squares) -> int:
+def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
     """Return that of `squares` with the shortest way, at the surest level at which any is reached."""
     reached = cost_maps.nearest(squares)
     if reached is None:
@@ -244,17 +251,17 @@ def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:
     A second look from the same square shows nothing new.
     apart : floor within so many rows and columns of an earlier viewpoint is left out.
     """
-    mask: Bools = cost_maps.floor & ~grown(cost_maps.looked_from, apart)
+    mask: Bools = cost_maps.floor & ~dilate(cost_maps.looked_from, apart)
     return mask
 
 
 def _stretches(mask: Bools) -> Labels:
     """Label the connected stretches of a mask, 0 outside it; squares that meet at a corner are connected."""
-    labels: Labels = np.where(mask, components(grown(mask, 1)).labels, 0)
+    labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
     return labels
 
 
-def group_by_label(labels: Labels) -> list[Squares]:
+def group_by_label(labels: Labels) -> list[SquareIndices]:
     """Group the flat indices of a (rows, columns) array by label, in ascending order; label 0 is left out."""
     flat = labels.ravel()
     squares = np.flatnonzero(flat)

@@ -12,14 +12,14 @@ from geometry.kernels.arrays import Bools, Floats
 from geometry.raster.components import components, with_edge_neighbours
 from kb.mapping.occupancy import OPEN
 from kb.world.model import Node
-from planner.screen.moves import one_move
-from planner.screen.projection import SURELY_OCCUPIED, CostMaps, Squares, grown, marked, shifted
+from planner.screen.moves import one_move_squares
+from planner.screen.projection import SURELY_OCCUPIED, CostMaps, SquareIndices, dilate, indices_to_mask, shift_mask
 from planner.screen.unseen_gain import window_sums
 from planner.sights.frontiers import (
-    APART,
-    CLOSE,
     EQUAL_VALUE_SHARE,
+    FOVEA_RANGE,
     MIDDLE_ZONE_RANGE,
+    VIEW_SPACING,
     Viewpoint,
     group_by_label,
     unlooked_floor,
@@ -49,10 +49,10 @@ class Approach(NamedTuple):
     corner: tuple[int, int] | None = None
 
 
-ARRIVE, TAKE = Approach(take=False), Approach(take=True)
+TO_REACH, TO_TAKE = Approach(take=False), Approach(take=True)
 
 
-def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[Squares, Viewpoint]]:
+def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[SquareIndices, Viewpoint]]:
     """Find the viewpoints for the places that may hold a wanted object which is not settled.
 
     Parameters
@@ -67,14 +67,14 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 
     Returns
     -------
-    list[tuple[Squares, Viewpoint]]
+    list[tuple[SquareIndices, Viewpoint]]
         For each place its squares (flat indices) and the floor to look from.
     """
     view = cost_maps.model.view
     spots = group_by_label(components(likely >= MIN_SIGHTING_PROBABILITY).labels)
     found = []
     for spot in spots:
-        mask = marked(spot, likely.shape)
+        mask = indices_to_mask(spot, likely.shape)
         if not (view.state.ravel()[spot] == OPEN).any():
             continue
         chance = float(likely.ravel()[spot].max())
@@ -105,7 +105,7 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
     return Viewpoint(squares, f"it is not clear what {node.name} is")
 
 
-def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> Squares:
+def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> SquareIndices:
     """Choose the floor from which something is seen better than it was.
 
     At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked
@@ -123,10 +123,10 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
 
     Returns
     -------
-    Squares
+    SquareIndices
         Flat indices; empty when the robot looked from everywhere.
     """
-    beside = grown(mask, 1)
+    beside = dilate(mask, 1)
     near = (
         _taking_squares(cost_maps, mask, to)
         if to.take
@@ -136,19 +136,19 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     if worth_it and len(near) and not (beside & cost_maps.looked_from).any():
         return _most_revealing(cost_maps, near, mask, chance, to) if to.take else near
     if not to.take:
-        far = grown(mask, MIDDLE_ZONE_RANGE)
+        far = dilate(mask, MIDDLE_ZONE_RANGE)
         near = np.flatnonzero(cost_maps.floor & far)
         if len(near) and not (far & cost_maps.looked_from).any():
             return near
-    around = grown(mask, CLOSE)
-    for apart in (APART, 0):
+    around = dilate(mask, FOVEA_RANGE)
+    for apart in (VIEW_SPACING, 0):
         near = np.flatnonzero(unlooked_floor(cost_maps, apart) & around)
         if len(near):
             break
     return _most_revealing(cost_maps, near, mask, chance, to)
 
 
-def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> Squares:
+def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareIndices:
     """List the squares beside an object from which it may be taken.
 
     The sides of the squares that surely belong to it come first, else the sides of all that may belong to it. Of these
@@ -157,7 +157,7 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> Squares:
     surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     sides = _sides_out_of_the_way(cost_maps, surely, to)
     for candidates in (sides, with_edge_neighbours(mask)):
-        met = np.flatnonzero(one_move(cost_maps, SubgoalKind.INSPECT, candidates))
+        met = np.flatnonzero(one_move_squares(cost_maps, SubgoalKind.INSPECT, candidates))
         near = met if len(met) else np.flatnonzero(cost_maps.floor & candidates)
         if len(near):
             break
@@ -173,24 +173,26 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
     if to.corner is None:
         return sides
     east, north = to.corner
-    free = sides & ~(shifted(surely, east, 0) | shifted(surely, 0, north))
+    free = sides & ~(shift_mask(surely, east, 0) | shift_mask(surely, 0, north))
     return free if (cost_maps.floor & free).any() else sides
 
 
-def _most_revealing(cost_maps: CostMaps, near: Squares, mask: Bools, chance: float, to: Approach) -> Squares:
+def _most_revealing(
+    cost_maps: CostMaps, near: SquareIndices, mask: Bools, chance: float, to: Approach
+) -> SquareIndices:
     """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there.
 
     chance : the probability that it is the wanted one. With it, a robot that is not beside it must set out once more.
     """
-    beside = grown(mask, 1)
+    beside = dilate(mask, 1)
     open_ = beside & ~cost_maps.model.told
     if len(near) < 2 or not open_.any():
         return near
-    seen = window_sums(np.pad(open_, CLOSE).astype(np.float64), CLOSE).ravel()[near]
+    seen = window_sums(np.pad(open_, FOVEA_RANGE).astype(np.float64), FOVEA_RANGE).ravel()[near]
     if to.take:
         seen = seen + UNSEEN_SQUARE_WEIGHT * cost_maps.information_gain.ravel()[near]
     away = ~beside.ravel()[near]
     restart_cost = RESTART_COST_CARRYING if to.take else RESTART_COST_WALKING
     value = (seen + 1) / (cost_maps.far(near) + restart_cost * (1 + chance * away))
-    best: Squares = near[value >= EQUAL_VALUE_SHARE * value.max()]
+    best: SquareIndices = near[value >= EQUAL_VALUE_SHARE * value.max()]
     return best

@@ -13,7 +13,7 @@ from geometry.kernels.arrays import XY
 from kb.body import Command, Move
 from kb.world.corners import Corner, known_floor
 from planner.goals.robot_goals import corner_side
-from planner.screen.moves import halting, is_open, move_by
+from planner.screen.moves import halt_exactly_at, move_by, orientation_is_uncertain
 from planner.screen.projection import CostMaps
 from planner.screen.sweeps import Square, squares_met
 from planner.situation import Situation
@@ -44,7 +44,7 @@ class IntoCorner:
     def next(self, stage: Stage, situation: Situation) -> Command | None:
         """Return the next move into the corners of a stage, and remember it; None when it is as near as can be."""
         model, here = situation.model, _square_at(situation.model.place)
-        for side in () if is_open(model) else [side for side in map(corner_side, stage.own) if side]:
+        for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
             corner = situation.corners[side]
             sx, sy = _wall_sides(corner)
             x, y = halting_place(corner, situation)
@@ -95,10 +95,15 @@ def halt_beside_walls(command: Command | None, stage: Stage, situation: Situatio
     situation : what is believed.
     """
     side = next((side for side in map(corner_side, stage.own) if side), "")
-    if not isinstance(command, Move) or not side or side not in situation.corners or is_open(situation.model):
+    if (
+        not isinstance(command, Move)
+        or not side
+        or side not in situation.corners
+        or orientation_is_uncertain(situation.model)
+    ):
         return command
     place = halting_place(situation.corners[side], situation)
-    return halting(command, place, situation.model) if _is_safe_line(place, situation.cost_maps) else command
+    return halt_exactly_at(command, place, situation.model) if _is_safe_line(place, situation.cost_maps) else command
 
 
 def lies_straight(corner: Corner, situation: Situation) -> bool:

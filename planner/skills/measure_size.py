@@ -15,7 +15,7 @@ from geometry.motion.se2 import Pose
 from kb.objects.subcell_extent import SubcellExtent, inset_outline, last_row_coverage
 from kb.world.model import Node
 
-FINE = 0.12  # squares within which the inset of a side counts as known: an eighth; tuned on random worlds
+INSET_TOLERANCE = 0.12  # squares within which the inset of a side counts as known: an eighth; tuned on random worlds
 FIRST_STEP = 0.1  # squares of the first push: it tells an object of whole squares from all others; a convention
 MAX_SIZE_PUSHES = 16  # pushes of one object only to measure it; a bound on time
 CHANGED_VIEW = 0.5  # squares: an object pushed by this looks otherwise than before; derived, half a square
@@ -37,7 +37,7 @@ class SizeEstimator:
         The best first. An object that was never moved is first pushed so far that it shows whether it moves at all.
         Each call counts as one push.
         """
-        wanted = phases(node)
+        wanted = push_parts(node)
         if wanted is None or self._tries.get(node.name, 0) >= MAX_SIZE_PUSHES:
             return
         self._tries[node.name] = self._tries.get(node.name, 0) + 1
@@ -53,7 +53,7 @@ class SizeEstimator:
                 yield At(Pose(dx, dy, 0.0))
 
 
-def phases(node: Node) -> tuple[float | None, float | None] | None:
+def push_parts(node: Node) -> tuple[float | None, float | None] | None:
     """Return by which part of a square an object is pushed along x and y to measure it.
 
     Parameters
@@ -114,9 +114,9 @@ def _wanted_depth(insets: SubcellExtent, axis: int) -> float | None:
     """
     (low, least), (most_low, most) = insets.least[axis : axis + 2], insets.most[axis : axis + 2]
     if not (low or least):
-        if most > FINE:
+        if most > INSET_TOLERANCE:
             return FIRST_STEP
-        return 1.0 - FIRST_STEP if most_low > FINE else None
-    if max(most_low - low, most - least) <= FINE:
+        return 1.0 - FIRST_STEP if most_low > INSET_TOLERANCE else None
+    if max(most_low - low, most - least) <= INSET_TOLERANCE:
         return None
     return (least + most) / 2 if most - least >= most_low - low else 1.0 - (low + most_low) / 2

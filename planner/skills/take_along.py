@@ -12,9 +12,9 @@ from geometry.motion.first_contact import ContactBody
 from geometry.motion.se2 import Translate
 from geometry.raster.components import components
 from kb.world.model import Node
-from planner.goals.placement import barred, in_view, leads_away, region_of
-from planner.screen.moves import HURRY
-from planner.screen.projection import Squares, grown, marked
+from planner.goals.placement import floor_leads_away, forbidden_necks, mask_to_polygon, to_view_frame
+from planner.screen.moves import CARRYING_PACE
+from planner.screen.projection import SquareIndices, dilate, indices_to_mask
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
@@ -24,7 +24,7 @@ MIN_PUSH = 0.5  # squares: a shorter push stays in the robot's square
 MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robot in is led out; a bound on time
 
 
-def shortest_push(node: Node, squares: Squares, situation: Situation) -> Translate | None:
+def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> Translate | None:
     """Return the shortest straight push with the held object that brings the robot to one of some squares.
 
     Parameters
@@ -39,12 +39,12 @@ def shortest_push(node: Node, squares: Squares, situation: Situation) -> Transla
         In squares, map frame; None when no such push is free.
     """
     pushes = _pushes_to(squares, situation)
-    body = ContactBody(in_view(node.polygon, situation), [situation.model.place_on_view])
+    body = ContactBody(to_view_frame(node.polygon, situation), [situation.model.place_on_view])
     free = pushes[_workspace(node, situation).far(body, pushes)]
     return Translate(*free[0].tolist()) if len(free) else None
 
 
-def detour_push(node: Node, squares: Squares, end: XY, situation: Situation) -> Translate | None:
+def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situation) -> Translate | None:
     """Return the first of two straight pushes to an end, so that the robot comes to one of some squares between them.
 
     Of all such pairs it is the shortest.
@@ -65,7 +65,7 @@ def detour_push(node: Node, squares: Squares, end: XY, situation: Situation) -> 
     pushes = _pushes_to(squares, situation)
     length = np.hypot(*pushes.T) + np.hypot(*(np.array(end) - pushes).T)
     pushes = pushes[np.argsort(length, kind="stable")]
-    shape, workspace = in_view(node.polygon, situation), _workspace(node, situation)
+    shape, workspace = to_view_frame(node.polygon, situation), _workspace(node, situation)
     for dx, dy in pushes[workspace.far(ContactBody(shape, [(x, y)]), pushes)].tolist():
         push, onward = Translate(dx, dy), Translate(end[0] - dx, end[1] - dy)
         if workspace.lets(push.carry(shape), (x + dx, y + dy), onward):
@@ -91,19 +91,19 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
     steps = np.array([step for step in product(range(-MAX_ESCAPE, MAX_ESCAPE + 1), repeat=2) if any(step)])
     steps = steps[np.argsort(np.hypot(*steps.T), kind="stable")]
     covered, workspace = model.mask(node.patch), _workspace(node, situation)
-    free = workspace.far(ContactBody(in_view(node.polygon, situation), [(x, y)]), steps.astype(float))
+    free = workspace.far(ContactBody(to_view_frame(node.polygon, situation), [(x, y)]), steps.astype(float))
     for dx, dy in steps[free].tolist():
         here = math.floor(y) + dy, math.floor(x) + dx
         moved = np.roll(covered, (dy, dx), (0, 1))
         left = workspace.free & ~moved
         left[here] = True
         rooms = components(left).labels
-        if leads_away(rooms == rooms[here], moved):
+        if floor_leads_away(rooms == rooms[here], moved):
             return Translate(float(dx), float(dy))
     return None
 
 
-def region_near(squares: Squares, situation: Situation) -> Inside | None:
+def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
     """Return the free region near some squares, as an end for an object, frame of the view; None when nothing is free.
 
     Parameters
@@ -111,11 +111,13 @@ def region_near(squares: Squares, situation: Situation) -> Inside | None:
     squares : flat indices into the view's arrays.
     situation : what is believed.
     """
-    free = situation.cost_maps.free(0) & grown(marked(squares, situation.model.labels.shape), VIEWPOINT_RADIUS)
-    return Inside(region_of(free)) if free.any() else None
+    free = situation.cost_maps.free(0) & dilate(
+        indices_to_mask(squares, situation.model.labels.shape), VIEWPOINT_RADIUS
+    )
+    return Inside(mask_to_polygon(free)) if free.any() else None
 
 
-def _pushes_to(squares: Squares, situation: Situation) -> Floats:
+def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
     """Return the pushes (n, 2) that bring the robot to the middles of some squares, the shortest first.
 
     At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot.
@@ -125,7 +127,7 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
     x, y = model.place_on_view
     pushes = np.column_stack([columns + 0.5 - x, rows + 0.5 - y])
     length = np.hypot(*pushes.T)
-    longest = HURRY.most(SubgoalKind.EXPLORE, model)
+    longest = CARRYING_PACE.most(SubgoalKind.EXPLORE, model)
     able = np.flatnonzero((length > MIN_PUSH) & (np.abs(pushes).max(axis=1) <= longest))
     able = able[np.argsort(length[able], kind="stable")]
     spread = np.unique(np.linspace(0, len(able) - 1, MAX_TRIED_PUSHES).astype(int)) if len(able) else able
@@ -135,5 +137,5 @@ def _pushes_to(squares: Squares, situation: Situation) -> Floats:
 
 def _workspace(node: Node, situation: Situation) -> Workspace:
     """Return what is surely free for an object and the robot that holds it."""
-    free = situation.cost_maps.free(0) & ~barred(node, situation)
+    free = situation.cost_maps.free(0) & ~forbidden_necks(node, situation)
     return Workspace(free | situation.model.mask(node.patch))

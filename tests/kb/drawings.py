@@ -40,7 +40,7 @@ def looked(rows: list[str], squares: list[tuple[int, int]]) -> OccupancyMap:
     return occupancy
 
 
-def seen_whole(rows: list[str], objects: bool = True) -> WorldModel:
+def known_model(rows: list[str], objects: bool = True) -> WorldModel:
     """Return the world model of a drawing that is known completely and for certain. rows : the north row first.
 
     `.` floor, `b` verge, other letters objects, `?` never seen, `U` Utak, on floor.

@@ -20,7 +20,7 @@ from planner.cycle import Options, Robot
 from planner.deciding.decider import Decider
 from planner.screen.projection import CostMaps
 from planner.stages import constraints, stages
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
 
 NOWHERE = SourceSpan(0, 0, 0)
@@ -270,7 +270,7 @@ def test_the_destination_of_a_corner_is_its_square() -> None:
     from planner.goals.robot_goals import destination
     from planner.situation import Situation
 
-    model = seen_whole(EMPTY)
+    model = known_model(EMPTY)
     situation = _situation(Situation, model, {})
     squares = destination(NORTHEAST, situation).squares
     row, column = model.view.locate(16.5, 10.5)
@@ -285,7 +285,7 @@ def test_the_destination_of_an_object_is_beside_it() -> None:
     from planner.goals.robot_goals import destination
     from planner.situation import Situation
 
-    model = seen_whole(THINGS)
+    model = known_model(THINGS)
     (node,) = model.objects
     found = destination(SQUARE.goals[0], _situation(Situation, model, {"x": node.name}))
     assert not found.missing
@@ -307,7 +307,7 @@ def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
 
 
 def test_a_window_that_begins_elsewhere_changes_nothing() -> None:
-    model = seen_whole(THINGS)
+    model = known_model(THINGS)
     one = CostMaps(model)
     shift, view = ((0, 0), (3, 0)), model.view
     padded = view._replace(
@@ -345,7 +345,7 @@ def test_a_robot_that_is_carried_off_does_its_task_all_the_same() -> None:
 def test_nothing_is_proved_of_the_unseen_while_impressions_contradict_each_other(
     anew: bool, shaken: bool, verdict: str
 ) -> None:
-    model = seen_whole(EMPTY)
+    model = known_model(EMPTY)
     found = Decider(SQUARE).decide(model, [model.place])
     assert (found.command, found.verdict) == (None, "possible_if")
     after = Decider(SQUARE).decide(replace(model, anew=anew, shaken=shaken), [model.place])

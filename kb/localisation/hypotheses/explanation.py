@@ -78,7 +78,7 @@ class Explanation(NamedTuple):
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
-class Accommodated(NamedTuple):
+class Accommodation(NamedTuple):
     """The result of localisation for one impression.
 
     Attributes

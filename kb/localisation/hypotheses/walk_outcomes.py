@@ -105,7 +105,7 @@ def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
     return tuple(crossing for *_, crossing in sorted(found))
 
 
-def on_line(place: Position) -> Position:
+def snap_to_line(place: Position) -> Position:
     """Return `place` with each coordinate within 2e-6 squares of a grid line moved onto it.
 
     A contact stopped the motion there, so the robot is on the line.

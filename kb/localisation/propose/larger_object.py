@@ -17,8 +17,8 @@ from kb.mapping.occupancy import FREE
 from kb.mapping.patch import patch_of_polygon, patch_of_squares
 from kb.objects.held_object import HeldObject, is_grid_aligned
 
-DEEPEST = 3  # squares by which an object may go on in what seems to be wall; tuned on random worlds
-SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
+MAX_HIDDEN_DEPTH = 3  # squares by which an object may go on in what seems to be wall; tuned on random worlds
+SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 
 def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
@@ -41,8 +41,8 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
         return
     occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
-    for depth in range(1, DEEPEST + 1):
-        for side in SIDES:
+    for depth in range(1, MAX_HIDDEN_DEPTH + 1):
+        for side in SIDE_DIRECTIONS:
             whole = _extended(held, side, depth)
             hidden = patch_of_polygon(whole.polygon).squares() - seen
             if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):

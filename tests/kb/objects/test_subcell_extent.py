@@ -26,7 +26,7 @@ from kb.objects.subcell_extent import (
     turn_sides,
 )
 from kb.world.model import Node
-from planner.skills.measure_size import FINE, least_outline, phases
+from planner.skills.measure_size import INSET_TOLERANCE, least_outline, push_parts
 
 ELL = shapely.Polygon([(0, 0), (6, 0), (6, 3), (3, 3), (3, 6), (0, 6)])
 SHAPES = {"square": shapely.box(0, 0, 4, 4), "brick": shapely.box(0, 0, 3, 6), "ell": ELL}
@@ -87,14 +87,14 @@ def test_pushes_by_parts_of_a_square_show_the_size_of_an_object(name: str, x: fl
     seen = image(thing)
     load = HeldObject("o1", seen, seen, insets=initial_insets(seen), proven=True)
     for _ in range(14):
-        wanted = phases(node_of(load))
+        wanted = push_parts(node_of(load))
         if wanted is None:
             break
         push = Translate(wanted[0] or 0.0, wanted[1] or 0.0)
         thing = push.carry(thing)
         load = load.moved(push.carry(load.polygon), load.slack, commanded=True).told(looks_like(thing)) or load
-    assert phases(node_of(load)) is None
-    assert max(load.short) <= FINE
+    assert push_parts(node_of(load)) is None
+    assert max(load.short) <= INSET_TOLERANCE
     for at, true in zip(load.polygon.bounds, thing.bounds, strict=True):
         assert abs(at - true) <= 0.125
     least = least_outline(node_of(load))
@@ -108,12 +108,12 @@ def test_two_pushes_show_that_an_object_fills_whole_squares(quarters: int) -> No
     load = load.moved(turn.carry(ELL), 0.0, 90.0 * quarters, commanded=True)
     thing = load.polygon
     for _ in range(2):
-        wanted = phases(node_of(load))
+        wanted = push_parts(node_of(load))
         assert wanted is not None
         push = Translate(wanted[0] or 0.0, wanted[1] or 0.0)
         thing = push.carry(thing)
         load = load.moved(push.carry(load.polygon), load.slack, commanded=True).told(looks_like(thing)) or load
-    assert phases(node_of(load)) is None
+    assert push_parts(node_of(load)) is None
     assert load.polygon.symmetric_difference(thing).area < 1e-9
 
 

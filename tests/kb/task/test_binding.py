@@ -11,10 +11,10 @@ from kb.language.terms import Symbol
 from kb.task.binding import reconcile
 from kb.task.task import Claim, Parameter, Task
 from kb.world.model import Node
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 
 NOWHERE = SourceSpan(0, 0, 0)
-MODEL = seen_whole(["bbbbbbbbb", "b.......b", "b.ggg.h.b", "b.ggg...b", "b....U..b", "bbbbbbbbb"])
+MODEL = known_model(["bbbbbbbbb", "b.......b", "b.ggg.h.b", "b.ggg...b", "b....U..b", "bbbbbbbbb"])
 SHAPES, COLOURS = ("square", "brick", "disc"), ("g", "h")
 
 

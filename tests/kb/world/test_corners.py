@@ -13,8 +13,8 @@ from kb.mapping.occupancy import FULL, OPEN
 from kb.mapping.patch import patch_of
 from kb.world.corners import CORNER_SIDES, corners, known_floor
 from kb.world.model import Node
-from planner.screen.projection import grown
-from tests.kb.drawings import seen_whole
+from planner.screen.projection import dilate
+from tests.kb.drawings import known_model
 from tests.kb.eyes import random_room
 
 SIGNS = {"northeast": (1, 1), "northwest": (-1, 1), "southeast": (1, -1), "southwest": (-1, -1)}
@@ -27,7 +27,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
     rows = random_room(rng, *rng.integers(8, 24, 2), things=5)
     n, i = next((n, row.index(".")) for n, row in enumerate(rows) if "." in row)
     rows[n] = rows[n][:i] + "U" + rows[n][i + 1 :]
-    model = seen_whole(rows)
+    model = known_model(rows)
     floor = known_floor(model)
     found = corners(model)
     assert set(found) == set(CORNER_SIDES)
@@ -43,7 +43,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
 
 def test_an_empty_rectangular_room_has_four_corners() -> None:
     rows = ["bbbbbbbb", "b......b", "b......b", "b..U...b", "bbbbbbbb"]
-    found = corners(seen_whole(rows))
+    found = corners(known_model(rows))
     assert {side: corner.square for side, corner in found.items()} == {
         "northeast": (6, 3),
         "northwest": (1, 3),
@@ -56,13 +56,13 @@ def test_an_empty_rectangular_room_has_four_corners() -> None:
 def test_a_few_squares_of_floor_are_no_corner_yet(pocket: int, counts: bool) -> None:
     rows = ["b" * 24] * 2 + ["b" * 12 + "." * pocket + "b" * (12 - pocket)] + ["b" * 24] * 3
     rows += ["b......bbbbbbbbbbbbbbbbb"] * 3 + ["b..U...bbbbbbbbbbbbbbbbb", "b" * 24]
-    found = corners(seen_whole(rows))
+    found = corners(known_model(rows))
     assert (found["northeast"].square[1] > 6) == counts
 
 
 def test_floor_is_known_under_a_moved_object_but_not_under_the_wall_that_it_may_enter() -> None:
     rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
-    model = seen_whole(rows)
+    model = known_model(rows)
     under, label = np.array([list(row) for row in reversed(rows)]) == "g", int(model.labels.max()) + 1
     thing = Node("o1", "object", 100, f"part{label}", patch_of(under, model.view), 0, moved=True)
     moved = replace(model, labels=np.where(under, label, model.labels).astype(np.int32), objects=(thing,))
@@ -78,10 +78,10 @@ def test_floor_is_known_under_a_moved_object_but_not_under_the_wall_that_it_may_
 
 def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> None:
     rows = ["bbbbbbbb", "b.....gb", "b.....gb", "b..U...b", "bbbbbbbb"]
-    model = seen_whole(rows)
+    model = known_model(rows)
     drawn = np.array([list(row) for row in reversed(rows)])
     under, label = drawn == "g", int(model.labels.max()) + 1
-    reach = under | ((drawn == "b") & grown(under, 1))  # within its tolerance it may cover the wall around it, too
+    reach = under | ((drawn == "b") & dilate(under, 1))  # within its tolerance it may cover the wall around it, too
     outline = shapely.box(6, 2, 7, 4)
     west, south = model.view.west, model.view.south
     outline = shapely.affinity.translate(outline, west, south)

@@ -21,7 +21,7 @@ from kb.world.model import MAX_FREE_PROBABILITY, count_open_squares
 from kb.world.object_names import ObjectNames
 from kb.world.objects import lay_upon
 from kb.world.rooms import rooms_of
-from tests.kb.drawings import seen_whole, walked
+from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import impression, utak_in, world_of
 
 
@@ -168,7 +168,9 @@ def test_an_object_that_reaches_into_the_robots_square_leaves_it_open() -> None:
 
 def test_squares_within_the_tolerance_of_a_held_object_count_as_floor() -> None:
     empty = [row.replace("g", ".") for row in ROOM]
-    model, _ = lay_upon(seen_whole(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True))
+    model, _ = lay_upon(
+        known_model(empty), HeldObject("o1", shapely.box(-3, 1.3, 0, 4.3), None, slack=0.2, proven=True)
+    )
 
     def chances(squares: set[tuple[int, int]]) -> list[float]:
         return [float(model.view.probability[model.view.locate(x + 0.5, y + 0.5)]) for x, y in squares]
@@ -182,7 +184,7 @@ def test_squares_within_the_tolerance_of_a_held_object_count_as_floor() -> None:
 
 def test_walls_stay_walls_within_the_tolerance_of_a_held_object() -> None:
     beside_wall = [row.replace("g", ".") for row in ROOM]
-    before = seen_whole(beside_wall)
+    before = known_model(beside_wall)
     x = before.view.west + 1  # the westernmost column of floor
     model, patch = lay_upon(
         before, HeldObject("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True)
@@ -224,7 +226,7 @@ def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
 
 def test_the_facts_of_a_known_room() -> None:
     rows = ["bbbbbbbb", "b......b", "b.ggg..b", "b.ggg..b", "b......b", "b...U..b", "bbbbbbbb"]
-    model = seen_whole(rows)
+    model = known_model(rows)
     facts = set(model_facts(model, Places(rooms_of(model), corners(model))))
     assert {"node(org)", "kind(org,utak,100)", "child(org,floor)", "child(floor,o1)", "in(org,r1)"} <= facts
     assert "offset(org,0,0)" in facts
@@ -240,7 +242,7 @@ WIDE = ["b" * 26, *["b" + "." * 24 + "b"] * 9, "b....U" + "." * 19 + "b", *["b" 
 
 @pytest.mark.parametrize("degrees", [0.0, 1.0, 4.0, 30.0])
 def test_far_squares_are_not_certain_while_the_orientation_is_slightly_uncertain(degrees: float) -> None:
-    known = seen_whole(WIDE)
+    known = known_model(WIDE)
     model = replace(known, spread=math.radians(degrees))
     settled = known.view.state != OPEN
     assert (known.certain == settled).all()
@@ -261,7 +263,7 @@ def test_far_squares_are_not_certain_while_the_orientation_is_slightly_uncertain
 
 @pytest.mark.parametrize("place", [(0.5, 0.5), (-1.5, 0.5), (-2.5, -1.5)])
 def test_a_place_believed_in_a_wall_stands_for_the_floor_next_to_it(place: tuple[float, float]) -> None:
-    model = seen_whole(
+    model = known_model(
         ["b" * 12, *["bbb" + "." * 8 + "b"] * 4, "bbbU" + "." * 7 + "b", *["bbb" + "." * 8 + "b"] * 2, "b" * 12]
     )
     shifted = replace(model, place=place)

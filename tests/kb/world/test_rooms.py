@@ -9,8 +9,8 @@ from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
 from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from kb.world.rooms import rooms_of
-from planner.deciding.search import perhaps_islands
-from tests.kb.drawings import seen_whole, unclear
+from planner.deciding.search import island_contacts
+from tests.kb.drawings import known_model, unclear
 from tests.planner.situations import situation_of
 
 
@@ -29,7 +29,7 @@ def two_rooms(door: int, wall: int, high: int = 14, wide: int = 12) -> list[str]
 @pytest.mark.parametrize("wall", [1, 2, 3])
 @pytest.mark.parametrize("door", [3, 4, 5, 6])
 def test_a_door_between_two_rooms(door: int, wall: int) -> None:
-    model = seen_whole(two_rooms(door, wall))
+    model = known_model(two_rooms(door, wall))
     rooms = rooms_of(model)
     assert len(rooms.doors) == 1
     assert rooms.doors[0].width == pytest.approx(door)
@@ -48,7 +48,7 @@ def unclear_between(first: int, last: int, chance: float) -> WorldModel:
 
     first, last : their rows. chance : that one is occupied.
     """
-    model = unclear(seen_whole(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
+    model = unclear(known_model(two_rooms(4, 2)), slice(first, last + 1), slice(14, 16), chance)
     seen = model.view.seen
     percept, labels = map_regions(seen & (model.view.probability > MAX_FREE_PROBABILITY), seen, seen)
     return replace(model, labels=labels, percept=percept, kinds=interpret_regions(percept))
@@ -76,7 +76,7 @@ def test_a_door_half_of_which_may_be_wall_is_not_sure() -> None:
 @pytest.mark.parametrize("door", [3, 4, 5, 6])
 def test_a_room_ends_between_the_jambs(door: int, wall: int, turned: bool) -> None:
     rows = two_rooms(door, wall)
-    model = seen_whole(turned_drawing(rows) if turned else rows)
+    model = known_model(turned_drawing(rows) if turned else rows)
     labels = np.where(model.floor, rooms_of(model).labels, 0)
     labels = np.rot90(labels, -1) if turned else labels
     assert set(np.unique(labels[:, :14]).tolist()) == {0, 1}
@@ -85,7 +85,7 @@ def test_a_room_ends_between_the_jambs(door: int, wall: int, turned: bool) -> No
 
 @pytest.mark.parametrize("wall", [1, 2, 3])
 def test_the_next_room_begins_behind_the_wall(wall: int) -> None:
-    model = seen_whole(two_rooms(4, wall))
+    model = known_model(two_rooms(4, wall))
     beyond = rooms_of(model).beyond(1) & model.floor
     columns = np.flatnonzero(beyond.any(0))
     assert columns.min() == 14 + wall
@@ -107,7 +107,7 @@ def test_a_quarter_turn_turns_the_rooms() -> None:
     rows = two_rooms(4, 2)
     for _ in range(4):
         rows = turned_drawing(rows)
-        rooms = rooms_of(seen_whole(rows))
+        rooms = rooms_of(known_model(rows))
         assert [door.width for door in rooms.doors] == pytest.approx([4])
 
 
@@ -120,14 +120,14 @@ def bordered(rows: list[str]) -> list[str]:
 def test_an_l_shaped_room_has_no_door(arm: int) -> None:
     rows = ["." * arm + "b" * 14] * 14 + ["." * (arm + 14)] * arm
     rows[-2] = ".U" + rows[-2][2:]
-    assert not rooms_of(seen_whole(bordered(rows))).doors
+    assert not rooms_of(known_model(bordered(rows))).doors
 
 
 @pytest.mark.parametrize("size", [(8, 20), (20, 8), (15, 15), (30, 30)])
 def test_an_empty_rectangular_room_has_no_door(size: tuple[int, int]) -> None:
     rows = ["." * size[0]] * size[1]
     rows[1] = "." * (size[0] - 1) + "U"
-    rooms = rooms_of(seen_whole(bordered(rows)))
+    rooms = rooms_of(known_model(bordered(rows)))
     assert not rooms.doors
     assert not rooms.beyond(1).any()
 
@@ -137,7 +137,7 @@ def test_objects_make_no_doors() -> None:
     for j in (8, 9, 10):
         rows[j] = "...ggggg...hhhhhh..."
     rows[1] = "U" + "." * 19
-    assert not rooms_of(seen_whole(bordered(rows))).doors
+    assert not rooms_of(known_model(bordered(rows))).doors
 
 
 def test_an_object_in_the_door_leaves_the_door() -> None:
@@ -146,13 +146,13 @@ def test_an_object_in_the_door_leaves_the_door() -> None:
     middle = len(rows) // 2
     for j in (middle - 1, middle):
         rows[j] = rows[j][:14] + "gg" + rows[j][16:]
-    assert [door.width for door in rooms_of(seen_whole(rows)).doors] == pytest.approx([6])
+    assert [door.width for door in rooms_of(known_model(rows)).doors] == pytest.approx([6])
 
 
 def test_three_rooms_in_a_row() -> None:
     left, right = two_rooms(4, 2), two_rooms(5, 2)
     rows = [a + b[2 + 12 :].replace("U", ".") for a, b in zip((r[:-2] for r in left), right, strict=True)]
-    model = seen_whole(rows)
+    model = known_model(rows)
     rooms = rooms_of(model)
     assert sorted(door.width for door in rooms.doors) == pytest.approx([4, 5])
     assert len(np.unique(rooms.labels[model.floor])) == 3
@@ -164,7 +164,7 @@ def test_three_rooms_in_a_row() -> None:
 
 def test_a_door_is_known_by_its_jambs_before_the_room_behind_it_is_seen() -> None:
     rows = [row[:16] + "?" * (len(row) - 16) for row in two_rooms(4, 2)]
-    rooms = rooms_of(seen_whole(rows))
+    rooms = rooms_of(known_model(rows))
     assert [door.width for door in rooms.doors] == pytest.approx([4])
 
 
@@ -172,12 +172,12 @@ def test_a_wall_with_a_jamb_unseen_has_no_door() -> None:
     drawn = two_rooms(6, 2)
     cuts = [13 if n > 8 else 16 for n in range(len(drawn))]
     rows = [row[:cut] + "?" * (len(row) - cut) for row, cut in zip(drawn, cuts, strict=True)]
-    assert not rooms_of(seen_whole(rows)).doors
+    assert not rooms_of(known_model(rows)).doors
 
 
 def test_floor_without_bounds_is_one_room() -> None:
     rows = ["." * 9] * 4 + ["....U...."] + ["." * 9] * 4
-    rooms = rooms_of(seen_whole(rows))
+    rooms = rooms_of(known_model(rows))
     assert (rooms.labels == 1).all()
     assert not rooms.doors
 
@@ -186,7 +186,7 @@ def test_a_possible_object_makes_no_door() -> None:
     rows = [row.replace("U", ".") for row in two_rooms(6, 2)]
     rows[14] = rows[14][:4] + "U" + rows[14][5:]
     stub = [row[:20] + "gg" + row[22:] if 2 <= n < 9 else row for n, row in enumerate(rows)]
-    model = seen_whole(["?" * len(row) if n < 5 else row for n, row in enumerate(stub)])
+    model = known_model(["?" * len(row) if n < 5 else row for n, row in enumerate(stub)])
     may_be_object = model.verge & ~model.walls
     assert set(np.argwhere(may_be_object)[:, 1].tolist()) == {20, 21}
     assert [{door.a, door.b} for door in rooms_of(model).doors] == [{(16.0, 6.0), (20.0, 9.0)}]
@@ -203,7 +203,7 @@ def test_something_thirteen_squares_long_is_a_wall_beside_a_door(length: int, su
     # north and south of the room all but its western end is seen
     unseen = ["?" * 4 + row for row in rows]
     unseen[0] = unseen[-1] = "?" * 20 + edge[16:]
-    model = seen_whole(unseen)
+    model = known_model(unseen)
     (door,) = rooms_of(model).doors
     assert door.width == pytest.approx(5)
     assert door.sure == sure
@@ -224,7 +224,7 @@ def test_a_doorway_with_nothing_seen_behind_it_is_a_part_of_its_own() -> None:
         "..bbbbbbb...bbb????",
         "?????????..bbbb????",
     ]
-    rooms = rooms_of(seen_whole(rows))
+    rooms = rooms_of(known_model(rows))
     assert rooms.doors
     for door in rooms.doors:
         assert np.isin(door.sides, rooms.labels).all()
@@ -245,12 +245,12 @@ ISLAND = [  # two rooms, and a short piece of wall between two doors
 
 @pytest.mark.parametrize("felt", [True, False])
 def test_a_short_piece_of_wall_that_was_felt_is_the_jamb_of_two_doors(felt: bool) -> None:
-    model = seen_whole(ISLAND)
+    model = known_model(ISLAND)
     (node,) = model.objects
     beside = next(iter(node.patch.squares()))
     model = replace(model, felt={beside: "b"} if felt else {}, objects=())
     rooms = rooms_of(model, verge=model.verge | model.mask(node.patch))
     assert [round(door.width) for door in rooms.doors] == [4, 4]
     assert len(rooms.sure) == (2 if felt else 0)
-    assert [aim.kind for aim in perhaps_islands(situation_of(seen_whole(ISLAND)))] == ["inspect"]
-    assert not perhaps_islands(situation_of(seen_whole([row.replace("w", ".") for row in ISLAND])))
+    assert [aim.kind for aim in island_contacts(situation_of(known_model(ISLAND)))] == ["inspect"]
+    assert not island_contacts(situation_of(known_model([row.replace("w", ".") for row in ISLAND])))

@@ -25,8 +25,8 @@ from planner.carrying.manipulation_oracle import (
     ManipulationPlan,
     Request,
 )
-from planner.goals.placement import LIKELY
-from tests.kb.drawings import seen_whole
+from planner.goals.placement import POSSIBLE_OBJECT
+from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 
 PARTED = [
@@ -56,7 +56,7 @@ def asked(
     west: float, turned: float = 0.0, dubious: bool = False, stuck: int = 0, sure: bool = True
 ) -> ManipulationPlan | Infeasibility:
     """Return the answer for an object 4 squares wide and a door of 2; `west` : of the object, which is drawn at 4."""
-    model = seen_whole(PARTED)
+    model = known_model(PARTED)
     (node,) = model.objects
     view = model.view._replace(sure=sure)
     model = replace(model, view=view)
@@ -106,14 +106,14 @@ def test_an_object_stopped_off_the_grid_that_no_wider_passage_helps_proves_nothi
     plan = CarryingPlan("impossible", reason="body")
     neck = Bottleneck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0)
     plan.__dict__.update(passage=neck, opens=opens, missing=0.5 if opens else math.inf)  # as if it had been worked out
-    answer = certify(node, [(2, plan)], seen_whole(PARTED))
+    answer = certify(node, [(2, plan)], known_model(PARTED))
     assert answer.proved == proved
     assert ("stopped on its way" in answer.reason()) != proved
 
 
 @pytest.mark.parametrize(("anew", "askew", "proved"), [(False, 20.0, True), (True, 20.0, False), (True, 0.0, True)])
 def test_an_object_that_lies_askew_proves_nothing_after_a_restart(anew: bool, askew: float, proved: bool) -> None:
-    model = replace(seen_whole(PARTED), anew=anew)
+    model = replace(known_model(PARTED), anew=anew)
     (node,) = model.objects
     shape = shapely.affinity.rotate(shapely.box(4, 5, 8, 9), askew)
     west, south = model.view.west, model.view.south
@@ -142,11 +142,11 @@ def test_an_object_that_did_not_move_proves_nothing_while_the_map_is_not_sure(st
 
 @pytest.mark.parametrize(("inexact", "apart", "proved"), [(False, 0, True), (True, 0, False), (True, 2, True)])
 def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool, apart: int, proved: bool) -> None:
-    model = seen_whole(STOPPED_UP)
+    model = known_model(STOPPED_UP)
     x, y = model.view.west + 11, model.view.south + 5
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
-    beside = Node("o1", "object", LIKELY - 1, "part1", patch_of_polygon(small), 0, polygon=small)
+    beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", patch_of_polygon(small), 0, polygon=small)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
     answer = ManipulationOracle().find(Request(node, {"r": Inside(shapely.box(13, 1, 23, 11))}), situation_of(model))
@@ -163,7 +163,7 @@ def test_an_immovable_obstacle_may_cover_the_squares_at_its_rim_in_part(movable:
     rows, half = [line.replace("r", ".") for line in STOPPED_UP], thick // 2
     for n in range(6 - half, 7 + half):
         rows[n] = rows[n][: 11 - half] + "r" * thick + rows[n][12 + half :]
-    model = seen_whole(rows)
+    model = known_model(rows)
     x, y = model.view.west + 11 - half, model.view.south + 6 - half
     assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
     fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
@@ -199,7 +199,7 @@ FLUSH = [  # an L of five squares, and a door as wide
 
 @pytest.mark.parametrize(("contacts", "clearance"), [(0, 0.0), (CONTACTS_FOR_CLEARANCE, WALL_CLEARANCE)])
 def test_an_object_with_many_contacts_keeps_its_distance(contacts: int, clearance: float) -> None:
-    model = seen_whole(FLUSH)
+    model = known_model(FLUSH)
     (node,) = model.objects
     west, south = model.view.west + 5, model.view.south + 6
     ell = [(0, 0), (5, 0), (5, 2), (2, 2), (2, 4), (0, 4)]
@@ -226,7 +226,7 @@ def test_an_object_with_many_contacts_keeps_its_distance(contacts: int, clearanc
 def test_no_object_is_carried_through_a_forbidden_door(who: str, found: bool, proved: bool) -> None:
     """A door forbidden to the robot alone lets the object pass: then a plan that is not found proves nothing."""
     rows = [row.replace("gggg", "gg..") for row in PARTED]
-    model = seen_whole(rows)
+    model = known_model(rows)
     (node,) = model.objects
     left, bottom = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(left, bottom, left + 2, bottom + 4))

@@ -20,7 +20,7 @@ from planner.carrying.remaining_plan import (
     revalidate,
     start_from_robot,
 )
-from planner.goals.placement import in_view, lands
+from planner.goals.placement import meets_end, to_view_frame
 from planner.situation import Situation
 from tests.planner.situations import watched_robot
 
@@ -72,7 +72,7 @@ def test_an_object_is_grasped_from_where_the_robot_stands(tmp_path: Path) -> Non
         if near is not None:
             assert near.legs[0].place == model.place
             assert 0 < math.dist(near.legs[0].place, plan.legs[0].place) < 1
-            assert any(lands(end, in_view(near.end, situation)) for end in ends.values())
+            assert any(meets_end(end, to_view_frame(near.end, situation)) for end in ends.values())
             begun.append(near)
         return near
 

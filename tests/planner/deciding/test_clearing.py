@@ -17,10 +17,10 @@ from kb.mapping.patch import Patch
 from kb.world.model import Node
 from planner.deciding.clearing import Obstacle, ObstacleClearer, obstacles
 from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import drawn_out, hidden_behind, in_view
+from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from planner.situation import Situation
 from planner.stages import Stage
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of, tools_with
 
 WALL = "b" * 12 + "bb" + "b" * 12
@@ -43,7 +43,7 @@ GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
 
 def known(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:
     """Return the situation of a robot that has seen all of a drawing, in which each letter but b is an object."""
-    marks, model = np.array([list(row) for row in reversed(rows)]), seen_whole(rows, objects=False)
+    marks, model = np.array([list(row) for row in reversed(rows)]), known_model(rows, objects=False)
     nodes = []
     for letter in sorted(set(marks.ravel()) - set("b.U")):
         south, west = np.argwhere(marks == letter).min(0)
@@ -78,7 +78,7 @@ def test_an_object_before_the_only_door_is_an_obstacle() -> None:
     (node,), (found,) = situation.model.objects, found_in(situation)
     assert found.node == node
     assert isinstance(found.aside, Inside)
-    shape = in_view(node.polygon, situation)
+    shape = to_view_frame(node.polygon, situation)
     lying = [shapely.affinity.translate(shape, dx, dy) for dx in range(-9, 3) for dy in range(-6, 6)]
     fits = [found.aside.polygon.covers(there) for there in lying]
     assert any(fits)
@@ -163,19 +163,19 @@ def test_an_object_may_go_on_in_the_wall_right_behind_it(rows: list[str], depths
     (node,) = model.objects
     verge = model.labels == model.labels[0, 0]
     wall = replace(model, kinds=model.kinds._replace(kind={f"part{model.labels[0, 0]}": {"verge": 100}}))
-    found = [int((hidden_behind(node, (1, 0), depth, wall) & verge).sum()) for depth in range(4)]
+    found = [int((possible_extension(node, (1, 0), depth, wall) & verge).sum()) for depth in range(4)]
     assert tuple(found) == depths
-    assert not hidden_behind(replace(node, moved=True), (1, 0), 3, wall).any()
-    assert not hidden_behind(node, (-1, 0), 3, wall).any()
+    assert not possible_extension(replace(node, moved=True), (1, 0), 3, wall).any()
+    assert not possible_extension(node, (-1, 0), 3, wall).any()
 
 
 def test_an_object_is_drawn_out_to_see_the_needed_squares_of_the_wall_behind_it() -> None:
     situation = known(WITHIN)
     (node,) = situation.model.objects
-    behind = hidden_behind(node, (1, 0), 1, situation.model)
-    end = drawn_out(node, behind, situation)
+    behind = possible_extension(node, (1, 0), 1, situation.model)
+    end = pull_out_end(node, behind, situation)
     assert end is not None
     assert end.pose.x < -1.0
     assert end.pose.y == 0.0
-    assert drawn_out(node, ~behind, situation) is None
-    assert drawn_out(replace(node, moved=True), behind, situation) is None
+    assert pull_out_end(node, ~behind, situation) is None
+    assert pull_out_end(replace(node, moved=True), behind, situation) is None

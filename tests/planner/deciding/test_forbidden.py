@@ -9,7 +9,7 @@ import pytest
 from kb.task.task import Task
 from kb.world.rooms import Door, count_crossings, went_through
 from planner.situation import Situation
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import situation_of
@@ -44,7 +44,7 @@ def test_a_track_there_and_back_crosses_nothing_in_all() -> None:
 
 def situation(rows: list[str], confidence: int, *track: tuple[float, float]) -> Situation:
     """Return a situation in a drawn house whose doors all have one confidence. track : squares from the start."""
-    found = situation_of(seen_whole(rows), task=NEVER)
+    found = situation_of(known_model(rows), task=NEVER)
     doors = tuple(replace(door, confidence=confidence) for door in found.rooms.doors)
     return replace(found, rooms=replace(found.rooms, doors=doors), track=((0.5, 0.5), *track))
 

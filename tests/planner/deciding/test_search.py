@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from geometry.raster.components import with_edge_neighbours
 from planner.deciding.search import Candidate, chance_of_none
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import grown, marked
-from planner.sights.frontiers import SHORT_OF, short_of
+from planner.screen.projection import dilate, indices_to_mask
+from planner.sights.frontiers import LOOK_AHEAD_RANGE, look_ahead_squares
 from planner.subgoal_kind import SubgoalKind
 from tests.planner.sights.test_viewpoints import distance_from, room
 
@@ -17,10 +17,10 @@ from tests.planner.sights.test_viewpoints import distance_from, room
 @given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))
 def test_an_edged_mask_has_all_squares_that_share_an_edge_with_it(rows: int, columns: int, seed: int) -> None:
     mask = np.random.default_rng(seed).random((rows, columns)) < 0.2
-    marked = np.argwhere(mask)
-    want = [np.abs(marked - square).sum(1).min(initial=9) <= 1 for square in np.ndindex(rows, columns)]
+    indices_to_mask = np.argwhere(mask)
+    want = [np.abs(indices_to_mask - square).sum(1).min(initial=9) <= 1 for square in np.ndindex(rows, columns)]
     assert with_edge_neighbours(mask).ravel().tolist() == want
-    assert not (with_edge_neighbours(mask) & ~grown(mask, 1)).any()
+    assert not (with_edge_neighbours(mask) & ~dilate(mask, 1)).any()
 
 
 def candidate(squares: list[int], chance: int) -> Candidate:
@@ -43,8 +43,8 @@ def test_squares_behind_a_place_are_seen_from_short_of_it() -> None:
     model = cost_maps.model
     row, column = model.view.locate(*model.place)
     ahead = int(row) * model.labels.shape[1] + int(column) + 20
-    squares = short_of(cost_maps, np.array([ahead]))
-    mask = marked(np.array([ahead]), model.labels.shape)
+    squares = look_ahead_squares(cost_maps, np.array([ahead]))
+    mask = indices_to_mask(np.array([ahead]), model.labels.shape)
     assert ahead in squares
-    assert distance_from(squares, mask).max() == SHORT_OF
+    assert distance_from(squares, mask).max() == LOOK_AHEAD_RANGE
     assert cost_maps.floor.ravel()[squares].all()

@@ -24,10 +24,10 @@ from planner.carrying.remaining_plan import RemainingPlan, grasp_direction
 from planner.deciding.transport import Transporter
 from planner.decision import TaskVerdict
 from planner.goals.placement import Placement
-from planner.sights.frontiers import CLOSE
+from planner.sights.frontiers import FOVEA_RANGE
 from planner.situation import Situation
 from planner.stages import Stage
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with
 
 NOTHING: tuple[str | None, ...] = (None,) * 8
@@ -41,7 +41,7 @@ def touching(directions: dict[int, str]) -> tuple[str | None, ...]:
 
 def beside(touch: tuple[str | None, ...], place: tuple[float, float] = (0.5, 0.5)) -> Situation:
     """Return the situation of a robot that stands right beside a square object, and feels `touch`."""
-    model = seen_whole(BESIDE_A_THING)
+    model = known_model(BESIDE_A_THING)
     (node,) = model.objects
     west, south = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(west, south, west + 3, south + 3), colour="g", shape={"square": 99})
@@ -185,7 +185,7 @@ def test_a_square_that_narrows_the_way_of_a_long_plan_is_looked_at(pushes: int, 
     if see is not None:
         place = view.locate(8.5, 3.5)
         rows, columns = np.divmod(see.viewpoint.squares, view.state.shape[1])
-        assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= CLOSE
+        assert max(abs(rows - place[0]).max(), abs(columns - place[1]).max()) <= FOVEA_RANGE
 
 
 @pytest.mark.parametrize(("pushes", "taken", "looks"), [(3, False, True), (3, True, False), (8, True, True)])

@@ -26,9 +26,9 @@ from planner.deciding.verification import (
     look_before_grasp,
     unseen_beyond_door,
 )
-from planner.sights.frontiers import CLOSE
+from planner.sights.frontiers import FOVEA_RANGE
 from planner.stages import Stage
-from tests.kb.drawings import seen_whole, walked
+from tests.kb.drawings import known_model, walked
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, tools_with
 
 AT_START = replace(NO_TASK, goals=facts_from_text("at(utak, start)."))
@@ -46,7 +46,7 @@ NARROW = [
 
 def stood_in(rows: list[str], contradicted: bool) -> WorldModel:
     """Return the model of a room seen whole. contradicted : whether the last impression disagrees with it."""
-    model = seen_whole(rows)
+    model = known_model(rows)
     here = (math.floor(model.place[0]), math.floor(model.place[1]))
     return replace(model, looked_from=frozenset({here}), contradicted=contradicted)
 
@@ -73,7 +73,7 @@ def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or
     spread: float, turns: bool, looks: int, stuck: int, first: bool
 ) -> None:
     looked = frozenset((x, 0) for x in range(looks))
-    model = replace(seen_whole(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
+    model = replace(known_model(BESIDE_A_THING), likely_spread=spread, looked_from=looked)
     (node,) = model.objects
     subgoal = look_before_grasp(replace(node, stuck=stuck), turns, situation_of(model))
     assert (subgoal is not None) == first
@@ -84,7 +84,7 @@ def test_the_orientation_of_the_frame_is_looked_at_before_an_object_is_turned_or
 
 @pytest.mark.parametrize("sure", [True, False])
 def test_a_narrow_passage_on_an_unsure_map_is_looked_at_from_close_by(sure: bool) -> None:
-    model = seen_whole(NARROW)
+    model = known_model(NARROW)
     (node,) = model.objects
     node = replace(node, polygon=shapely.box(-20, 0, -16, 4), colour="g", shape={"square": 99})
     model = replace(model, objects=(node,), view=model.view._replace(sure=sure))
@@ -99,7 +99,7 @@ def test_a_narrow_passage_on_an_unsure_map_is_looked_at_from_close_by(sure: bool
     if first is None:
         return
     rows, columns = np.divmod(first.squares, model.labels.shape[1])
-    assert max(np.abs(columns + 0.5 - neck[0]).max(), np.abs(rows + 0.5 - neck[1]).max()) <= CLOSE
+    assert max(np.abs(columns + 0.5 - neck[0]).max(), np.abs(rows + 0.5 - neck[1]).max()) <= FOVEA_RANGE
     x, y = columns[0] + model.view.west + 0.5, rows[0] + model.view.south + 0.5
     there = situation_of(replace(model, place=(float(x), float(y))))
     assert verifier.recheck_passage(refusal, there) is None
@@ -114,7 +114,7 @@ def test_after_a_contradiction_the_robot_looks_from_elsewhere_near_by() -> None:
     away = np.abs(squares_from(model, subgoal.squares)).max(1)
     assert len(away)
     assert away.min() > 0
-    assert away.max() <= CLOSE
+    assert away.max() <= FOVEA_RANGE
 
 
 @pytest.mark.parametrize("contradicted", [False, True])
@@ -130,7 +130,7 @@ def test_nothing_is_done_while_the_last_impression_contradicts_what_is_believed(
 
 
 def test_a_contradiction_that_stays_from_everywhere_ends_with_limit() -> None:
-    model = seen_whole(BESIDE_A_THING)
+    model = known_model(BESIDE_A_THING)
     rows, columns = np.nonzero(model.floor)
     everywhere = frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
     model = replace(model, contradicted=True, looked_from=everywhere)
@@ -143,7 +143,7 @@ def test_a_contradiction_that_stays_from_everywhere_ends_with_limit() -> None:
 @pytest.mark.parametrize("sure", [True, False])
 def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> None:
     """It may stand against a wall, and look like a piece of that."""
-    model = seen_whole(BESIDE_A_THING)
+    model = known_model(BESIDE_A_THING)
     model = replace(model, objects=(), view=model.view._replace(sure=sure))
     transporter = Transporter(search=lambda *_: [])
     (goal,) = facts_from_text("in(x, room(next)).")
@@ -172,7 +172,7 @@ BAR = [  # what may be an object that stands against a wall, and leaves a passag
 
 @pytest.mark.parametrize(("rows", "wall"), [(STUB, True), (BAR, False)])
 def test_two_jambs_in_line_are_one_wall(rows: list[str], wall: bool) -> None:
-    situation = situation_of(seen_whole(rows))
+    situation = situation_of(known_model(rows))
     (door,) = situation.rooms.doors
     pieces = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
     assert pieces

@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from geometry.manipulation.goals import At, End, InCorner, Inside, is_goal_met, shape_at_pose
 from geometry.motion.se2 import Pose
-from planner.goals.joint import conflict, enclosing_region, opposite_corners
+from planner.goals.joint import conflicting_goals, enclosing_region, opposite_corners_reason
 from planner.goals.placement import Placement
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import BESIDE_A_THING, situation_of
 
@@ -39,7 +39,7 @@ def placement(*ends: End, missing: str = "") -> Placement:
     ],
 )
 def test_goals_with_places_apart_are_in_conflict(placements: list[Placement], found: tuple[int, int] | None) -> None:
-    assert conflict(placements, THING) == found
+    assert conflicting_goals(placements, THING) == found
 
 
 @given(
@@ -58,14 +58,14 @@ def test_a_shape_that_meets_an_end_lies_within_its_enclosing_region(
 
 
 def test_opposite_corners_are_too_far_apart() -> None:
-    situation = situation_of(seen_whole(BESIDE_A_THING))
+    situation = situation_of(known_model(BESIDE_A_THING))
     both = facts_of("at(utak, corner(northeast)). at(utak, corner(southwest)).")
-    assert "too far apart" in opposite_corners(both, situation)
+    assert "too far apart" in opposite_corners_reason(both, situation)
     one_side = facts_of("at(utak, corner(northeast)). at(utak, corner(northwest)).")
-    assert opposite_corners(one_side, situation) == ""  # with more floor they may be one corner
+    assert opposite_corners_reason(one_side, situation) == ""  # with more floor they may be one corner
 
 
 def test_opposite_corners_of_a_nook_are_near_enough() -> None:
-    situation = situation_of(seen_whole(["bbbb", "b.Ub", "b..b", "bbbb"]))
+    situation = situation_of(known_model(["bbbb", "b.Ub", "b..b", "bbbb"]))
     both = facts_of("at(utak, corner(northwest)). at(utak, corner(southeast)).")
-    assert opposite_corners(both, situation) == ""
+    assert opposite_corners_reason(both, situation) == ""

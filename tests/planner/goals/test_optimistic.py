@@ -12,10 +12,10 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationOracle, ManipulationPlan, Request
-from planner.goals.optimistic import BEYOND, hoped_floor, spread_into_unseen
-from planner.screen.projection import UNSEEN, marked
+from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor, spread_into_unseen
+from planner.screen.projection import UNSEEN_LEVEL, indices_to_mask
 from planner.situation import Situation
-from tests.kb.drawings import seen_whole, unclear
+from tests.kb.drawings import known_model, unclear
 from tests.planner.situations import situation_of
 
 HALF_SEEN = [  # the room goes on beyond its seen part
@@ -50,26 +50,26 @@ JAGGED = [  # the seen part of the next room leaves no place for the object righ
 @settings(deadline=None)
 @given(st.integers(1, 10), st.integers(1, 23))
 def test_only_unseen_squares_within_the_margin_are_assumed(row: int, column: int) -> None:
-    situation = situation_of(seen_whole(HALF_SEEN))
+    situation = situation_of(known_model(HALF_SEEN))
     shape = situation.model.view.seen.shape
-    mask = marked(np.array([row * shape[1] + column]), shape)
+    mask = indices_to_mask(np.array([row * shape[1] + column]), shape)
     wider = spread_into_unseen(mask, situation)
-    assert wider.shape == tuple(size + 2 * BEYOND for size in mask.shape)
-    inside = wider[BEYOND:-BEYOND, BEYOND:-BEYOND]
+    assert wider.shape == tuple(size + 2 * UNSEEN_MARGIN for size in mask.shape)
+    inside = wider[UNSEEN_MARGIN:-UNSEEN_MARGIN, UNSEEN_MARGIN:-UNSEEN_MARGIN]
     assert not (inside & situation.model.view.seen & ~mask).any()
     rows, columns = np.nonzero(wider)
-    assert (abs(rows - BEYOND - row) + abs(columns - BEYOND - column)).max() <= BEYOND
+    assert (abs(rows - UNSEEN_MARGIN - row) + abs(columns - UNSEEN_MARGIN - column)).max() <= UNSEEN_MARGIN
     assert len(rows) > 1 if column >= 21 else len(rows) == 1
 
 
 def test_floor_is_assumed_beyond_its_open_edge_but_not_through_walls() -> None:
-    situation = situation_of(seen_whole(HALF_SEEN))
-    free = hoped_floor(situation)
-    seen = np.pad(situation.cost_maps.free(0), BEYOND)
+    situation = situation_of(known_model(HALF_SEEN))
+    free = optimistic_floor(situation)
+    seen = np.pad(situation.cost_maps.free(0), UNSEEN_MARGIN)
     beyond = free & ~seen
-    assert beyond[BEYOND + 5, BEYOND + 22 : BEYOND + 22 + BEYOND].all()
-    assert not beyond[BEYOND + 5, BEYOND + 22 + BEYOND :].any()
-    assert not beyond[BEYOND:-BEYOND, BEYOND : BEYOND + 22].any()
+    assert beyond[UNSEEN_MARGIN + 5, UNSEEN_MARGIN + 22 : UNSEEN_MARGIN + 22 + UNSEEN_MARGIN].all()
+    assert not beyond[UNSEEN_MARGIN + 5, UNSEEN_MARGIN + 22 + UNSEEN_MARGIN :].any()
+    assert not beyond[UNSEEN_MARGIN:-UNSEEN_MARGIN, UNSEEN_MARGIN : UNSEEN_MARGIN + 22].any()
 
 
 def thing(model: WorldModel) -> Node:
@@ -93,7 +93,7 @@ def found(
 
 def beside_the_jamb(chance: float) -> WorldModel:
     """Return JAGGED with two unsettled squares beside the jamb, on the straight way. chance : of being occupied."""
-    return unclear(seen_whole(JAGGED), slice(8, 9), slice(13, 15), chance)
+    return unclear(known_model(JAGGED), slice(8, 9), slice(13, 15), chance)
 
 
 THROUGH = {"r2": Inside(shapely.box(15, 1, 33, 15))}
@@ -102,7 +102,7 @@ THROUGH = {"r2": Inside(shapely.box(15, 1, 33, 15))}
 def test_an_optimistic_push_is_taken_where_it_saves_a_command() -> None:
     model = beside_the_jamb(0.2)
     haul, situation = found(model, THROUGH)
-    assert haul.hopes and haul.level == UNSEEN
+    assert haul.hopes and haul.level == UNSEEN_LEVEL
     assert len(haul.plan.legs[0].motions) == 1
     assert (haul.swept & ~situation.cost_maps.free(0) & ~situation.model.mask(thing(model).patch)).any()
     sure, _ = found(beside_the_jamb(0.6), THROUGH)
@@ -110,14 +110,14 @@ def test_an_optimistic_push_is_taken_where_it_saves_a_command() -> None:
 
 
 def test_a_sure_plan_is_kept_where_an_optimistic_one_saves_nothing() -> None:
-    haul, _ = found(seen_whole(JAGGED), THROUGH)
+    haul, _ = found(known_model(JAGGED), THROUGH)
     assert not haul.hopes and haul.level == 0
 
 
 @pytest.mark.parametrize("open_", [False, True])
 def test_plans_end_in_seen_squares_while_the_orientation_is_uncertain(open_: bool) -> None:
     near, far = Inside(shapely.box(11, 7, 22, 11)), Inside(shapely.box(11, 1, 27, 11))
-    haul, _ = found(seen_whole(WALLED), {"r": near}, {"r": far}, open_)
+    haul, _ = found(known_model(WALLED), {"r": near}, {"r": far}, open_)
     assert haul.hopes != open_
     if open_:
         assert near.polygon.buffer(1e-6).covers(haul.plan.polygon)

@@ -9,7 +9,7 @@ import shapely.affinity
 from kb.world.rooms import Rooms
 from planner.goals.origins import Origins
 from planner.situation import Situation
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import BESIDE_A_THING, situation_of
 
 TWO_ROOMS = [
@@ -25,7 +25,7 @@ TWO_ROOMS = [
 
 def now(shaken: bool, rooms: Rooms | None = None, moved: bool = True) -> Situation:
     """Return the situation of two rooms with an object in one. rooms : replace the true ones."""
-    model = seen_whole(TWO_ROOMS)
+    model = known_model(TWO_ROOMS)
     (node,) = model.objects
     west, south = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(west, south, west + 3, south + 3), moved=moved)
@@ -71,7 +71,7 @@ def test_a_door_may_move_a_little_on_the_map(aside: float, lost: bool) -> None:
 
 
 def test_an_origin_is_remembered_when_the_name_changes() -> None:
-    origins, situation = Origins(), situation_of(seen_whole(BESIDE_A_THING))
+    origins, situation = Origins(), situation_of(known_model(BESIDE_A_THING))
     (node,) = situation.model.objects
 
     def began(name: str, east: int, moved: bool, others: tuple[str, ...] = ()) -> float:
@@ -91,7 +91,7 @@ def test_an_origin_is_remembered_when_the_name_changes() -> None:
 
 @pytest.mark.parametrize(("before", "lost"), [(False, "the robot was lost"), (True, "")])
 def test_an_origin_noted_before_a_localisation_failure_is_lost(before: bool, lost: str) -> None:
-    origins, model = Origins(), situation_of(seen_whole(BESIDE_A_THING)).model
+    origins, model = Origins(), situation_of(known_model(BESIDE_A_THING)).model
     (node,) = model.objects
     node = replace(node, polygon=shapely.box(5, 0, 7, 2))
     origins.at("x", node, situation_of(replace(model, anew=before)))

@@ -3,7 +3,7 @@
 import pytest
 
 from planner.goals.robot_goals import DOOR_SIDEWARD_REACH, MAX_UNSEEN_REACH, ONWARD_REACH, rooms_to_see
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 
 DOOR = 2  # columns of wall west of the door
@@ -17,7 +17,7 @@ def looks(wide: int, high: int, north: bool, side: str = "northeast") -> int:
     wall = "b" * (1 + DOOR) + "..." + "b" * (wide - DOOR - 2)
     inside = [*["b" + "." * wide + "b"] * (high - 1), "b....U" + "." * (wide - 5) + "b"]
     rows = ["b" * (wide + 2), *inside, wall, wall, *["?" * len(wall)] * 3]
-    situation = situation_of(seen_whole(rows[::-1] if north else rows))
+    situation = situation_of(known_model(rows[::-1] if north else rows))
     assert len(situation.rooms.doors) == 1
     return len(rooms_to_see(side, situation))
 

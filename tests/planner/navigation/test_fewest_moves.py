@@ -11,14 +11,14 @@ from kb.language.terms import Symbol
 from kb.task.task import Task
 from kb.world.rooms import rooms_of
 from planner.deciding.decider import Decider
-from planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE, WAY, FewestMoves
+from planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE_COST, SQUARE_COST, FewestMoves
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import one_move
+from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps
 from planner.screen.sweeps import sweep_is_free
 from planner.screen.unseen_gain import VIEW_REACH
 from planner.sights.frontiers import best_views
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 
 WALLS = [
@@ -52,12 +52,12 @@ def symbol(name: str, *args: Symbol) -> Symbol:
 
 @pytest.fixture
 def cost_maps() -> CostMaps:
-    return CostMaps(seen_whole(WALLS))
+    return CostMaps(known_model(WALLS))
 
 
 def test_only_the_squares_of_a_subgoal_count_that_one_move_reaches(cost_maps: CostMaps) -> None:
     behind, open_ = (31, 12), (29, 15)
-    assert one_move(cost_maps, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
+    assert one_move_squares(cost_maps, "explore").ravel()[[flat(*behind), flat(*open_)]].tolist() == [False, True]
     fewest = FewestMoves(cost_maps)
     (priced,) = fewest.priced([subgoal(behind, open_)])
     assert priced.squares.tolist() == [flat(*open_)]
@@ -68,10 +68,10 @@ def test_only_the_squares_of_a_subgoal_count_that_one_move_reaches(cost_maps: Co
 
 def test_a_long_detour_that_saves_a_move_is_taken() -> None:
     rows = ["b" * 40, *["b" + "." * 38 + "b"] * 11, "b..U........b" + "." * 26 + "b", "b" * 40]
-    cost_maps = CostMaps(seen_whole(rows))
+    cost_maps = CostMaps(known_model(rows))
     width = len(rows[0])
     behind, far = width + 14, 12 * width + 37
-    assert one_move(cost_maps, "explore").ravel()[[behind, far]].tolist() == [False, True]
+    assert one_move_squares(cost_maps, "explore").ravel()[[behind, far]].tolist() == [False, True]
     ways = cost_maps.distances[0].ravel()[[behind, far]] / 5
     assert ways[0] + 2 < ways[1]
     (priced,) = FewestMoves(cost_maps).priced([Subgoal("explore", np.array([behind, far]), "there")])
@@ -84,7 +84,7 @@ def test_a_subgoal_costs_its_moves_and_a_share_of_its_way(
 ) -> None:
     far = cost_maps.distances[0].ravel()[flat(*square)] / 5
     (priced,) = FewestMoves(cost_maps).priced([subgoal(square)._replace(price=7.0)])
-    assert far + priced.price == pytest.approx(7.0 + moves * MOVE + WAY * far)
+    assert far + priced.price == pytest.approx(7.0 + moves * MOVE_COST + SQUARE_COST * far)
 
 
 def test_the_second_move_can_begin_where_the_first_ends(cost_maps: CostMaps) -> None:
@@ -103,7 +103,7 @@ def test_the_turn_is_where_unseen_squares_come_into_sight(unseen: str) -> None:
     """A block stands between the robot and its subgoal; the ways on both sides are as long."""
     hall, block = "b" + "." * 58 + "b", "b" + "." * 25 + "b" * 8 + "." * 25 + "b"
     here = "b..U" + block[4:]
-    model = seen_whole(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
+    model = known_model(["b" * 60, *[hall] * 9, *[block] * 4, here, *[block] * 4, *[hall] * 9, "b" * 60])
     seen = model.view.seen.copy()
     seen[slice(-4, None) if unseen == "north" else slice(4)] = False
     cost_maps = CostMaps(replace(model, view=model.view._replace(seen=seen)))
@@ -115,7 +115,7 @@ def test_the_turn_is_where_unseen_squares_come_into_sight(unseen: str) -> None:
 
 def half_seen(shown: int) -> CostMaps:
     """Return a hall of which only the first `shown` columns from the west, where the robot stands, were seen."""
-    model = seen_whole(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
+    model = known_model(["b" * 60, *["b" + "." * 58 + "b"] * 17, "b..U" + "." * 55 + "b", "b" * 60])
     seen = model.view.seen.copy()
     seen[:, shown:] = False
     return CostMaps(replace(model, view=model.view._replace(seen=seen)))
@@ -123,32 +123,32 @@ def half_seen(shown: int) -> CostMaps:
 
 def test_the_best_view_has_the_most_gain_for_its_cost() -> None:
     cost_maps = half_seen(40)
-    met = one_move(cost_maps, "explore")
-    (look,) = best_views(cost_maps, met, MOVE, WAY)
+    met = one_move_squares(cost_maps, "explore")
+    (look,) = best_views(cost_maps, met, MOVE_COST, SQUARE_COST)
     columns = look.squares % met.shape[1]
     assert met.ravel()[look.squares].all()
     assert columns.min() > 40 - VIEW_REACH  # from further west hardly anything new comes into sight
     assert (columns < 39).any()  # and it need not border on unseen squares
     west = met & (np.arange(met.shape[1]) < columns.min())
-    (nearer,) = best_views(cost_maps, west, MOVE, WAY)
+    (nearer,) = best_views(cost_maps, west, MOVE_COST, SQUARE_COST)
     assert 1 <= nearer.chance <= look.chance
 
 
 def test_there_is_no_best_view_where_nothing_new_comes_into_sight() -> None:
     cost_maps = half_seen(60)
-    nowhere = np.zeros_like(one_move(cost_maps, "explore"))
-    assert best_views(cost_maps, nowhere, MOVE, WAY) == []
-    hall = seen_whole(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
+    nowhere = np.zeros_like(one_move_squares(cost_maps, "explore"))
+    assert best_views(cost_maps, nowhere, MOVE_COST, SQUARE_COST) == []
+    hall = known_model(["b" * 70, *["b" + "." * 68 + "b"] * 40, "b..U" + "." * 65 + "b", "b" * 70])
     cost_maps = CostMaps(hall)
     nowhere = np.zeros(hall.view.seen.shape, bool)
     nowhere[20:23, 30:40] = True
-    assert best_views(cost_maps, nowhere, MOVE, WAY) == []
+    assert best_views(cost_maps, nowhere, MOVE_COST, SQUARE_COST) == []
 
 
 def test_every_first_move_is_possible() -> None:
     for spread in (0.0, math.pi):
-        cost_maps = CostMaps(replace(seen_whole(WALLS), likely_spread=spread))
-        reached = one_move(cost_maps, "explore")
+        cost_maps = CostMaps(replace(known_model(WALLS), likely_spread=spread))
+        reached = one_move_squares(cost_maps, "explore")
         for square in np.flatnonzero(cost_maps.floor)[::7].tolist():
             way = FewestMoves(cost_maps).way(Subgoal("explore", np.array([square]), "there"))
             if way is not None:
@@ -159,7 +159,7 @@ def test_every_first_move_is_possible() -> None:
 def test_no_straight_move_leads_through_a_forbidden_door() -> None:
     rows = ["b" * 30, *["b" + "." * 13 + "bb" + "." * 13 + "b"] * 5, "b...U" + "." * 24 + "b"]
     rows += ["b" + "." * 28 + "b"] * 2 + rows[1:6] + ["b" * 30]
-    model = seen_whole(rows)
+    model = known_model(rows)
     assert len(rooms_of(model).doors) == 1
     carried = symbol("at", symbol("x"), symbol("corner", symbol("northeast")))
     never = symbol("not_through", symbol("utak"), symbol("d"))

@@ -7,10 +7,10 @@ import numpy as np
 from kb.body import Move, Push, Release
 from planner.navigation.loop_guard import LOOP_COST, LoopGuard
 from planner.navigation.subgoals import Subgoal
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.screen.test_projection import HALL
 
-MODEL = seen_whole(HALL)
+MODEL = known_model(HALL)
 
 
 def test_the_same_command_in_the_same_state_is_noticed() -> None:

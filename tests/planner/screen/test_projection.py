@@ -11,14 +11,22 @@ from hypothesis import strategies as st
 
 from kb.mapping.occupancy import FREE, OPEN
 from kb.world.model import WorldModel
-from planner.navigation.encircle import pivot, ways_round, winding
-from planner.navigation.routes import choose_way, ways
+from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
+from planner.navigation.routes import choose_route, find_routes
 from planner.navigation.subgoals import Subgoal, choose
-from planner.screen.moves import HURRY, LEEWAY_TOLERANCE, STROLL, TIGHT_MOVE_LENGTH, Pace, next_move, one_move
-from planner.screen.projection import MAX_TRUSTED_PROBABILITY, MIN_DOUBTFUL_PROBABILITY, UNSEEN, CostMaps, grown
+from planner.screen.moves import (
+    CARRYING_PACE,
+    LEEWAY_TOLERANCE,
+    TIGHT_MOVE_LENGTH,
+    WALKING_PACE,
+    Pace,
+    next_move,
+    one_move_squares,
+)
+from planner.screen.projection import MAX_TRUSTED_PROBABILITY, MIN_DOUBTFUL_PROBABILITY, UNSEEN_LEVEL, CostMaps, dilate
 from planner.screen.sweeps import line_sweep_is_free, swept_offsets
 from planner.sights import frontiers
-from tests.kb.drawings import seen_whole, walked
+from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import random_room
 
 
@@ -42,7 +50,7 @@ def random_walk(seed: int) -> WorldModel:
 @given(st.integers(0, 2**32 - 1))
 def test_the_projection_is_monotone(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
-    for level in range(UNSEEN):
+    for level in range(UNSEEN_LEVEL):
         assert not (cost_maps.free(level) & ~cost_maps.free(level + 1)).any()
         before, after = cost_maps.distances[level], cost_maps.distances[level + 1]
         assert (after[before >= 0] >= 0).all()
@@ -73,7 +81,7 @@ def test_dilation_is_by_the_chebyshev_distance(rows: int, columns: int, seed: in
         [bool(len(where)) and int(np.abs(where - (r, c)).max(1).min()) <= squares for c in range(columns)]
         for r in range(rows)
     ]
-    assert np.array_equal(grown(mask, squares), np.array(want))
+    assert np.array_equal(dilate(mask, squares), np.array(want))
 
 
 HALL = [
@@ -92,13 +100,13 @@ def flat(model: WorldModel, x: int, y: int) -> np.ndarray:
     return np.array([row * model.labels.shape[1] + column])
 
 
-@pytest.mark.parametrize("pace", [STROLL, HURRY])
-@pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
+@pytest.mark.parametrize("pace", [WALKING_PACE, CARRYING_PACE])
+@pytest.mark.parametrize("kind", sorted(WALKING_PACE.longest_by_kind))
 def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     cost_maps = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
-        for way in ways(cost_maps, 0, flat(model, *goal), "skeleton"):
+        for way in find_routes(cost_maps, 0, flat(model, *goal), "skeleton"):
             move = next_move(cost_maps, way.squares, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
@@ -115,7 +123,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     squares = np.flatnonzero(cost_maps.floor)
     rng = np.random.default_rng(seed)
     for goal in rng.choice(squares, size=min(4, len(squares)), replace=False):
-        for way in ways(cost_maps, 0, np.array([goal]), "skeleton"):
+        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton"):
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, "attain")
@@ -125,32 +133,32 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
 
 
 def test_routes_are_free_connected_and_distinct() -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     cost_maps = CostMaps(model)
-    found = ways(cost_maps, 0, flat(model, 12, -1), "skeleton")
+    found = find_routes(cost_maps, 0, flat(model, 12, -1), "skeleton")
     assert len(found) >= 2
     for way in found:
         assert way.squares[0] == cost_maps.here
         assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(way.squares, way.squares[1:], strict=False))
     assert found[0].length <= found[1].length
-    chosen = choose_way(found, cost_maps, frozenset(), (), frozenset())
+    chosen = choose_route(found, cost_maps, frozenset(), (), frozenset())
     assert chosen == found[0]
-    sticky = choose_way(found[:2], cost_maps, frozenset(found[1].squares), (), frozenset())
+    sticky = choose_route(found[:2], cost_maps, frozenset(found[1].squares), (), frozenset())
     assert sticky == (found[1] if found[1].length - found[0].length < 2 else found[0])
 
 
 def test_the_route_to_the_own_square_has_one_square() -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     cost_maps = CostMaps(model)
-    (way,) = ways(cost_maps, 0, flat(model, 0, 0), "skeleton")
+    (way,) = find_routes(cost_maps, 0, flat(model, 0, 0), "skeleton")
     assert way.squares == (cost_maps.here,)
     assert way.length == 0
 
 
 def test_the_surest_level_decides_what_is_nearest() -> None:
     rows = ["b" * 12, "b..........b", "b.U..?...?.b", "b..........b", "b" * 12]
-    model = seen_whole(rows)
+    model = known_model(rows)
     cost_maps = CostMaps(model)
     reached = cost_maps.nearest(np.concatenate([flat(model, 3, 0), flat(model, 8, 0)]))
     assert reached is not None
@@ -158,12 +166,12 @@ def test_the_surest_level_decides_what_is_nearest() -> None:
     assert reached.cost == pytest.approx(9.4)
     only = cost_maps.nearest(flat(model, 3, 0))
     assert only is not None
-    assert only.level == UNSEEN
+    assert only.level == UNSEEN_LEVEL
     assert cost_maps.nearest(flat(model, 9, 1)) is None
 
 
 def test_the_choice_of_a_subgoal() -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     cost_maps = CostMaps(model)
     near, far = Subgoal("explore", flat(model, 1, 0), "near"), Subgoal("explore", flat(model, 12, 0), "far")
     goal = Subgoal("attain", flat(model, 12, 3), "there")
@@ -178,77 +186,77 @@ def test_the_choice_of_a_subgoal() -> None:
 
 def test_frontiers_border_on_unseen_squares() -> None:
     rows = ["bbbbb?????", "b....?????", "b.U..?????", "b.........", "bbbbb....?"]
-    model = seen_whole(rows)
+    model = known_model(rows)
     cost_maps = CostMaps(model)
-    found = np.unique(np.concatenate([look.squares for look in frontiers.frontiers(cost_maps, 0)]))
-    near = grown(~model.view.seen, 1)
+    found = np.unique(np.concatenate([look.squares for look in frontiers.find_frontiers(cost_maps, 0)]))
+    near = dilate(~model.view.seen, 1)
     assert np.array_equal(found, np.flatnonzero(cost_maps.floor & near))
-    closed = CostMaps(seen_whole(HALL))
-    assert frontiers.frontiers(closed, 0) == []
-    assert frontiers.vague_places(closed, 0, odd=False) == []
-    assert frontiers.rooms_beyond(closed) == []
+    closed = CostMaps(known_model(HALL))
+    assert frontiers.find_frontiers(closed, 0) == []
+    assert frontiers.unsettled_boundaries(closed, 0, odd=False) == []
+    assert frontiers.unreached_rooms(closed) == []
 
 
 def test_floor_seen_beyond_a_wall_is_an_unreached_room() -> None:
     rows = ["bbbbbbbbbbb", "b....b....b", "b.U..b....b", "b....b....b", "bbbbbbbbbbb"]
-    cost_maps = CostMaps(seen_whole(rows))
-    (room,) = frontiers.rooms_beyond(cost_maps)
+    cost_maps = CostMaps(known_model(rows))
+    (room,) = frontiers.unreached_rooms(cost_maps)
     assert len(room.squares) == 12
     assert not cost_maps.floor.ravel()[room.squares].any()
     small = ["bbbbbbbbbbb", "b....b...bb", "b.U..b..bbb", "b....bbbbbb", "bbbbbbbbbbb"]
-    assert frontiers.rooms_beyond(CostMaps(seen_whole(small))) == []
+    assert frontiers.unreached_rooms(CostMaps(known_model(small))) == []
 
 
 def test_no_viewpoint_is_used_twice() -> None:
     rows = ["bbbbb????", "b.U..????", "bbbbb????"]
-    model = seen_whole(rows)
-    (border,) = frontiers.frontiers(CostMaps(model), 0)
+    model = known_model(rows)
+    (border,) = frontiers.find_frontiers(CostMaps(model), 0)
     looked = replace(model, looked_from=frozenset({(2, 0)}))
-    assert frontiers.frontiers(CostMaps(looked), 0) == []
+    assert frontiers.find_frontiers(CostMaps(looked), 0) == []
     beside = CostMaps(replace(model, looked_from=frozenset({(0, 0)})))
-    assert len(frontiers.frontiers(beside, 0)[0].squares) == len(border.squares)
-    assert frontiers.frontiers(beside, 2) == []
+    assert len(frontiers.find_frontiers(beside, 0)[0].squares) == len(border.squares)
+    assert frontiers.find_frontiers(beside, 2) == []
 
 
 def test_encircling_routes_wind_once() -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     (node,) = model.objects
     cost_maps = CostMaps(model)
     track = [model.place]
-    offered = ways_round(cost_maps, track, node)
+    offered = encircling_routes(cost_maps, track, node)
     assert len(offered) == 2
     sides = set()
     for turn, way in offered.items():
         assert way.squares[0] == way.squares[-1] == cost_maps.here
         assert all(cost_maps.free(0)[y, x] for x, y in way.squares)
         walked_track = [(x + 0.5 + model.view.west, y + 0.5 + model.view.south) for x, y in way.squares]
-        assert winding(walked_track, node) == turn
+        assert winding_number(walked_track, node) == turn
         sides.add(turn)
     assert sides == {1, -1}
 
 
 @pytest.mark.parametrize("aside", [-0.49, -1e-12, 0.0, 0.3])
 def test_the_place_within_a_square_changes_no_encircling_route(aside: float) -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     (node,) = model.objects
-    x, y = pivot(node)
+    x, y = encircled_point(node)
     moved = replace(model, place=(x + 6, y + aside))
-    offered = ways_round(CostMaps(moved), [model.place, (x, y + 5), moved.place], node)
-    centred = ways_round(CostMaps(moved), [model.place, (x, y + 5), (x + 6, y)], node)
+    offered = encircling_routes(CostMaps(moved), [model.place, (x, y + 5), moved.place], node)
+    centred = encircling_routes(CostMaps(moved), [model.place, (x, y + 5), (x + 6, y)], node)
     assert {turn: way.squares for turn, way in offered.items()} == {turn: way.squares for turn, way in centred.items()}
 
 
 def test_after_half_a_turn_the_other_half_is_left() -> None:
-    model = seen_whole(HALL)
+    model = known_model(HALL)
     (node,) = model.objects
-    x, y = pivot(node)
+    x, y = encircled_point(node)
     over = [model.place, (x, y + 5), (x + 6, y + 0.5)]
     moved = replace(model, place=over[-1])
-    offered = ways_round(CostMaps(moved), over, node)
+    offered = encircling_routes(CostMaps(moved), over, node)
     whole_turns = set()
     for turn, way in offered.items():
         rest = [(c + 0.5 + model.view.west, r + 0.5 + model.view.south) for c, r in way.squares]
-        assert winding([*over, *rest[1:]], node) == turn
+        assert winding_number([*over, *rest[1:]], node) == turn
         whole_turns.add(turn)
     assert whole_turns == {1, -1}
     shortest = min(offered.values(), key=lambda way: way.length)
@@ -256,9 +264,9 @@ def test_after_half_a_turn_the_other_half_is_left() -> None:
 
 
 def test_the_pivot_lies_within_the_object() -> None:
-    model = seen_whole(["bbbbbbbb", "b......b", "b.gggg.b", "b.g..g.b", "b.g..g.b", "b.U....b", "bbbbbbbb"])
+    model = known_model(["bbbbbbbb", "b......b", "b.gggg.b", "b.g..g.b", "b.g..g.b", "b.U....b", "bbbbbbbb"])
     (node,) = model.objects
-    x, y = pivot(node)
+    x, y = encircled_point(node)
     assert (int(np.floor(x)), int(np.floor(y))) in node.patch.squares()
 
 
@@ -268,17 +276,17 @@ def test_odd_boundaries_are_part_of_the_unsettled_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
 
     def squares(odd: bool) -> set[int]:
-        return {int(s) for look in frontiers.vague_places(cost_maps, 0, odd=odd) for s in look.squares}
+        return {int(s) for look in frontiers.unsettled_boundaries(cost_maps, 0, odd=odd) for s in look.squares}
 
     assert squares(odd=True) <= squares(odd=False) <= set(np.flatnonzero(cost_maps.floor).tolist())
 
 
 @pytest.mark.parametrize("leeway", [(-0.5, -0.5, 0.5, 0.5), (-0.5, 0.0, 0.0, 0.5), (-0.05, -0.05, 0.05, 0.05)])
 def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leeway: tuple[float, ...]) -> None:
-    model = replace(seen_whole(HALL), leeway=leeway)
+    model = replace(known_model(HALL), leeway=leeway)
     cost_maps = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
-        way = ways(cost_maps, 0, flat(model, *goal), "skeleton")[0]
+        way = find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0]
         move = next_move(cost_maps, way.squares, "explore")
         whole = next_move(cost_maps, way.squares, "attain")
         assert (whole.east, whole.north) == (round(whole.east), round(whole.north))
@@ -292,17 +300,17 @@ def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leewa
             )
         assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LEEWAY_TOLERANCE
     assert any(
-        next_move(cost_maps, ways(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
+        next_move(cost_maps, find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
         for goal in ((4, 3), (-3, -2), (5, -4))
     ) == (max(leeway) > LEEWAY_TOLERANCE)
 
 
 def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_uncertain() -> None:
-    model = replace(seen_whole(HALL), likely_spread=math.pi)
+    model = replace(known_model(HALL), likely_spread=math.pi)
     cost_maps = CostMaps(model)
     whole = 0
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, "explore")
@@ -316,14 +324,14 @@ def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_unce
     assert whole > 0
 
 
-@pytest.mark.parametrize("pace", [STROLL, HURRY])
+@pytest.mark.parametrize("pace", [WALKING_PACE, CARRYING_PACE])
 def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_bold(pace: Pace) -> None:
-    model = replace(seen_whole(HALL), likely_spread=math.pi)
+    model = replace(known_model(HALL), likely_spread=math.pi)
     cost_maps = CostMaps(model)
-    clear_of = ~grown(~cost_maps.safe, 1)
+    clear_of = ~dilate(~cost_maps.safe, 1)
     longest, near = 0.0, []
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
             move = next_move(cost_maps, way.squares, "explore", pace=pace)
@@ -344,27 +352,28 @@ def test_bold_moves_go_up_to_unsettled_squares_but_not_to_unseen_ones(seed: int)
     more = cost_maps.believed & ~cost_maps.safe
     assert (cost_maps.believed & cost_maps.safe == cost_maps.safe).all()
     hardly = cost_maps.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY)
-    assert (more == hardly & ~cost_maps.safe & ~grown(~view.seen, 1)).all()
-    beside_doubt = grown(view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY), 1)
+    assert (more == hardly & ~cost_maps.safe & ~dilate(~view.seen, 1)).all()
+    beside_doubt = dilate(view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY), 1)
     assert not (more & ~beside_doubt).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
 def test_only_the_carrying_pace_is_bold(spread: float) -> None:
     cost_maps = CostMaps(replace(random_walk(3), likely_spread=spread))
-    for kind in STROLL.longest_by_kind:
+    for kind in WALKING_PACE.longest_by_kind:
         assert (
-            HURRY.passable(cost_maps, kind) == (cost_maps.approachable if kind == "inspect" else cost_maps.believed)
+            CARRYING_PACE.passable(cost_maps, kind)
+            == (cost_maps.approachable if kind == "inspect" else cost_maps.believed)
         ).all()
-        assert (STROLL.passable(cost_maps, kind) == cost_maps.safe).all()
+        assert (WALKING_PACE.passable(cost_maps, kind) == cost_maps.safe).all()
     assert (cost_maps.believed != cost_maps.safe).any()
 
 
 @pytest.mark.parametrize("spread", [0.0, math.pi])
-@pytest.mark.parametrize("kind", sorted(STROLL.longest_by_kind))
+@pytest.mark.parametrize("kind", sorted(WALKING_PACE.longest_by_kind))
 def test_one_move_reaches_exactly_the_possible_ends_of_the_next_move(kind: str, spread: float) -> None:
-    cost_maps = CostMaps(replace(seen_whole(HALL), likely_spread=spread))
-    reached = one_move(cost_maps, kind)
+    cost_maps = CostMaps(replace(known_model(HALL), likely_spread=spread))
+    reached = one_move_squares(cost_maps, kind)
     ended = np.zeros_like(reached)
     ended[cost_maps.here[1], cost_maps.here[0]] = True
     for row, column in np.argwhere(cost_maps.floor).tolist():
@@ -374,16 +383,16 @@ def test_one_move_reaches_exactly_the_possible_ends_of_the_next_move(kind: str, 
                 if max(abs(column - cost_maps.here[0]), abs(row - cost_maps.here[1])) <= 1
                 else cost_maps.here
             )
-            move = next_move(cost_maps, [cost_maps.here, step, (column, row)], kind, pace=HURRY)
+            move = next_move(cost_maps, [cost_maps.here, step, (column, row)], kind, pace=CARRYING_PACE)
             ended[cost_maps.here[1] + round(move.north), cost_maps.here[0] + round(move.east)] = True
     assert (reached & cost_maps.believed == ended & cost_maps.believed).all()
 
 
 def test_no_move_ends_near_an_edge_where_the_next_square_may_stop_it() -> None:
-    model = replace(seen_whole(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
+    model = replace(known_model(HALL), leeway=(-0.5, -0.5, 0.5, 0.5))
     cost_maps = CostMaps(model)
     for goal in np.flatnonzero(cost_maps.floor).tolist():
-        for way in ways(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
+        for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) > 1:
                 move = next_move(cost_maps, way.squares, "explore")
                 here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)

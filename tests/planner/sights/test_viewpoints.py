@@ -9,14 +9,14 @@ from geometry.raster.components import with_edge_neighbours
 from kb.language.reader import facts_from_text
 from kb.mapping.occupancy import FULL, OPEN
 from kb.world.corners import Corner
-from planner.goals.corner_goal import approach
+from planner.goals.corner_goal import approach_for_goals
 from planner.navigation.fewest_moves import FewestMoves
 from planner.navigation.subgoals import Subgoal
-from planner.screen.moves import HURRY, one_move
-from planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, grown
-from planner.sights.frontiers import CLOSE, MIDDLE_ZONE_RANGE
-from planner.sights.viewpoints import ARRIVE, MIN_APPROACH_PROBABILITY, TAKE, Approach, inspection_squares
-from tests.kb.drawings import drawing, seen_whole
+from planner.screen.moves import CARRYING_PACE, one_move_squares
+from planner.screen.projection import LEVEL_MAX_PROBABILITY, SURELY_OCCUPIED, CostMaps, dilate
+from planner.sights.frontiers import FOVEA_RANGE, MIDDLE_ZONE_RANGE
+from planner.sights.viewpoints import MIN_APPROACH_PROBABILITY, TO_REACH, TO_TAKE, Approach, inspection_squares
+from tests.kb.drawings import drawing, known_model
 from tests.planner.situations import situation_of
 
 ROOM = [row[:4] + "U" + row[5:] if k == 38 else row for k, row in enumerate(drawing(30, 20, 4, 4))]
@@ -31,23 +31,23 @@ def distance_from(squares: np.ndarray, mask: np.ndarray) -> np.ndarray:
 
 def room(looked_from: frozenset[tuple[int, int]] = frozenset()) -> tuple[CostMaps, np.ndarray]:
     """Return the cost maps of a room with one object, and its mask. looked_from : squares of the map frame."""
-    model = replace(seen_whole(ROOM), looked_from=looked_from)
+    model = replace(known_model(ROOM), looked_from=looked_from)
     return CostMaps(model), model.mask(model.objects[0].patch)
 
 
 def test_an_unlikely_object_is_seen_from_a_distance_first() -> None:
     cost_maps, mask = room()
-    away = distance_from(inspection_squares(cost_maps, mask, 0.2, ARRIVE), mask)
-    assert away.max() == MIDDLE_ZONE_RANGE > CLOSE
-    assert distance_from(inspection_squares(cost_maps, mask, 0.2, TAKE), mask).max() <= CLOSE
+    away = distance_from(inspection_squares(cost_maps, mask, 0.2, TO_REACH), mask)
+    assert away.max() == MIDDLE_ZONE_RANGE > FOVEA_RANGE
+    assert distance_from(inspection_squares(cost_maps, mask, 0.2, TO_TAKE), mask).max() <= FOVEA_RANGE
     row, column = np.argwhere(mask).min(0)
     view = cost_maps.model.view
     cost_maps, mask = room(frozenset({(int(column) + view.west - MIDDLE_ZONE_RANGE, int(row) + view.south)}))
-    away = distance_from(inspection_squares(cost_maps, mask, 0.2, ARRIVE), mask)
-    assert away.max() == CLOSE
+    away = distance_from(inspection_squares(cost_maps, mask, 0.2, TO_REACH), mask)
+    assert away.max() == FOVEA_RANGE
 
 
-@pytest.mark.parametrize("to", [ARRIVE, TAKE])
+@pytest.mark.parametrize("to", [TO_REACH, TO_TAKE])
 def test_a_likely_object_is_approached(to: Approach) -> None:
     cost_maps, mask = room()
     squares = inspection_squares(cost_maps, mask, 0.8, to)
@@ -62,10 +62,10 @@ def test_an_object_to_take_is_approached_where_it_surely_is() -> None:
     view = cost_maps.model.view
     doubtful = np.where(rim, 0.5, view.probability).astype(np.float32)
     cost_maps = CostMaps(replace(cost_maps.model, view=view._replace(probability=doubtful)))
-    squares = inspection_squares(cost_maps, mask, 0.8, TAKE)
+    squares = inspection_squares(cost_maps, mask, 0.8, TO_TAKE)
     assert with_edge_neighbours(mask & ~rim).ravel()[squares].all()
     only = CostMaps(replace(cost_maps.model, view=view._replace(probability=np.where(mask, 0.5, doubtful))))
-    assert with_edge_neighbours(mask).ravel()[inspection_squares(only, mask, 0.8, TAKE)].all()
+    assert with_edge_neighbours(mask).ravel()[inspection_squares(only, mask, 0.8, TO_TAKE)].all()
 
 
 def looking(cost_maps: CostMaps, squares: np.ndarray, probability: float, state: int) -> CostMaps:
@@ -100,7 +100,7 @@ def sides(mask: np.ndarray) -> dict[str, np.ndarray]:
 )
 def test_the_robot_does_not_stand_between_an_object_and_its_corner(corner: tuple[int, int], wanted: set[str]) -> None:
     cost_maps, mask = room()
-    squares = inspection_squares(cost_maps, mask, 1.0, TAKE._replace(corner=corner))
+    squares = inspection_squares(cost_maps, mask, 1.0, TO_TAKE._replace(corner=corner))
     by_side = sides(mask)
     assert len(squares)
     assert np.logical_or.reduce([by_side[name] for name in wanted]).ravel()[squares].all()
@@ -110,30 +110,30 @@ def test_the_robot_stands_in_the_way_where_no_other_side_is_floor() -> None:
     cost_maps, mask = room()
     by_side = sides(mask)
     cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, FULL)
-    squares = inspection_squares(cost_maps, mask, 1.0, TAKE._replace(corner=(1, 1)))
+    squares = inspection_squares(cost_maps, mask, 1.0, TO_TAKE._replace(corner=(1, 1)))
     assert len(squares)
     assert (by_side["east"] | by_side["north"]).ravel()[squares].all()
 
 
 def test_a_side_that_one_straight_move_reaches_is_preferred() -> None:
     cost_maps, mask = room()
-    met = one_move(cost_maps, "inspect").ravel()
+    met = one_move_squares(cost_maps, "inspect").ravel()
     at_sides = np.flatnonzero(with_edge_neighbours(mask) & cost_maps.floor)
     assert met[at_sides].any()
     assert not met[at_sides].all()
-    assert met[inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, TAKE)].all()
-    all_round = inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, ARRIVE)
+    assert met[inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, TO_TAKE)].all()
+    all_round = inspection_squares(cost_maps, mask, MIN_APPROACH_PROBABILITY, TO_REACH)
     assert sorted(all_round.tolist()) == at_sides.tolist()
 
 
 def test_an_approach_crosses_squares_beside_an_object_that_may_be_floor() -> None:
     cost_maps, mask = room()
-    ring = grown(mask, 1) & ~mask
+    ring = dilate(mask, 1) & ~mask
     cost_maps = looking(cost_maps, ring, LEVEL_MAX_PROBABILITY[1], OPEN)
     assert not cost_maps.believed[ring].any()
-    assert (HURRY.passable(cost_maps, "inspect") == cost_maps.approachable).all()
+    assert (CARRYING_PACE.passable(cost_maps, "inspect") == cost_maps.approachable).all()
     assert (cost_maps.approachable & ~cost_maps.believed == with_edge_neighbours(mask) & ring).all()
-    squares = inspection_squares(cost_maps, mask, 1.0, TAKE)
+    squares = inspection_squares(cost_maps, mask, 1.0, TO_TAKE)
     assert with_edge_neighbours(mask).ravel()[squares].all()
     fewest, subgoal = FewestMoves(cost_maps), Subgoal("inspect", squares, "a thing")
     way, dear = fewest.way(subgoal), fewest.priced([subgoal])[0]
@@ -169,8 +169,11 @@ def test_an_object_for_a_corner_is_approached_from_the_side_away_from_its_walls(
     goals = {name: facts_from_text(f"at(x, corner({name})).")[0] for name in (*corners, "southeast")}
     situation = situation_of(cost_maps.model, {})
     situation = replace(situation, corners=corners)
-    assert approach([goals["northeast"]], situation) == TAKE._replace(corner=(1, -1))
-    assert approach([goals["southwest"]], situation) == TAKE._replace(corner=(-1, -1))
-    assert approach([goals["southeast"]], situation) == TAKE
-    assert approach([facts_from_text("in(x, room(next)).")[0], goals["northeast"]], situation).corner == (1, -1)
-    assert approach([facts_from_text("beside(x, y).")[0]], situation) == TAKE
+    assert approach_for_goals([goals["northeast"]], situation) == TO_TAKE._replace(corner=(1, -1))
+    assert approach_for_goals([goals["southwest"]], situation) == TO_TAKE._replace(corner=(-1, -1))
+    assert approach_for_goals([goals["southeast"]], situation) == TO_TAKE
+    assert approach_for_goals([facts_from_text("in(x, room(next)).")[0], goals["northeast"]], situation).corner == (
+        1,
+        -1,
+    )
+    assert approach_for_goals([facts_from_text("beside(x, y).")[0]], situation) == TO_TAKE

@@ -16,7 +16,7 @@ from planner.skills.into_corner import (
     lies_straight,
 )
 from planner.stages import Stage
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import situation_of
 
@@ -28,7 +28,7 @@ SOUTHWEST = Stage(facts_of("at(utak, corner(southwest))."))
 
 def standing(rows: list[str], x: float, y: float) -> Situation:
     """Return a situation in a drawn room, with the robot so far from where it woke, in squares."""
-    model = replace(seen_whole(rows), place=(0.5 + x, 0.5 + y))
+    model = replace(known_model(rows), place=(0.5 + x, 0.5 + y))
     return situation_of(model)
 
 

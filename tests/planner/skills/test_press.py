@@ -9,11 +9,11 @@ from geometry.manipulation.goals import InCorner
 from geometry.motion.se2 import Translate
 from kb.body import Push
 from kb.world.model import Node
-from planner.goals.corner_goal import WALL, _presses
+from planner.goals.corner_goal import WALL_DEPTH, _wall_pushes
 from planner.goals.placement import Placement
 from planner.situation import Situation
 from planner.skills.press import Presser
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.goals.test_object_goals import facts_of
 from tests.planner.situations import BESIDE_A_THING, situation_of
 
@@ -24,7 +24,7 @@ LAND = Placement({}, holds=True, presses={"across": ACROSS, "up": UP})
 
 def holding() -> tuple[Situation, Node]:
     """Return the situation of a robot beside an object that it holds, and the object."""
-    model = seen_whole(BESIDE_A_THING)
+    model = known_model(BESIDE_A_THING)
     (node,) = model.objects
     west, south, mask = node.patch
     node = replace(node, polygon=shapely.box(west, south, west + mask.shape[1], south + mask.shape[0]))
@@ -92,9 +92,9 @@ def test_an_object_without_presses_or_not_held_is_not_pressed() -> None:
     ("gap", "short", "ways"),
     [
         ((0.0, 0.0), (0.0, 0.0, 0.0, 0.0), {}),  # right beside these squares is near enough
-        ((0.0, 0.0), (0.0, 0.9, 0.0, 0.0), {"across": WALL + 0.9}),  # its eastern side may lie further in
-        ((0.0, 0.5), (0.9, 0.0, 0.9, 0.0), {"up": WALL + 0.5}),  # others do not matter
-        ((0.5, 0.5), (0.0, 0.0, 0.0, 0.5), {"across": WALL + 0.5, "up": WALL + 1.0}),
+        ((0.0, 0.0), (0.0, 0.9, 0.0, 0.0), {"across": WALL_DEPTH + 0.9}),  # its eastern side may lie further in
+        ((0.0, 0.5), (0.9, 0.0, 0.9, 0.0), {"up": WALL_DEPTH + 0.5}),  # others do not matter
+        ((0.5, 0.5), (0.0, 0.0, 0.0, 0.5), {"across": WALL_DEPTH + 0.5, "up": WALL_DEPTH + 1.0}),
     ],
 )
 def test_an_object_is_pressed_towards_walls_that_may_be_further_than_a_square(
@@ -103,5 +103,5 @@ def test_an_object_is_pressed_towards_walls_that_may_be_further_than_a_square(
     _, node = holding()
     end = InCorner(20.0, 20.0, 1, 1)
     shape = shapely.box(16.0 - gap[0], 17.0 - gap[1], 20.0 - gap[0], 20.0 - gap[1])
-    found = _presses(end, replace(node, short=short), shape)
+    found = _wall_pushes(end, replace(node, short=short), shape)
     assert {name: push.dx + push.dy for name, push in found.items()} == pytest.approx(ways)

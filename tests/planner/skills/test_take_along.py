@@ -25,15 +25,15 @@ from planner.deciding.pursuit import Pursuer
 from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
 from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import Placement, in_view
+from planner.goals.placement import Placement, to_view_frame
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import Squares
+from planner.screen.projection import SquareIndices
 from planner.sights.frontiers import Viewpoint
 from planner.situation import Situation
 from planner.skills.take_along import VIEWPOINT_RADIUS, detour_push, escape_push, region_near, shortest_push
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of, tools_with
 
 EAST = 2
@@ -51,14 +51,14 @@ ROOM = [
 
 def holding(place: tuple[float, float] = (0.5, 0.5), stuck: int = 0) -> tuple[Situation, Node]:
     """Return the situation of a robot that holds an object to its east, and the object."""
-    model = seen_whole(ROOM)
+    model = known_model(ROOM)
     (node,) = model.objects
     west, south = node.patch.west, node.patch.south
     node = replace(node, polygon=shapely.box(west, south, west + 3, south + 2), colour="g", stuck=stuck)
     return situation_of(replace(model, objects=(node,), held=node.name, place=place), {"x": node.name}), node
 
 
-def at(situation: Situation, *squares: tuple[int, int]) -> Squares:
+def at(situation: Situation, *squares: tuple[int, int]) -> SquareIndices:
     """Return squares (x, y) of the map frame as flat indices of the view."""
     view = situation.model.view
     return np.array([(y - view.south) * view.state.shape[1] + x - view.west for x, y in squares])
@@ -85,7 +85,7 @@ def test_no_push_leads_where_the_object_would_hit_a_wall() -> None:
 class AskingExecutor:
     """A plan executor that always advises to look from some squares first."""
 
-    def __init__(self, executor: PlanExecutor, squares: Squares) -> None:
+    def __init__(self, executor: PlanExecutor, squares: SquareIndices) -> None:
         self._executor, self._squares = executor, squares
 
     def advise(self, *_: object) -> Advice:
@@ -95,7 +95,7 @@ class AskingExecutor:
         return getattr(self._executor, name)
 
 
-def asked_to_see(situation: Situation, squares: Squares, pull: bool = True) -> tuple[Transporter, Tools]:
+def asked_to_see(situation: Situation, squares: SquareIndices, pull: bool = True) -> tuple[Transporter, Tools]:
     """Return a transporter, and tools whose executor wants to see something from some squares before it goes on."""
     executor = AskingExecutor(PlanExecutor(pull), squares)
     return Transporter(), tools_with(cast(PlanExecutor, executor))
@@ -123,7 +123,9 @@ def test_an_object_that_did_not_move_or_may_not_be_pulled_is_released_before_a_l
     assert command_to_see(transporter, situation, tools) == Release()
 
 
-def exploring(situation: Situation, squares: Squares, viewpoints: bool, pursuer: Pursuer | None = None) -> Decision:
+def exploring(
+    situation: Situation, squares: SquareIndices, viewpoints: bool, pursuer: Pursuer | None = None
+) -> Decision:
     """Return what is decided while it is not known where an object must end, and some squares are worth a look.
 
     viewpoints : whether the robot must look from just these squares; else from anywhere.
@@ -185,7 +187,7 @@ def in_a_nook(rows: list[str]) -> tuple[Situation, Node]:
     outline = shapely.union_all([shapely.box(-2, 0, 0, 1), shapely.box(-2, -1, 1, 0)])
     patch = Patch(-2, -1, np.array([[1, 1, 1], [1, 1, 0]], np.bool_))
     node = Node("o1", "object", 100, "", patch, 0, polygon=outline, colour="g")
-    return situation_of(replace(seen_whole(rows), objects=(node,), held="o1"), {"x": "o1"}), node
+    return situation_of(replace(known_model(rows), objects=(node,), held="o1"), {"x": "o1"}), node
 
 
 NOOK = ["b" * 16, "b.............Ub", "b..............b"]
@@ -257,7 +259,7 @@ def surely_free(situation: Situation, node: Node) -> Workspace:
 def test_a_detour_is_two_pushes_that_are_free(x: int, y: int, dx: int, dy: int) -> None:
     situation, node = holding()
     push = detour_push(node, at(situation, (x, y)), (float(dx), float(dy)), situation)
-    yard, shape = surely_free(situation, node), in_view(node.polygon, situation)
+    yard, shape = surely_free(situation, node), to_view_frame(node.polygon, situation)
     here = 0.5 - situation.model.view.west, 0.5 - situation.model.view.south
     there = Translate(float(x), float(y))
     on = Translate(float(dx - x), float(dy - y))

@@ -15,7 +15,7 @@ from kb.mapping.patch import patch_of_polygon
 from kb.world.model import Node, WorldModel
 from planner.skills.failed_grasps import MAX_RETRIES, FailedGrasps
 from planner.skills.unjam import RETREAT, ROOM_AHEAD, ROOM_TO_SPARE, retreat_push
-from tests.kb.drawings import seen_whole
+from tests.kb.drawings import known_model
 
 DOOR = ["b" * 24, *["b" + "." * 22 + "b"] * 8, "b" * 9 + "." * 6 + "b" * 9]
 DOOR += [
@@ -31,7 +31,7 @@ NORTH = Translate(0.0, 6.0)
 
 def before_the_door(x: float, wide: float, inexact: bool = True) -> tuple[Node, WorldModel]:
     """Return an object, `wide` squares wide, that stands right below the wall with the door, its west side at x."""
-    model = seen_whole(DOOR)
+    model = known_model(DOOR)
     sill = min(row for row in range(1, 12) if model.view.state[model.view.locate(0, row)] == FULL)
     polygon = shapely.box(x, sill - 4.0, x + wide, sill)
     node = Node("o1", "object", 95, "part1", patch_of_polygon(polygon), 0, polygon=polygon, moved=True, inexact=inexact)
