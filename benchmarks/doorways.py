@@ -19,15 +19,14 @@ from numpy.typing import NDArray
 from shapely.affinity import rotate
 
 from geometry import Passage, Screen
+from geometry.kernels.arrays import Bools, Labels
 
-Mask = NDArray[np.bool_]
-Labels = NDArray[np.int32]
 Outline = tuple[object, ...]
 MAX_FLOOR_SIDE = 26  # squares (a convention)
 CUT_HALF_WIDTH = 1e-6  # squares: of a cut in shapely (a convention)
 
 
-def random_floor(rng: np.random.Generator) -> Mask:
+def random_floor(rng: np.random.Generator) -> Bools:
     """Return a random floor (rows, columns) with at least one free square: clutter, or rooms, some of them oblique."""
     make = (_cluttered, _walled, _slanted, _with_corridors)[int(rng.integers(4))]
     free = make(rng)
@@ -35,13 +34,13 @@ def random_floor(rng: np.random.Generator) -> Mask:
     return free
 
 
-def _cluttered(rng: np.random.Generator) -> Mask:
+def _cluttered(rng: np.random.Generator) -> Bools:
     """Return a floor with single squares blocked at random."""
-    free: Mask = rng.random(rng.integers(1, 16, size=2)) >= rng.choice([0.0, 0.08, 0.25, 0.4])
+    free: Bools = rng.random(rng.integers(1, 16, size=2)) >= rng.choice([0.0, 0.08, 0.25, 0.4])
     return free
 
 
-def _walled(rng: np.random.Generator) -> Mask:
+def _walled(rng: np.random.Generator) -> Bools:
     """Return a floor with walls across, each with doors anywhere: in the middle or flush with another wall."""
     free = np.ones(rng.integers(6, MAX_FLOOR_SIDE, size=2), np.bool_)
     for _ in range(int(rng.integers(1, 4))):
@@ -56,7 +55,7 @@ def _walled(rng: np.random.Generator) -> Mask:
     return free & (rng.random(free.shape) >= rng.choice([0.0, 0.0, 0.02]))
 
 
-def _slanted(rng: np.random.Generator) -> Mask:
+def _slanted(rng: np.random.Generator) -> Bools:
     """Return two rooms with a door between, turned by any angle; squares that walls touch are blocked."""
     high, wide = (float(v) for v in rng.uniform(5, 11, size=2))
     left, gap = float(rng.uniform(4, 9)), float(rng.uniform(0.6, 3.5))
@@ -67,11 +66,11 @@ def _slanted(rng: np.random.Generator) -> Mask:
     floor = rotate(floor, float(rng.uniform(0, 90)), origin=(0, 0))
     x0, y0, x1, y1 = floor.bounds
     columns, rows = np.meshgrid(np.arange(np.floor(x0), np.ceil(x1)), np.arange(np.floor(y0), np.ceil(y1)))
-    free: Mask = shapely.covers(floor, shapely.box(columns, rows, columns + 1, rows + 1))
+    free: Bools = shapely.covers(floor, shapely.box(columns, rows, columns + 1, rows + 1))
     return free
 
 
-def _with_corridors(rng: np.random.Generator) -> Mask:
+def _with_corridors(rng: np.random.Generator) -> Bools:
     """Return rooms joined by corridors with a bend."""
     free = np.zeros(rng.integers(10, MAX_FLOOR_SIDE, size=2), np.bool_)
     high, wide = free.shape
@@ -88,7 +87,7 @@ def _with_corridors(rng: np.random.Generator) -> Mask:
     return free
 
 
-def disagreements(free: Mask) -> list[str]:
+def disagreements(free: Bools) -> list[str]:
     """Return what is wrong with the passages of a floor, each as a sentence."""
     passages = Screen(free).passages()
     labels = Screen(free).parts(passages)
@@ -145,7 +144,7 @@ def _same_parts(one: NDArray[np.generic], other: NDArray[np.generic]) -> bool:
     return len(pairs) == len({a for a, _ in pairs}) == len({b for _, b in pairs}) and (0, 0) in pairs | {(0, 0)}
 
 
-def _badly_cut(free: Mask, passages: list[Passage], labels: Labels) -> Iterator[str]:
+def _badly_cut(free: Bools, passages: list[Passage], labels: Labels) -> Iterator[str]:
     """Yield what is wrong with the cuts along passages, compared with an exact cut of the floor as a polygon."""
     rows, columns = np.nonzero(free)
     floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))

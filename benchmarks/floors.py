@@ -23,7 +23,7 @@ from geometry.kernels.arrays import XY, Bools
 from geometry.pathfinders.visibility_graph import visibility_path
 
 HALF_DIAGONAL = 0.7075  # squares: of a square, and what the polygons that stand for circles lack (derived)
-LENGTH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)
+PATH_TOLERANCE = 1e-9  # squares by which lengths may differ because of rounding (a convention)
 BODY_RADII = [0.3, 0.5, 0.55, 0.6, 0.7071, 0.75, 1.0, 1.2, 1.5, 1.55, 1.5811, 2.0, 2.52, 2.5495, 3.0]
 
 
@@ -126,10 +126,7 @@ def words(case: Case) -> Iterator[str]:
         if case.screen.tighten(route).signature != route.signature:
             yield "a route that is tightened has another signature"
         (named,) = case.screen.routes(case.start, case.goal, word=route.signature)
-        if (
-            abs(named.length - route.length) > LENGTH_TOLERANCE
-            or abs(named.clearance - route.clearance) > LENGTH_TOLERANCE
-        ):
+        if abs(named.length - route.length) > PATH_TOLERANCE or abs(named.clearance - route.clearance) > PATH_TOLERANCE:
             yield f"the route of a signature is {named.length} long, clearance {named.clearance}, not as the route"
     signatures = [route.signature for route in routes]
     walk = case.walk()
@@ -154,17 +151,17 @@ def shortest(case: Case) -> Iterator[str]:
     """Yield faults of shortest routes: exact lengths, first in order, in free space, with a clearance."""
     least = float(case.exact.distances(case.start, [case.goal])[0])
     best = case.screen.shortest(case.start, case.goal)
-    if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > LENGTH_TOLERANCE):
+    if (least == np.inf) != (best is None) or (best is not None and abs(best.length - least) > PATH_TOLERANCE):
         yield f"shortest says {best and best.length}, not {least}"
     seen = visibility_path(case.free, case.start, case.goal)
     long = np.inf if seen is None else float(np.hypot(*np.diff(seen, axis=0).T).sum())
-    if abs(long - least) > LENGTH_TOLERANCE and long != least:
+    if abs(long - least) > PATH_TOLERANCE and long != least:
         yield f"the visibility graph says {long}, not {least}"
     for k in (1, 2, 3, 5):
         routes = case.screen.routes(case.start, case.goal, k=k)
         if bool(routes) != (least < np.inf):
             yield f"k = {k}: {len(routes)} routes"
-        if routes and k > 1 and abs(routes[0].length - least) > LENGTH_TOLERANCE:
+        if routes and k > 1 and abs(routes[0].length - least) > PATH_TOLERANCE:
             yield f"k = {k}: the first is {routes[0].length} long, not {least}"
         for route in routes:
             yield from faults(case, route, case.start, case.goal)
@@ -176,7 +173,7 @@ def faults(case: Case, route: Route, start: XY, goal: XY) -> Iterator[str]:
         yield f"a route leaves free space: {route.points.tolist()}"
     if tuple(route.points[0]) != start or tuple(route.points[-1]) != goal:
         yield "a route has other ends"
-    if abs(route.length - float(np.hypot(*np.diff(route.points, axis=0).T).sum())) > LENGTH_TOLERANCE:
+    if abs(route.length - float(np.hypot(*np.diff(route.points, axis=0).T).sum())) > PATH_TOLERANCE:
         yield "a route's length is not that of its points"
     if not 0.0 < route.clearance < np.inf:
         yield f"a route's clearance is {route.clearance}"
@@ -192,7 +189,7 @@ def sets(case: Case) -> Iterator[str]:
     least = float(case.exact.distances(case.start, centres).min(initial=np.inf)) if centres else np.inf
     for k in (1, 3):
         routes = case.screen.routes(case.start, goal, k=k)
-        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > LENGTH_TOLERANCE):
+        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > PATH_TOLERANCE):
             yield f"k = {k}: the nearest of a set is {routes and routes[0].length} away, not {least}"
         for route in routes:
             end = (float(route.points[-1][0]), float(route.points[-1][1]))
@@ -237,12 +234,9 @@ def bodies(case: Case) -> Iterator[str]:
         yield f"radius {radius}: routes only from points off the centres"
     for route in [*routes, *off_centre]:
         line = shapely.LineString(route.points) if len(route.points) > 1 else shapely.Point(route.points[0])
-        if (
-            line.distance(walls) < radius - LENGTH_TOLERANCE
-            or not radius - LENGTH_TOLERANCE <= route.clearance < np.inf
-        ):
+        if line.distance(walls) < radius - PATH_TOLERANCE or not radius - PATH_TOLERANCE <= route.clearance < np.inf:
             yield f"radius {radius}: a route comes as near as {line.distance(walls)}, clearance {route.clearance}"
-        if abs(route.length - line.length) > LENGTH_TOLERANCE:
+        if abs(route.length - line.length) > PATH_TOLERANCE:
             yield f"radius {radius}: a route's length is not that of its points"
     for point in (case.start, start):
         for route in case.screen.routes(point, point, k=1, radius=radius):
@@ -298,7 +292,7 @@ def images(case: Case) -> Iterator[str]:
     expected = answers(case.screen, start, end, goal, radius)
     for image, place in ((np.fliplr, mirrored), (lambda a: np.fliplr(a.T), turned)):
         again = answers(Screen(image(case.free)), place(*start), place(*end), image(goal), radius)
-        if not np.allclose(expected, again, rtol=0, atol=LENGTH_TOLERANCE):
+        if not np.allclose(expected, again, rtol=0, atol=PATH_TOLERANCE):
             yield f"{expected} on the floor and {again} on its image"
 
 
@@ -321,11 +315,11 @@ def chains(case: Case) -> Iterator[str]:
     for _, _, edge in case.screen.pathgraph.edges(data=True):
         points = edge["points"]
         long = float(np.hypot(*np.diff(points, axis=0).T).sum())
-        if abs(edge["length"] - long) > LENGTH_TOLERANCE:
+        if abs(edge["length"] - long) > PATH_TOLERANCE:
             yield f"an edge has length {edge['length']}, its points {long}"
         if not case.exact.is_free(points):
             yield "an edge leaves free space"
-        if case.screen.tighten(Route(points, 0.0, 0.0, (), ())).length > edge["length"] + LENGTH_TOLERANCE:
+        if case.screen.tighten(Route(points, 0.0, 0.0, (), ())).length > edge["length"] + PATH_TOLERANCE:
             yield "an edge is shorter than the shortest way of its class"
         lowest = min(case.screen.clearance[int(y), int(x)] for x, y in points)
         if edge["clearance"] != lowest:

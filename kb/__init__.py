@@ -1,4 +1,4 @@
-"""What the robot knows: perception, localisation, the map, the world model and the task. Imports geometry alone.
+"""The knowledge of the robot: perception, localisation, the map, the world model and the task. Imports geometry alone.
 
 Modules and rooms in reading order:
 

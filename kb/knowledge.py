@@ -1,4 +1,4 @@
-"""What the robot knows, kept up to date: the pipeline from one impression to the next world model, on one page.
+"""The knowledge of the robot, kept up to date: the pipeline from one impression to the next world model, on one page.
 
     impression ->  localisation   what happened: the frame, the robot's place, objects in hand (kb.localisation)
                ->  mapping        counts solved, completions drawn: the map view (kb.mapping)

@@ -1,4 +1,4 @@
-"""What the geometry engine is measured against: exact answers by brute force, and other libraries.
+"""References for measuring the geometry engine: exact answers by brute force, and other libraries.
 
 In reading order:
 

@@ -20,7 +20,7 @@ from benchmarks.worlds.furniture import OUTLINE_SHAPES
 SETTLED_FULL = 1  # the state of kb.mapping.occupancy of a square that is certainly occupied
 FOVEA_HALF_WIDTH = 4  # squares from the robot to the edge of its fovea
 LINE_TOLERANCE = 1e-5  # squares from a line between two squares to a point that is on it
-MIN_OVERLAP = 0.1  # the least common part of union for a believed object to be the true one
+MIN_SHARED_PART = 0.1  # the least common part of union for a believed object to be the true one
 
 
 class SeenBeliefs(NamedTuple):
@@ -170,7 +170,7 @@ def compare(
 
 def _match(held: SeenBeliefs, polygon: Polygon) -> str:
     """Return the class of the believed object that covers the true one best; "nothing" where none does."""
-    best, name = MIN_OVERLAP, "nothing"
+    best, name = MIN_SHARED_PART, "nothing"
     for kind, shape in held.objects:
         common = shape.intersection(polygon).area
         part = common / (shape.area + polygon.area - common)

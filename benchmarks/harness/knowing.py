@@ -16,7 +16,7 @@ from kb.body import Body, Impression
 from kb.knowledge import Knowledge
 from kb.localisation.hypotheses.explanation import Accommodation
 from kb.localisation.hypotheses.frames import FrameHypothesis
-from kb.mapping.occupancy import FREE, FULL
+from kb.mapping.occupancy import FREE, OCCUPIED
 from kb.perception.frame import Frame, turned
 from kb.task.task import Task
 from kb.world.model import WorldModel
@@ -63,7 +63,7 @@ class Informed(Knowledge):
         for corner in (squares.min(0), squares.max(0)):
             occupancy.make_room(*corner.tolist())
         where = squares[:, 1] - occupancy.south, squares[:, 0] - occupancy.west
-        occupancy.state[where] = np.where(occupied.ravel(), FULL, FREE)
+        occupancy.state[where] = np.where(occupied.ravel(), OCCUPIED, FREE)
         occupancy.seen[where], occupancy.settled_by[where] = True, 0
 
 

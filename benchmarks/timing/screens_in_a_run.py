@@ -1,4 +1,4 @@
-"""How many screens a run makes, what they cost, and what changing the one before instead would save.
+"""Count the screens that a run makes, what they cost, and what changing the one before instead would save.
 
     python -m benchmarks.timing.screens_in_a_run [SCENARIO ...] [--steps N] [--seed N]
 

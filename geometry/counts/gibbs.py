@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.settle import FREE, FULL
+from geometry.counts.settle import FREE, OCCUPIED
 from geometry.kernels.jit import bare
 
-# Values of the ground, besides FREE and FULL, which settle.py fixes for the squares that counts settle.
+# Values of the ground, besides FREE and OCCUPIED, which settle.py fixes for the squares that counts settle.
 DRAWN = 2  # a square whose state is drawn
 UNSEEN_SQUARE = 3  # a square that is no part of the raster; drawn as 0
 
@@ -45,7 +45,7 @@ LEHMER_MULTIPLIER, LEHMER_MODULUS = 48271, 2147483647  # of the random numbers; 
 THRESHOLD_COUNT = 1024  # random thresholds, a power of two; convention
 RANK_FIXED, RANK_UNSEEN = -1, -2  # in `_Raster.rank`: squares that are not drawn
 Bits = NDArray[np.integer[Any]]
-__all__ = ["FREE", "FULL"]
+__all__ = ["FREE", "OCCUPIED"]
 
 
 class Counts(NamedTuple):
@@ -102,7 +102,8 @@ def pictures(
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, FULL, DRAWN (to be sampled) or UNSEEN_SQUARE (outside the raster, drawn as 0).
+    ground : (rows, columns) int8: FREE, OCCUPIED, DRAWN (to be sampled) or UNSEEN_SQUARE (outside the raster,
+    drawn as 0).
     counts : counts under fields, of squares of the ground.
     first : (m, rows, columns) int8, the rasters with which the m samples begin.
     sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
@@ -111,7 +112,9 @@ def pictures(
     """
     framed = np.pad(ground, 1, constant_values=UNSEEN_SQUARE)
     raster = _raster(framed, counts)
-    images_framed = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == FULL).astype(np.int8)
+    images_framed = np.where(framed == DRAWN, np.pad(first, ((0, 0), (1, 1), (1, 1))), framed == OCCUPIED).astype(
+        np.int8
+    )
     images = images_framed.reshape(len(first), -1)
     count = np.ascontiguousarray((images[:, raster.where] * counts.weight).sum(2, dtype=np.int32))
     neighbours = np.zeros((len(first), len(raster.squares)), np.int32)

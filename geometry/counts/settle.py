@@ -1,6 +1,6 @@
 """Squares that counts of overlapping fields settle: those that must be occupied, and those that cannot be.
 
-These are kernels over the arrays of kb.mapping.occupancy. `state` (squares,) int8 is OPEN, FREE or FULL, and
+These are kernels over the arrays of kb.mapping.occupancy. `state` (squares,) int8 is OPEN, FREE or OCCUPIED, and
 `settled_by` (squares,) int16 is the number of the impression that settled a square; both are flat. A field is a row of
 `where` (n, m) int32, flat squares, each of them once, with its `weight` (n, m) int16, 0 for padding, and the least and
 the greatest count, `low` and `high` (n,) int16. `fresh` (n,) bool marks the fields that are not yet compared with all
@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Ints, Longs
 from geometry.kernels.jit import compiled
 
-OPEN, FREE, FULL = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
+OPEN, FREE, OCCUPIED = -1, 0, 1  # states of a square: not settled, settled as free, settled as occupied
 MAX_ROUNDS = 20  # rounds of both rules; convention, a bound on time
 
-States = NDArray[np.int8]
+SquareStates = NDArray[np.int8]
 Numbers = NDArray[np.int16]
 
 
 @compiled
 def remaining_counts(
-    state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers
+    state: SquareStates, where: Ints, weight: Numbers, low: Numbers, high: Numbers
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.
 
@@ -51,7 +51,7 @@ def remaining_counts(
                 if at == OPEN:
                     open_[i, k] = True
                     left[0, i] += weight[i, k]
-                elif at == FULL:
+                elif at == OCCUPIED:
                     occupied += weight[i, k]
         left[1, i] = max(low[i] - occupied, 0)
         left[2, i] = min(high[i] - occupied, left[0, i])
@@ -59,7 +59,9 @@ def remaining_counts(
 
 
 @compiled
-def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Numbers, wrong: NDArray[np.bool_]) -> int:
+def misfits(
+    state: SquareStates, where: Ints, weight: Numbers, low: Numbers, high: Numbers, wrong: NDArray[np.bool_]
+) -> int:
     """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`.
 
     Parameters
@@ -72,7 +74,7 @@ def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Num
         occupied, possible = 0, 0
         for k in range(where.shape[1]):
             at = state[where[i, k]]
-            if at == FULL:
+            if at == OCCUPIED:
                 occupied += weight[i, k]
             elif at == OPEN:
                 possible += weight[i, k]
@@ -83,7 +85,7 @@ def misfits(state: States, where: Ints, weight: Numbers, low: Numbers, high: Num
 
 @compiled
 def settle(
-    state: States,
+    state: SquareStates,
     settled_by: Numbers,
     where: Ints,
     weight: Numbers,
@@ -120,13 +122,13 @@ def settle(
 
 @compiled
 def _settle_by_single_fields(
-    state: States,
+    state: SquareStates,
     settled_by: Numbers,
     where: Ints,
     weight: Numbers,
     low: Numbers,
     high: Numbers,
-    verdicts: States,
+    verdicts: SquareStates,
     newly_settled: NDArray[np.bool_],
     impression: int,
 ) -> bool:
@@ -142,7 +144,7 @@ def _settle_by_single_fields(
         occupied, open_weight = 0, 0
         for k in range(entries):
             at = state[where[i, k]]
-            if at == FULL:
+            if at == OCCUPIED:
                 occupied += weight[i, k]
             elif at == OPEN:
                 open_weight += weight[i, k]
@@ -153,12 +155,12 @@ def _settle_by_single_fields(
                 if weight[i, k] > high_left:
                     verdict = FREE
                 elif weight[i, k] > open_weight - low_left:
-                    verdict = FULL
+                    verdict = OCCUPIED
                 found = found or verdict != OPEN
             verdicts[i * entries + k] = verdict
     if not found:
         return False
-    for value in (FREE, FULL):  # if two fields contradict each other, the one that needs the square wins
+    for value in (FREE, OCCUPIED):  # if two fields contradict each other, the one that needs the square wins
         for i in range(fields):
             for k in range(entries):
                 if verdicts[i * entries + k] == value:
@@ -170,7 +172,7 @@ def _settle_by_single_fields(
 
 @compiled
 def _settle_by_pairs(
-    state: States,
+    state: SquareStates,
     settled_by: Numbers,
     where: Ints,
     weight: Numbers,
@@ -196,7 +198,7 @@ def _settle_by_pairs(
         occupied, heaviest = 0, 0
         for k in range(entries):
             at = state[where[i, k]]
-            if at == FULL:
+            if at == OCCUPIED:
                 occupied += weight[i, k]
             elif at == OPEN and weight[i, k] > 0:
                 open_weight[i] += weight[i, k]
@@ -253,7 +255,7 @@ def _settle_by_pairs(
         return False
     for square in range(len(state)):
         if free[square] or filled[square]:
-            state[square] = FREE if free[square] else FULL
+            state[square] = FREE if free[square] else OCCUPIED
             settled_by[square] = impression
             newly_settled[square] = True
     return True
@@ -261,7 +263,7 @@ def _settle_by_pairs(
 
 @compiled
 def _fields_by_square(
-    state: States, where: Ints, weight: Numbers, open_weight: Longs, chosen: NDArray[np.bool_], entries: int
+    state: SquareStates, where: Ints, weight: Numbers, open_weight: Longs, chosen: NDArray[np.bool_], entries: int
 ) -> tuple[Longs, Longs]:
     """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]]."""
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)

@@ -6,6 +6,7 @@ Modules in reading order:
     solver            one planning problem: rounds of search until an answer
     rounds            one round: find a channel, follow it, split what is to blame
     cell_tree         subdivision of the configuration space into cells
+    search_tree       the paths of a search, of which a part is cut off quickly
     channel           search for a chain of cells from the start to the goal
     refine            follow a channel hop by hop, split cells where a hop fails
     local_planner     one hop between two poses, certified by exact first contact

@@ -9,12 +9,11 @@ import shapely
 from geometry.cspace.fewest_motions import resample_evenly
 from geometry.kernels.arrays import XY, Floats
 from geometry.manipulation.query import ManipulationQuery
-from geometry.raster.geodesic import reach
+from geometry.raster.geodesic import FIFTHS_PER_SQUARE, reach
 from geometry.raster.rasterize import squares
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_TRACK_SAMPLES = 60  # poses of a track that are looked at; convention, for time
-FIFTHS_PER_SQUARE = 5  # derived: the unit of distances in geometry.raster.geodesic is a fifth of a square
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from geometry.raster.rasterize import covered_areas
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_STOPS = 40  # stops of a push that are tried as its corners, besides those where it turns; convention, for time
-COMMAND_DIGITS = 9  # decimal digits of the numbers in commands; convention
+LEG_DECIMALS = 9  # decimal digits of the numbers in commands; convention
 WALK_SQUARES_PER_COMMAND = 12  # squares; estimate, as the cost of walking on the state lattice has it
 
 
@@ -70,8 +70,8 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
 def round_motion(motion: Motion) -> Motion:
     """Return a motion with its numbers rounded as they will be commanded."""
     if isinstance(motion, Translate):
-        return Translate(round(motion.dx, COMMAND_DIGITS) + 0.0, round(motion.dy, COMMAND_DIGITS) + 0.0)
-    return Rotate(round(motion.degrees, COMMAND_DIGITS) + 0.0, motion.about)
+        return Translate(round(motion.dx, LEG_DECIMALS) + 0.0, round(motion.dy, LEG_DECIMALS) + 0.0)
+    return Rotate(round(motion.degrees, LEG_DECIMALS) + 0.0, motion.about)
 
 
 def commands(legs: Sequence[Leg]) -> int:

@@ -33,7 +33,7 @@ from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import require_bounded, valid_polygons
 
-MIN_CORNER_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
+MIN_WALLS_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
 # Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.RING.
 MAX_TURN_COST = 2.5
 __all__ = ["At", "Between", "CarryingPlan", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
@@ -225,7 +225,7 @@ def _check_goal(goal: End) -> None:
             raise ValueError("within must be the lesser and the greater distance in this order")
     elif isinstance(goal, Between):
         require_bounded([goal.x, goal.y, goal.slack, *goal.walls[0], *goal.walls[1]], "the goal")
-        if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < MIN_CORNER_SINE:
+        if goal.slack < 0.0 or abs(float(np.linalg.det(np.array(goal.walls)))) < MIN_WALLS_SINE:
             raise ValueError("two walls must meet at an angle, and the slack must not be negative")
     elif not isinstance(goal, Inside | Roomy):
         raise ValueError(f"the goal must be At, Inside, InCorner or Between, not {goal!r}")

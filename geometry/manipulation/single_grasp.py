@@ -43,7 +43,7 @@ FEW_MOTIONS = 9  # a leg with at most so many motions ends the search
 SUFFICIENT_LEGS = 3  # so many legs end the search; the best of them is taken
 MAX_CELLS_PER_GRASP = 12_000  # cells of configuration space
 MIN_CELLS_PER_GRASP = 1_000
-MAX_CELLS = 40_000  # for all grasps together
+MAX_GRASP_CELLS = 40_000  # for all grasps together
 MAX_FLUSH_TURNS = 5  # rotations that lay a body along a wall
 
 CORNER_GAP = 0.1  # squares; convention: the gap at which a body is put before the walls of a corner
@@ -58,7 +58,7 @@ def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | 
         empty.
     """
     candidates = sorted(grasp_candidates(query), key=lambda candidate: grasp_rank(query, candidate, track))[:MAX_GRASPS]
-    left, legs = MAX_CELLS, list[Leg]()
+    left, legs = MAX_GRASP_CELLS, list[Leg]()
     for candidate in candidates:
         for goal, with_margin in product(goal_poses(query), (True, False)):
             leg, cells = _leg(

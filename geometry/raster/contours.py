@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Corner = tuple[int, int]  # (x, y) of a corner of squares, in grid units; also a unit step between two of them
-Ring = tuple[Corner, ...]  # a closed polyline, its first corner not repeated
+GridCorner = tuple[int, int]  # (x, y) of a corner of squares, in grid units; also a unit step between two of them
+Ring = tuple[GridCorner, ...]  # a closed polyline, its first corner not repeated
 
 
 def outline(mask: NDArray[np.bool_]) -> list[Ring]:
@@ -31,7 +31,7 @@ def outline(mask: NDArray[np.bool_]) -> list[Ring]:
     )
 
 
-def _pop_ring(start: Corner, outgoing: dict[Corner, list[Corner]]) -> list[Corner]:
+def _pop_ring(start: GridCorner, outgoing: dict[GridCorner, list[GridCorner]]) -> list[GridCorner]:
     """Follow the boundary from a corner until it closes, removing its edges from `outgoing`; return the corners."""
     ring, here, direction = [start], start, min(outgoing[start])
     while True:
@@ -45,7 +45,7 @@ def _pop_ring(start: Corner, outgoing: dict[Corner, list[Corner]]) -> list[Corne
         direction = turn
 
 
-def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
+def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[GridCorner, list[GridCorner]]:
     """Return for each corner the directions of the boundary edges that leave it, with the region on their left."""
     framed = np.pad(mask, 1)
     inner = framed[1:-1, 1:-1]
@@ -55,7 +55,7 @@ def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
         (inner & ~framed[2:, 1:-1], (1, 1), (-1, 0)),
         (inner & ~framed[1:-1, :-2], (0, 1), (0, -1)),
     )
-    outgoing: dict[Corner, list[Corner]] = {}
+    outgoing: dict[GridCorner, list[GridCorner]] = {}
     for boundary, (dx, dy), direction in sides:
         rows, columns = np.nonzero(boundary)
         for x, y in zip((columns + dx).tolist(), (rows + dy).tolist(), strict=True):
@@ -63,7 +63,7 @@ def _outgoing_edges(mask: NDArray[np.bool_]) -> dict[Corner, list[Corner]]:
     return outgoing
 
 
-def _leftmost(direction: Corner, choices: list[Corner]) -> Corner | None:
+def _leftmost(direction: GridCorner, choices: list[GridCorner]) -> GridCorner | None:
     """Return the one of `choices` that turns furthest to the left, which stays with the same square; None if empty."""
     dx, dy = direction
     for turn in ((-dy, dx), (dx, dy), (dy, -dx)):
@@ -72,7 +72,7 @@ def _leftmost(direction: Corner, choices: list[Corner]) -> Corner | None:
     return None
 
 
-def _normalise(ring: list[Corner]) -> Ring:
+def _normalise(ring: list[GridCorner]) -> Ring:
     """Return the ring without corners on straight stretches, rotated to begin at its least corner."""
     count = len(ring)
     kept = [

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from geometry.kernels.jit import compiled
 
 GEODESIC_UNREACHED = -1  # the distance of a square that no path leads to
-GEODESIC_STEP, GEODESIC_DIAGONAL = 5, 7  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
+FIFTHS_PER_SQUARE = 5  # the unit of the distances is a fifth of a square
+GEODESIC_STEP, GEODESIC_DIAGONAL = (
+    FIFTHS_PER_SQUARE,
+    7,
+)  # fifths of squares: lengths of steps; 7 / 5 is within 1.1 % of sqrt(2)
 
 
 def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:

@@ -13,7 +13,7 @@ from geometry.kernels.jit import bare
 
 Eights = NDArray[np.int64]
 """(words,) states of eight cells each, the first in the lowest byte; bytes beyond the last cell are 0."""
-Flags = NDArray[np.uint8]
+ByteFlags = NDArray[np.uint8]
 
 LOWEST_BITS = 0x0101010101010101  # of each byte
 EVEN_BYTES, EVEN_PAIRS, LOWER_HALF = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xFFFFFFFF  # masks for sums of bytes
@@ -46,7 +46,7 @@ def sum_of_bytes(word: int) -> int:
 
 
 @bare
-def count_nodes(words: Eights, base: Ints, since: Flags) -> tuple[int, int, int]:
+def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, int]:
     """Return the numbers of nodes, of chain ends at nodes, and of links of the whole skeleton.
 
     Fills ``base`` with the number of nodes before each group of sixteen words, and ``since`` with the number of nodes
@@ -85,7 +85,7 @@ def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> 
 
 
 @bare
-def node_number(cell: int, words: Eights, base: Ints, since: Flags) -> int:
+def node_number(cell: int, words: Eights, base: Ints, since: ByteFlags) -> int:
     """Return the number of nodes before a cell, from ``base`` and ``since`` as ``count_nodes`` filled them."""
     k = cell >> 3
     before = node_marks(words[k], degrees(words[k])) & (1 << 8 * (cell & 7)) - 1

@@ -18,7 +18,7 @@ import shapely
 WKT_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")  # a decimal number
 WKT_WORD = re.compile(r"[(),]|[^\s(),]+")  # a mark, or characters up to the next mark or blank
 WKT_KINDS = ("POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # the kinds of shapes that are read
-MAX_COORDINATE = 1e6  # squares; no coordinate has a greater absolute value (a convention)
+MAX_WKT_COORDINATE = 1e6  # squares; no coordinate has a greater absolute value (a convention)
 
 _Point = tuple[float, float]
 _Ring = list[_Point]
@@ -137,8 +137,8 @@ class _Reader:
         if not WKT_NUMBER.fullmatch(token.text):
             raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
         value = float(token.text)
-        if not abs(value) <= MAX_COORDINATE:
-            raise WktError(token.at, f"a coordinate beyond {MAX_COORDINATE:.0f} squares")
+        if not abs(value) <= MAX_WKT_COORDINATE:
+            raise WktError(token.at, f"a coordinate beyond {MAX_WKT_COORDINATE:.0f} squares")
         return value
 
     def point(self) -> _Point:

@@ -33,7 +33,7 @@ from kb.localisation.hypotheses.what_if import command_motion
 from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
-from kb.mapping.occupancy import FREE, FULL, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
 from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
 from kb.perception.retina import count_ranges
 
@@ -298,5 +298,5 @@ def _standing_place(state: TrackerState, place: Position) -> Position:
     """
     sides, occupancy = [place, *observation_places(place)], state.occupancy
     squares = [(math.floor(x), math.floor(y)) for x, y in sides]
-    free = (occupancy.state[occupancy.index(*s)] != FULL and s not in state.blocked_squares for s in squares)
+    free = (occupancy.state[occupancy.index(*s)] != OCCUPIED and s not in state.blocked_squares for s in squares)
     return snap_to_middle(next((side for side, can_stand in zip(sides, free, strict=True) if can_stand), place))

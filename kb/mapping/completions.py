@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.counts.gibbs import DRAWN, FREE, FULL, UNSEEN_SQUARE, Counts, costs, pictures
+from geometry.counts.gibbs import DRAWN, FREE, OCCUPIED, UNSEEN_SQUARE, Counts, costs, pictures
 from geometry.kernels.arrays import Bools, Floats, Labels, Longs
 from geometry.raster.components import Components, bounding_boxes, components
 from kb.mapping.occupancy import OPEN, MapView
@@ -41,7 +41,8 @@ class CompletionTask(NamedTuple):
     rows, columns : slice
         Where it lies on the arrays of the map view.
     ground : (h, w) int8
-        What is given of each square: FREE, FULL, DRAWN (to be drawn) or UNSEEN_SQUARE (also: squares of other scenes).
+        What is given of each square: FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE (also: squares of other
+        scenes).
     first : (h, w) int8
         Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not.
     counts : Counts
@@ -68,7 +69,7 @@ class Completions(NamedTuple):
     west, south : int
         The square at [0, 0], map frame.
     ground : (rows, columns) int8
-        What was given of each square: FREE, FULL, DRAWN or UNSEEN_SQUARE.
+        What was given of each square: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
     images : (MAX_COMPLETIONS, rows, columns) int8
         The completions: 1 where a square is occupied.
     scenes : mapping
@@ -121,11 +122,11 @@ def given_squares(view: MapView) -> OccupancyImage:
     Returns
     -------
     (rows, columns) int8
-        FREE, FULL, DRAWN (to be drawn) or UNSEEN_SQUARE.
+        FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE.
     """
     ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN_SQUARE).astype(np.int8)
     drawn = ground == DRAWN
-    ground[drawn & _interior(view.probability > INTERIOR_PROBABILITY, INTERIOR_DEPTH)] = FULL
+    ground[drawn & _interior(view.probability > INTERIOR_PROBABILITY, INTERIOR_DEPTH)] = OCCUPIED
     ground[drawn & _interior(~view.seen | (view.probability <= STRAY_COUNT), INTERIOR_DEPTH)] = FREE
     return ground
 
@@ -142,7 +143,7 @@ def draw_completions(view: MapView, ground: OccupancyImage, before: Completions)
     before : Completions
         Those of the impression before, in the same frame; scenes of which nothing new is known are taken from them.
     """
-    images = np.repeat((ground == FULL).astype(np.int8)[None], MAX_COMPLETIONS, axis=0)
+    images = np.repeat((ground == OCCUPIED).astype(np.int8)[None], MAX_COMPLETIONS, axis=0)
     drawn = {}
     for scene in scenes(view, ground):
         key = scene.told(view)
@@ -207,7 +208,7 @@ def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
     """Return what the fields that cover squares to be drawn say of these squares alone."""
     under = ground.ravel()[counts.where]
     weight = np.where(under == DRAWN, counts.weight, np.int16(0))
-    full = np.where(under == FULL, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
+    full = np.where(under == OCCUPIED, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
     left = counts._replace(weight=weight, low=counts.low - full, high=counts.high - full)
     return left.of(np.flatnonzero(weight.any(1)))
 

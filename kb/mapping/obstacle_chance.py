@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Floats, Square
 from kb.mapping.completions import Completions
-from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
 
 ERROR_PROBABILITY = 0.001  # that all completions show a square wrongly; tuned on random worlds (benchmarks.campaign)
 ERROR_PROBABILITY_AT_EDGE = 0.02  # likewise of a square next to one that some completion shows occupied; tuned
@@ -57,7 +57,7 @@ class ObstacleChance:
         index = self._occupancy.index(*square)
         state = self._occupancy.state[index]
         if state != OPEN:
-            return np.array([float(state == FULL)])
+            return np.array([float(state == OCCUPIED)])
         if self._completions is None:
             return np.array([1.0 / (1.0 + math.exp(-float(self._occupancy.logit[index])))])
         shown = self._completions.at(*square)

@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.counts.gibbs import Counts
-from geometry.counts.settle import FREE, FULL, OPEN, misfits, remaining_counts, settle
+from geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
 from geometry.kernels.arrays import XY, Bools, Ints, Square
 from kb.mapping.occupancy_odds import Fields, Forgotten, Grown, Logits, Odds
 from kb.perception.frame import MAX_SAMPLED_SQUARES, Samples
 
-__all__ = ["FREE", "FULL", "OPEN"]
+__all__ = ["FREE", "OCCUPIED", "OPEN"]
 SIGHT_RANGE = 24  # squares: what is seen from a place lies within so many columns and rows, at any orientation; derived
 GROWTH_MARGIN = 40  # squares by which the map grows beyond what is needed; convention
 
@@ -46,7 +46,7 @@ class MapView(NamedTuple):
     probability : (rows, columns) float32
         That a square is occupied; 0.5 where nothing is known.
     state : (rows, columns) int8
-        OPEN, FREE or FULL: what the counts settle.
+        OPEN, FREE or OCCUPIED: what the counts settle.
     seen : (rows, columns) bool
         Squares that were ever under the retina.
     settled_by : (rows, columns) int16
@@ -95,7 +95,7 @@ class OccupancyMap:
     west, south : int
         The square at [0, 0], map frame.
     state : (rows, columns) int8
-        OPEN (-1), FREE (0) or FULL (1): what the counts settle.
+        OPEN (-1), FREE (0) or OCCUPIED (1): what the counts settle.
     seen : (rows, columns) bool
         Squares that were ever under the retina.
     settled_by : (rows, columns) int16
@@ -218,7 +218,7 @@ class OccupancyMap:
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0) & ((ranges[:, 0] > 0) | (ranges[:, 1] <= 0))
         entry = samples.weight[single].argmax(1)  # all other squares of a larger field may lie under held objects
         state = self.state.ravel().copy()
-        state[where[single, entry]] = np.where(ranges[single, 0] > 0, FULL, FREE)
+        state[where[single, entry]] = np.where(ranges[single, 0] > 0, OCCUPIED, FREE)
         return new + misfits(state, *self._fields, np.zeros(len(self._low), np.bool_))
 
     def observe(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, number: int) -> None:
@@ -293,7 +293,7 @@ class OccupancyMap:
         mask : (rows, columns) bool
             The squares, on the arrays of the map.
         value : int
-            FREE, FULL or OPEN.
+            FREE, OCCUPIED or OPEN.
         number : int
             The number of the impression to which this is credited.
         """

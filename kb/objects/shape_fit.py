@@ -7,7 +7,7 @@ import shapely
 
 from geometry.kernels.arrays import Bools
 from geometry.shapes.fit import fit_shapes
-from kb.mapping.occupancy import FULL, OPEN, MapView
+from kb.mapping.occupancy import OCCUPIED, OPEN, MapView
 from kb.mapping.patch import Patch
 
 MIN_COVERED_PROBABILITY = 0.85  # an open square occupied at least so likely is measured as if it were covered; tuned
@@ -53,7 +53,7 @@ class ShapeMeasurer:
         """
         row, column = patch.south - view.south, patch.west - view.west
         part = (slice(row, row + patch.mask.shape[0]), slice(column, column + patch.mask.shape[1]))
-        settled = patch.mask & (view.state[part] == FULL)
+        settled = patch.mask & (view.state[part] == OCCUPIED)
         open_ = patch.mask & (view.state[part] == OPEN)
         full = settled | (open_ & (view.probability[part] >= MIN_COVERED_PROBABILITY))
         possible = open_ & ~full

@@ -1,4 +1,4 @@
-"""How far the sides of an object lie within the squares in which it was seen.
+"""Sub-cell extents: how far the sides of an object lie within the squares in which it was seen.
 
 An object with its sides parallel to the grid looks as if it filled whole squares: on each side it may be smaller, by
 less than one square. Most objects do fill whole squares, so that is believed. A push by a part of a square shows it: a

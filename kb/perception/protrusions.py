@@ -14,7 +14,7 @@ from geometry.kernels.arrays import Bools
 from geometry.raster.components import bounding_boxes, components, with_edge_neighbours
 
 RowColumn = tuple[int, int]  # a square as (row, column)
-VERGE_COLOUR = "b"  # the colour of the verge; convention (the simulated world)
+VERGE_TOUCH_COLOUR = "b"  # the colour of the verge; convention (the simulated world)
 MAX_THING_LENGTH = 10  # squares that a thing may measure between floor and floor, or from a corner along a wall; tuned
 MAX_THING_EXTENT = 12  # squares: the longer side of a thing's containing rectangle, at most; tuned
 
@@ -65,7 +65,7 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     """
     things: list[Bools] = []
     for place, colour in felt.items():
-        if colour == VERGE_COLOUR or any(thing[place] for thing in things):
+        if colour == VERGE_TOUCH_COLOUR or any(thing[place] for thing in things):
             continue
         thing: Bools | None = None
         for part in parts:
@@ -89,7 +89,11 @@ def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     """
     things = separate_things(parts, felt)
     known = np.any(things, axis=0) if things else np.False_
-    left = [part & ~known for part in parts if not any(part[p] for p, colour in felt.items() if colour == VERGE_COLOUR)]
+    left = [
+        part & ~known
+        for part in parts
+        if not any(part[p] for p, colour in felt.items() if colour == VERGE_TOUCH_COLOUR)
+    ]
     unlike = {mask.tobytes(): mask for mask in left if mask.any() and not any(mask[place] for place in felt)}
     return list(unlike.values())
 

@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools, Square
-from kb.mapping.occupancy import FULL
+from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.perception.regions import label_of
 from kb.reasoning.solver import KB_ENCODINGS, solve
@@ -53,7 +53,7 @@ def known_floor(model: WorldModel) -> Bools:
     mask: Bools = model.floor | (model.space & large)
     for node in model.objects:
         if node.moved:
-            under = model.view.state == FULL
+            under = model.view.state == OCCUPIED
             if node.polygon is not None:
                 under &= model.mask_within(patch_of_polygon(node.polygon))
             if model.floor_under_moved is not None:

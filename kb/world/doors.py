@@ -17,19 +17,19 @@ from geometry.kernels.arrays import XY, Bools, Floats, Labels, Longs
 from geometry.passages.necks import Segment
 from geometry.raster.components import components
 from kb.perception.interpretation import SHORTEST_WALL
-from kb.perception.protrusions import VERGE_COLOUR
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.perception.regions import extents
 from kb.reasoning.encoding_constants import encoding_constant
 from kb.reasoning.solver import KB_ENCODINGS
 from kb.world.model import WorldModel
 
 Indices = tuple[Longs, Longs]  # the rows and the columns of some squares
-DOOR_RATIO = float(
+ENCODED_DOOR_RATIO = float(
     encoding_constant(KB_ENCODINGS / "rooms.lp", "door_ratio")
 )  # as many times as wide is the floor beside a door
 JAMB_PROBABILITY = 0.75  # squares occupied with at least this probability are taken for parts of one thing; tuned
 WIDTH_UNCERTAINTY = 2 * math.sqrt(2)  # squares: a neck is so much wider at most if its walls end anywhere in 2 squares
-UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention
+NECK_UNSEEN_MARGIN = 10  # squares: free border laid about the map, since the floor may go on there; convention
 MIN_OPENING_RATIO = 1.25  # a neck is reported when the floor is so many times as wide on both sides; convention
 SIDEWAYS_STEP = 1e-6  # of a neck's width: how far beside its line the squares on both sides of the line are looked up
 UNCLEAR_EDGE = 2.0  # squares: on either side of a neck so much of its width may be unclear; tuned
@@ -59,9 +59,9 @@ class DoorwayNecks(NamedTuple):
     Attributes
     ----------
     necks : list of DoorwayNeck
-        Those first that have floor DOOR_RATIO times as wide on both sides.
+        Those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
     screen : Screen
-        The floor on which they were found: the view with UNSEEN_MARGIN free squares about it.
+        The floor on which they were found: the view with NECK_UNSEEN_MARGIN free squares about it.
     """
 
     necks: list[DoorwayNeck]
@@ -73,13 +73,15 @@ class DoorwayNecks(NamedTuple):
         The mask is (rows, columns) bool on the view's arrays.
         """
         mask = np.zeros(self.screen.shape, np.bool_)
-        for column, row in self.screen.narrows(neck.passage.shifted(UNSEEN_MARGIN, UNSEEN_MARGIN), WIDTH_UNCERTAINTY):
+        for column, row in self.screen.narrows(
+            neck.passage.shifted(NECK_UNSEEN_MARGIN, NECK_UNSEEN_MARGIN), WIDTH_UNCERTAINTY
+        ):
             mask[row, column] = True
-        return mask[UNSEEN_MARGIN:-UNSEEN_MARGIN, UNSEEN_MARGIN:-UNSEEN_MARGIN]
+        return mask[NECK_UNSEEN_MARGIN:-NECK_UNSEEN_MARGIN, NECK_UNSEEN_MARGIN:-NECK_UNSEEN_MARGIN]
 
 
 def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks:
-    """Find all necks of the floor, those first that have floor DOOR_RATIO times as wide on both sides.
+    """Find all necks of the floor, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
 
     Parameters
     ----------
@@ -96,7 +98,7 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
         The necks, each with its certainty; view frame.
     """
     walls, seen_verge = _wall_parts(model), verge & model.view.seen
-    screen = Screen(np.pad(~verge, UNSEEN_MARGIN, constant_values=True))
+    screen = Screen(np.pad(~verge, NECK_UNSEEN_MARGIN, constant_values=True))
     found = []
     for passage in _passages(screen):
         lines = list(dict.fromkeys([(passage.a, passage.b), *passage.mouths]))
@@ -112,16 +114,20 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
 
 def _passages(screen: Screen) -> list[Passage]:
     """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it."""
-    doors = screen.passages(DOOR_RATIO)
+    doors = screen.passages(ENCODED_DOOR_RATIO)
     mouths = {frozenset(mouth) for passage in doors for mouth in passage.mouths}
     others = [p for p in screen.passages(MIN_OPENING_RATIO) if not any(frozenset(m) in mouths for m in p.mouths)]
-    height, width = (size - 2 * UNSEEN_MARGIN for size in screen.shape)
+    height, width = (size - 2 * NECK_UNSEEN_MARGIN for size in screen.shape)
 
     def within(passage: Passage) -> bool:
         ends = [point for mouth in passage.mouths for point in mouth]
         return all(0 < x < width and 0 < y < height for x, y in ends)
 
-    return [p for p in (passage.shifted(-UNSEEN_MARGIN, -UNSEEN_MARGIN) for passage in (*doors, *others)) if within(p)]
+    return [
+        p
+        for p in (passage.shifted(-NECK_UNSEEN_MARGIN, -NECK_UNSEEN_MARGIN) for passage in (*doors, *others))
+        if within(p)
+    ]
 
 
 def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
@@ -165,7 +171,9 @@ def _wall_parts(model: WorldModel) -> _WallParts:
     found = components(model.view.seen & (model.view.probability >= JAMB_PROBABILITY))
     longer = extents(found.labels, found.number)
     height, width = found.labels.shape
-    for row, column in (model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE_COLOUR):
+    for row, column in (
+        model.view.locate(*square) for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR
+    ):
         label = found.labels[row, column] if 0 <= row < height and 0 <= column < width else 0
         if label:  # verge, however short it is
             longer[label] = max(longer[label], SHORTEST_WALL)
@@ -199,7 +207,7 @@ def _certainty(
         return min(50, round(50 * walled / SHORTEST_WALL))
     middle = np.add(*line) / 2
     spare = (
-        2 * min(passage.sides) / DOOR_RATIO - passage.width
+        2 * min(passage.sides) / ENCODED_DOOR_RATIO - passage.width
     ) / 2  # squares: wider by so much on both ends, still a door
     surely_wall = verge & model.told
     shares = [

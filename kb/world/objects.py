@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Labels, Square
 from geometry.raster.components import bounding_boxes
-from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, initial_insets, initial_short, outline_tolerance
 from kb.objects.proportions import corrected_shape
@@ -22,7 +22,7 @@ from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE_COLOUR, protrusions, separate_things
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things
 from kb.perception.regions import Percept, Region, label_of
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
@@ -67,7 +67,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
     colours = {place: colour for place, colour in colours.items() if occupied[place]}
-    if all(colour == VERGE_COLOUR for colour in colours.values()):
+    if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
     for thing in separate_things(protrusions(free_squares(view), occupied, view.seen), colours):
@@ -83,7 +83,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
     """Return the region of a thing that stands against the verge; `thing` is its (rows, columns) mask."""
     rows, columns = np.nonzero(thing)
-    settled = int(100 * (view.state[thing] == FULL).sum() // len(rows))
+    settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
     extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
     return Region(f"part{label}", True, settled, False, extent, round(10 * float(view.probability[thing].sum())))
 
@@ -183,7 +183,7 @@ def _seen_node(
 
 def _support(mask: Bools, view: MapView) -> tuple[int, ...]:
     """Return the numbers of the impressions that settled the squares of a mask, ascending."""
-    numbers = np.unique(view.settled_by[mask & ((view.state == FULL) | (view.state == FREE))])
+    numbers = np.unique(view.settled_by[mask & ((view.state == OCCUPIED) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)
 
 
@@ -256,7 +256,7 @@ def _felt_objects(
     x, y = square
     named = [(x + i, y + j) for i, j in frame.adjacent_squares(direction)]
     known = [occupancy.state[occupancy.index(*square)] for square in named]
-    if colour is None or all(state == FULL for state in known):
+    if colour is None or all(state == OCCUPIED for state in known):
         return []
     about = {(i + dx, j + dy) for i, j in named for dx, dy in (*ADJACENT_OFFSETS, (0, 0))}
     return [node for node in objects if node.colour in (None, colour) and about & node.patch.squares()]
@@ -286,14 +286,14 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     lies, sure, possible = (
         model.squares(p.squares()) for p in (patch_of_polygon(load.polygon), load.sure, load.possible)
     )
-    patch = patch_of(possible & ((view.state != FULL) | lies), view)
+    patch = patch_of(possible & ((view.state != OCCUPIED) | lies), view)
     here = view.locate(*model.place)
     shared = view.state[here] == FREE and possible[here]
     sure[here] = possible[here] = False
     label = int(labels.max()) + 1
-    open_ = possible & (view.state != FULL)
+    open_ = possible & (view.state != OCCUPIED)
     labels[open_] = label
-    state = np.where(sure, np.int8(FULL), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
+    state = np.where(sure, np.int8(OCCUPIED), np.where(possible & (view.state == FREE), np.int8(OPEN), view.state))
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:

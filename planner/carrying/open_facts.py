@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import with_edge_neighbours
-from kb.perception.protrusions import VERGE_COLOUR
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import POSSIBLE_OBJECT
@@ -81,7 +81,7 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
 
 def unfelt_walls(model: WorldModel) -> Bools:
     """Return the mask (rows, columns) of squares beside known floor on which a wall was seen and never felt."""
-    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_COLOUR)
+    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     things: Bools = np.zeros_like(felt)
     for node in model.objects:
         things |= model.mask(node.patch)

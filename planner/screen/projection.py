@@ -16,15 +16,14 @@ from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Floats
 from geometry.raster.components import with_edge_neighbours
-from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
 from kb.mapping.patch import Patch
 from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from planner.screen.unseen_gain import expected_gain
 
-Mask = Bools  # (rows, columns)
+Bools = Bools  # (rows, columns)
 SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column
-FIFTHS_PER_SQUARE = 5  # the unit of distances on a screen: so many make one square (geometry.raster.geodesic)
 LEVEL_MAX_PROBABILITY = (
     MAX_FREE_PROBABILITY,
     0.15,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Bools, Floats, Longs
 from kb.mapping.occupancy import MapView
 
-VIEW_REACH = (
+GAIN_REACH = (
     14  # squares, in rows and columns, within which an unseen square comes into sight; just under the retina's 16
 )
 VERGE_WEIGHT = (
@@ -26,11 +26,11 @@ def expected_gain(view: MapView) -> Floats:
 
     The unit is one unseen square that the floor likely goes on into; others count less.
     """
-    seen = np.pad(view.seen, VIEW_REACH)
-    labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), VIEW_REACH)
+    seen = np.pad(view.seen, GAIN_REACH)
+    labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), GAIN_REACH)
     beside_floor = _nearest_label(labels, seen) == BESIDE_FLOOR
     weight = np.where(seen, 0.0, np.where(beside_floor, 1.0, VERGE_WEIGHT))
-    return window_sums(weight, VIEW_REACH)
+    return window_sums(weight, GAIN_REACH)
 
 
 def window_sums(padded: Floats, reach: int) -> Floats:
@@ -46,9 +46,9 @@ def window_sums(padded: Floats, reach: int) -> Floats:
 
 
 def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
-    """Give each unseen square within VIEW_REACH steps the least label of the nearest seen squares, (rows, columns)."""
+    """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares, (rows, columns)."""
     near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
-    for _ in range(VIEW_REACH):
+    for _ in range(GAIN_REACH):
         least = near.copy()
         np.minimum(least[1:], near[:-1], out=least[1:])
         np.minimum(least[:-1], near[1:], out=least[:-1])

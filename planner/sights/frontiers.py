@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, Labels
 from geometry.raster.components import components, with_edge_neighbours
-from geometry.raster.geodesic import GEODESIC_UNREACHED
+from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
 from kb.mapping.occupancy import OPEN
 from kb.world.model import MAX_FREE_PROBABILITY, Node
 from kb.world.rooms import Door

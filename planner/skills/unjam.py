@@ -8,7 +8,7 @@ import shapely
 
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.se2 import Translate
-from kb.mapping.occupancy import FULL
+from kb.mapping.occupancy import OCCUPIED
 from kb.world.model import Node, WorldModel
 
 RETREAT = 1.0  # squares by which an object is drawn back; a convention: one square shows whether it moved
@@ -67,7 +67,7 @@ def _walls_near(node: Node, model: WorldModel) -> Obstacles:
     """Return all squares near an object that are surely occupied, but for its own, as obstacles in the map frame."""
     view, reach = model.view, SEARCH_RIM + ROOM_AHEAD
     x0, y0, x1, y1 = node.polygon.bounds
-    rows, columns = np.nonzero((view.state == FULL) & ~model.mask(node.patch))
+    rows, columns = np.nonzero((view.state == OCCUPIED) & ~model.mask(node.patch))
     x, y = columns + view.west, rows + view.south
     near = (x0 - reach < x) & (x < x1 + reach) & (y0 - reach < y) & (y < y1 + reach)
     return Obstacles(list(shapely.box(x[near], y[near], x[near] + 1, y[near] + 1)))

@@ -4,5 +4,6 @@ Modules in reading order:
 
 main      runs a subcommand; errors become messages and exit codes
 parsing   the parser of the command line
+__main__  the same, as `python -m simulator.cli`
 commands  the subcommands, one a module
 """

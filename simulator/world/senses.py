@@ -1,4 +1,4 @@
-"""What Utak senses: 160 gray levels of the retina, and the colours of the 8 adjacent squares.
+"""The senses: 160 gray levels of the retina, and the colours of the 8 adjacent squares.
 
 The retina covers 32 x 32 squares around Utak's own in three zones: a fovea of 8 x 8 fields of one square, around it 48
 fields of 2 x 2 squares, around those 48 fields of 4 x 4 squares. A field of k x k squares with n occupied ones has the
@@ -10,9 +10,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from simulator.world.table import SquareIndices, Table
+from simulator.world.table import Table, TableIndices
 
-VIEW_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
+SENSED_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
 VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards
 NEIGHBOUR_OFFSETS = {  # offsets (east, north) of the adjacent squares in Utak's frame, clockwise from north
     "north": (0, 1),
@@ -55,7 +55,7 @@ class Senses:
 
     def __init__(self, heading: float) -> None:
         self._cosine, self._sine = math.cos(math.radians(heading)), math.sin(math.radians(heading))
-        east, north = np.meshgrid(np.arange(-VIEW_REACH, VIEW_REACH), np.arange(-VIEW_REACH, VIEW_REACH))
+        east, north = np.meshgrid(np.arange(-SENSED_REACH, SENSED_REACH), np.arange(-SENSED_REACH, SENSED_REACH))
         self._i = np.rint(east * self._cosine - north * self._sine).astype(np.intp)
         self._j = np.rint(east * self._sine + north * self._cosine).astype(np.intp)
         self._field, self._side = _fields_of_squares()
@@ -64,7 +64,7 @@ class Senses:
         """Return the 160 gray levels, 0 to 7, seen from a point (x, y) of the table."""
         i, j = math.floor(here[0]), math.floor(here[1])
         seen = table.occupied(self._i + i, self._j + j)
-        seen[VIEW_REACH, VIEW_REACH] = True  # Utak's own square
+        seen[SENSED_REACH, SENSED_REACH] = True  # Utak's own square
         count = np.bincount(self._field, seen.ravel(), len(self._side)).astype(int)
         area = self._side**2
         return tuple(((14 * count + area) // (2 * area)).tolist())
@@ -84,13 +84,15 @@ class Senses:
         return i, j
 
 
-def _fields_of_squares() -> tuple[SquareIndices, npt.NDArray[np.int_]]:
+def _fields_of_squares() -> tuple[TableIndices, npt.NDArray[np.int_]]:
     """Return the index of the field of each of the 32 x 32 squares, and the sides of the fields in squares.
 
     The squares are in rows from the south.
     """
     fields = retina_fields()
-    owner = np.zeros((2 * VIEW_REACH, 2 * VIEW_REACH), dtype=np.intp)
+    owner = np.zeros((2 * SENSED_REACH, 2 * SENSED_REACH), dtype=np.intp)
     for number, (east, north, side) in enumerate(fields):
-        owner[north + VIEW_REACH : north + VIEW_REACH + side, east + VIEW_REACH : east + VIEW_REACH + side] = number
+        owner[north + SENSED_REACH : north + SENSED_REACH + side, east + SENSED_REACH : east + SENSED_REACH + side] = (
+            number
+        )
     return owner.ravel(), np.array([side for _, _, side in fields])

@@ -16,7 +16,7 @@ from geometry.kernels.arrays import Bools
 from geometry.raster.rasterize import squares
 from simulator.world.world import VERGE_COLOUR, World
 
-SquareIndices = npt.NDArray[np.intp]  # columns or rows of squares
+TableIndices = npt.NDArray[np.intp]  # columns or rows of squares
 
 
 class Projection(NamedTuple):
@@ -39,7 +39,7 @@ class Projection(NamedTuple):
         row, column = j - self.south, i - self.west
         return 0 <= row < rows and 0 <= column < columns and bool(self.covered[row, column])
 
-    def under(self, i: SquareIndices, j: SquareIndices) -> Bools:
+    def under(self, i: TableIndices, j: TableIndices) -> Bools:
         """Return which of many squares the thing covers.
 
         i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.
@@ -89,7 +89,7 @@ class Table:
         """Project a movable thing again after it has moved."""
         self._movable[name] = project(polygon)
 
-    def occupied(self, i: SquareIndices, j: SquareIndices) -> Bools:
+    def occupied(self, i: TableIndices, j: TableIndices) -> Bools:
         """Return which of many squares are occupied by anything but Utak; squares beyond the table are.
 
         i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.

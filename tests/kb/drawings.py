@@ -7,7 +7,7 @@ import numpy as np
 
 from kb.body import Move
 from kb.knowledge import Knowledge
-from kb.mapping.occupancy import FREE, FULL, OPEN, MapView, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView, OccupancyMap
 from kb.mapping.patch import patch_of
 from kb.perception.frame import Frame
 from kb.perception.interpretation import interpret_regions
@@ -48,7 +48,7 @@ def known_model(rows: list[str], objects: bool = True) -> WorldModel:
     marks = np.array([list(row) for row in reversed(rows)])
     seen, occupied = marks != "?", ~np.isin(marks, [".", "U", "?"])
     probability = np.where(seen, occupied, 0.5).astype(np.float32)
-    state = np.where(~seen, -1, np.where(occupied, FULL, FREE)).astype(np.int8)
+    state = np.where(~seen, -1, np.where(occupied, OCCUPIED, FREE)).astype(np.int8)
     x, y = utak_in(rows)
     view = MapView(-x, -y, probability, state, seen, np.where(seen, 0, -1).astype(np.int16))
     percept, labels = map_regions(occupied & seen, seen, seen)

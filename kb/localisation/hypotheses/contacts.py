@@ -16,7 +16,7 @@ from kb.localisation.hypotheses.carry_outcomes import CarryOutcome, advance, mot
 from kb.localisation.hypotheses.frames import Position
 from kb.mapping.completions import Completions
 from kb.mapping.obstacle_chance import ObstacleChance
-from kb.mapping.occupancy import FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
 from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import HeldObject, Square
 
@@ -63,7 +63,7 @@ class Obstructions:
 
         place, polygon : of Utak and of the object before it, map frame. pictures : completions of the map, if any.
         """
-        known, self._squares = (_squares_near(occupancy, place, polygon, motion, state) for state in (FULL, OPEN))
+        known, self._squares = (_squares_near(occupancy, place, polygon, motion, state) for state in (OCCUPIED, OPEN))
         self.known = _obstacles(tuple(known))
         self._chance = ObstacleChance(occupancy, pictures)
 
@@ -148,7 +148,7 @@ def suspected_squares(
     there -= replace(held, polygon=outcome.polygon, full=NO_SQUARES, empty=NO_SQUARES).possible.squares()
     there.discard((math.floor(outcome.place[0]), math.floor(outcome.place[1])))
     state = {square: occupancy.state[occupancy.index(*square)] for square in there}
-    if FULL in state.values() or any(there & other.possible.squares() for other in others):
+    if OCCUPIED in state.values() or any(there & other.possible.squares() for other in others):
         return NO_SQUARES
     odds = {square: float(occupancy.logit[occupancy.index(*square)]) for square in there if state[square] == OPEN}
     return _likeliest_squares(odds)

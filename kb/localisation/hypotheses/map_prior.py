@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.counts.gibbs import DRAWN, EDGE_COST, FULL, costs, pictures
+from geometry.counts.gibbs import DRAWN, EDGE_COST, OCCUPIED, costs, pictures
 from kb.localisation.hypotheses.frames import OFF_CENTRE_COST, FrameHypothesis, Observation, observation_squares
 from kb.localisation.hypotheses.remap import remap
 from kb.mapping.completions import COMPLETION_SEED, CompletionTask, OccupancyImage, SceneKey, given_squares, scenes
@@ -58,7 +58,7 @@ class MapDescription:
         self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
         self._least = [np.inf] * len(self._scenes)
-        self._image = (self._ground == FULL).astype(np.int8)
+        self._image = (self._ground == OCCUPIED).astype(np.int8)
         self._drawn: DrawnScenes = {} if drawn is None else drawn
         self._rounds = 0
         self.price = np.inf

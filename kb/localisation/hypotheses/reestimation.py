@@ -34,7 +34,7 @@ from kb.localisation.hypotheses.walk_outcomes import (
     line_crossings,
     observation_places,
 )
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import Frame
 
@@ -180,7 +180,7 @@ def _other_ends(
                     judged[key] = remap(frame, frame, [*before, last._replace(place=place)], (), begun.first(number))
             under = judged[key]
             if under is not None and (ahead := walk.state_ahead(end, under.occupancy)) != FREE:
-                yield ReestimatedWalk(hypothesis, correction, ahead == FULL, under.residual, place)
+                yield ReestimatedWalk(hypothesis, correction, ahead == OCCUPIED, under.residual, place)
 
 
 def reestimate_two_walks(
@@ -210,9 +210,9 @@ def reestimate_two_walks(
         still = [WalkEnd(there[-1].place, 0)] * (against and motion.number == newest.number - 1)
         for halt in (*still, *onward.ends[:-1]):
             under = remap_if_consistent(frame, [*there, observations[-1]._replace(place=halt.place)])
-            if under is None or under.residual or walk.state_ahead(end, under.occupancy) != FULL:
+            if under is None or under.residual or walk.state_ahead(end, under.occupancy) != OCCUPIED:
                 continue
-            if halt in still or onward.state_ahead(halt, under.occupancy) == FULL:
+            if halt in still or onward.state_ahead(halt, under.occupancy) == OCCUPIED:
                 yield ReestimatedWalk(hypothesis, correction, True, 0, halt.place)
 
 
@@ -297,8 +297,8 @@ class WalkInFrame:
         """
         at = int(end.progress)
         entered = [crossing.entered for crossing in self._met[: at + 1]]
-        states = (FULL if square in things else _square_state(occupancy, square) for square in entered)
-        if FULL in itertools.islice(states, at):
+        states = (OCCUPIED if square in things else _square_state(occupancy, square) for square in entered)
+        if OCCUPIED in itertools.islice(states, at):
             return FREE
         return next(states, OPEN)
 

@@ -18,7 +18,7 @@ from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.components import components, with_edge_neighbours
 from geometry.shapes.fit import fit_shapes
 from kb.localisation.hypotheses.frames import ObjectPose, Observation, Position, observation_squares
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.mapping.patch import Patch, patch_of_polygon
 from kb.objects.held_object import HeldObject, is_grid_aligned, snap_to_grid, subtract_held_objects
 from kb.objects.subcell_extent import SubcellExtent
@@ -275,7 +275,7 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
     labels = components(state != FREE).labels
     met = np.bincount(labels[own & (labels > 0)], minlength=1)
     part = labels == met.argmax()
-    full, possible = part & (state == FULL), part & (state == OPEN)
+    full, possible = part & (state == OCCUPIED), part & (state == OPEN)
     inside = part[1:-1, 1:-1].sum() == part.sum()
     if not met.any() or not inside or possible.sum() > MAX_OPEN_SHARE * full.sum():
         return None
@@ -292,7 +292,7 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
     own = np.pad(patch.mask, 1)
     about = with_edge_neighbours(own)
     state = occupancy.window(patch.west - 1, patch.south - 1, own.shape)
-    return int(((state == FREE) & own).sum() + ((state == FULL) & about & ~own).sum())
+    return int(((state == FREE) & own).sum() + ((state == OCCUPIED) & about & ~own).sum())
 
 
 def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:

@@ -19,7 +19,7 @@ from kb.localisation.hypotheses.map_prior import DrawnScenes, MapDescription, re
 from kb.localisation.hypotheses.walk_outcomes import line_crossings, observation_places
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.obstacle_chance import ObstacleChance
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
 
 NEGLIGIBLE_CONTACT_CHANCE = 0.02  # probability of any contact up to which none is considered; tuned
@@ -158,7 +158,7 @@ def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
     if not against and (explanation.how != "predicted" or len(observation_places(explanation.place)) > 1):
         return True
     here = occupancy.index(*own)
-    state = FULL if own in against else FREE
+    state = OCCUPIED if own in against else FREE
     if occupancy.state[here] == OPEN:
         occupancy.state[here] = state
     return bool(occupancy.state[here] == state)

@@ -13,7 +13,7 @@ from geometry.motion.se2 import Motion, Rotate
 from kb.localisation.hypotheses.carry_outcomes import END_SPACING, CarryOutcome, other_outcomes, predicted_outcome
 from kb.localisation.hypotheses.frames import Position
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import FULL
+from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import GRID_CORNER_TOLERANCE, HeldObject
 
@@ -101,5 +101,5 @@ def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldOb
     """
     before, after = surprise.occupancy, surprise.map_after([*others, held], place)
     about = patch_of_polygon(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()
-    new = [square for square in about if before.state[before.index(*square)] != FULL]
-    return sum(after.state[after.index(*square)] == FULL for square in new)
+    new = [square for square in about if before.state[before.index(*square)] != OCCUPIED]
+    return sum(after.state[after.index(*square)] == OCCUPIED for square in new)

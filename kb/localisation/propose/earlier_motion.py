@@ -32,7 +32,7 @@ from kb.localisation.hypotheses.reestimation import (
 from kb.localisation.hypotheses.remap import RemappedMap, object_at, remap
 from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, add, observation_places
 from kb.localisation.hypotheses.what_if import Surprise, WhatIf
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.mapping.patch import patch_of_polygon
 from kb.objects.held_object import HeldObject, Square, is_grid_aligned
 from kb.perception.frame import Frame
@@ -100,7 +100,7 @@ class CarriedMotion:
         if known < end.progress - SAME_CONTACT_FRACTION:
             return FREE
         if known < 1.0 and known < end.progress + SAME_CONTACT_FRACTION:
-            return FULL
+            return OCCUPIED
         contacts = obstructions.contacts(self._place, self._polygon, self._motion)
         met = (abs(contact.fraction - end.progress) < SAME_CONTACT_FRACTION for contact in contacts)
         return OPEN if end.progress == 1.0 or any(met) else FREE
@@ -181,7 +181,7 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
         supposed = replace(corrected, occupancy=under.occupancy, held_objects=under.held_objects)
         what_if = supposed.evaluate_frame(frame, surprise.hypotheses, only_whether=True)
         if not what_if.residual:
-            walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == FULL, 0)
+            walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
             yield ReestimatedMotion(walk, what_if)
 
 
@@ -205,7 +205,7 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
             things = _moved_since(under, corrected.observations, motion, frame)
             ahead = CarriedMotion(motion, there).state_ahead(end, under.occupancy, things)
             if ahead != FREE:
-                walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == FULL, 0)
+                walk = ReestimatedWalk(exact_hypothesis(frame), correction, ahead == OCCUPIED, 0)
                 yield ReestimatedMotion(walk, what_if)
 
 

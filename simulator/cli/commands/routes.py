@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from geometry.routes.route import Route
 
 MAX_MAP_BYTES = 200_000_000  # bytes of a map file; a convention
-MAX_ROUTES = 1000  # the greatest -k; a convention
+MAX_ROUTES_ASKED = 1000  # the greatest -k; a convention
 MAX_POINT_COORDINATE = 1e6  # squares; the greatest absolute value in --from and --to; a convention
 # The end of the help text.
 ORIGIN_HELP = (
@@ -150,4 +150,4 @@ def _point(text: str) -> tuple[float, float]:
 
 def _count(text: str) -> int:
     """Return the number for `-k`."""
-    return parse_whole(text, 1, MAX_ROUTES)
+    return parse_whole(text, 1, MAX_ROUTES_ASKED)

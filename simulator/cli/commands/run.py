@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
 
-PATH_FINDERS = ("skeleton", "visibility", "grid")  # the choices of --paths
+PATH_CHOICES = ("skeleton", "visibility", "grid")  # the choices of --paths
 
 
 def add(parts: Any) -> None:
@@ -41,7 +41,7 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     """Declare the options that determine a run."""
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
-    part.add_argument("--paths", choices=PATH_FINDERS, help="how ways are found (default skeleton)")
+    part.add_argument("--paths", choices=PATH_CHOICES, help="how routes are found (default skeleton)")
     part.add_argument(
         "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
     )

@@ -13,8 +13,8 @@ from geometry.counts.gibbs import (
     EDGE_COST,
     FINAL_INVERSE_TEMPERATURE,
     FREE,
-    FULL,
     NEIGHBOUR_STEPS,
+    OCCUPIED,
     UNSEEN_SQUARE,
     Counts,
     _flip_costs,
@@ -65,7 +65,7 @@ def test_samples_show_what_the_counts_of_two_observations_determine() -> None:
 def test_samples_keep_fixed_squares_and_show_nothing_unseen() -> None:
     truth = square_world()
     ground = np.full(truth.shape, DRAWN, np.int8)
-    ground[9:14, 10:15], ground[20:], ground[5, 5] = FULL, UNSEEN_SQUARE, FREE
+    ground[9:14, 10:15], ground[20:], ground[5, 5] = OCCUPIED, UNSEEN_SQUARE, FREE
     drawn = pictures(ground, counts_of(truth, 4), np.ones((3, *truth.shape), np.int8), 10, 0.5)
     assert drawn.shape == (3, 24, 24)
     assert (drawn[:, 9:14, 10:15] == 1).all()
@@ -166,7 +166,7 @@ def test_a_square_under_no_field_is_drawn_so_that_the_raster_is_simple(begun: in
 
 
 def test_without_fields_there_is_nothing_to_draw() -> None:
-    ground, first = np.full((3, 4), FULL, np.int8), np.zeros((2, 3, 4), np.int8)
+    ground, first = np.full((3, 4), OCCUPIED, np.int8), np.zeros((2, 3, 4), np.int8)
     assert pictures(ground, NOTHING_COUNTED, first, 5, 0.5).tolist() == [[[1] * 4] * 3] * 2
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geometry.counts.settle import FREE, FULL, OPEN, misfits, remaining_counts, settle
+from geometry.counts.settle import FREE, OCCUPIED, OPEN, misfits, remaining_counts, settle
 
 SQUARE_COUNT, MAX_FIELD_SQUARES = 12, 6
 
@@ -17,10 +17,10 @@ def settled_by_rules(state, where, weight, low, high):
         remaining = []
         for squares, weights, least, most in zip(where, weight, low, high, strict=True):
             open_ = {s: w for s, w in zip(squares, weights, strict=True) if w and state[s] == OPEN}
-            full = sum(w for s, w in zip(squares, weights, strict=True) if state[s] == FULL)
+            full = sum(w for s, w in zip(squares, weights, strict=True) if state[s] == OCCUPIED)
             room = sum(open_.values())
             remaining.append((open_, max(least - full, 0), min(most - full, room)))
-        for value in (FREE, FULL):
+        for value in (FREE, OCCUPIED):
             for open_, least, most in remaining:
                 room = sum(open_.values())
                 free = {s for s, w in open_.items() if w > most}
@@ -29,7 +29,7 @@ def settled_by_rules(state, where, weight, low, high):
         if not settled:
             single_weight = [one for one in remaining if one[0] and max(one[0].values()) == 1]
             pairs = [(a, b) for a in single_weight for b in single_weight if a is not b and a[0].keys() & b[0].keys()]
-            for value in (FULL, FREE):
+            for value in (OCCUPIED, FREE):
                 for (one, least, most), (two, fewest, greatest) in pairs:
                     only, common = one.keys() - two.keys(), len(one.keys() & two.keys())
                     none_occupied = most - max(fewest - (len(two) - common), 0) <= 0
@@ -80,13 +80,13 @@ def test_fields_added_in_turn_settle_the_same_squares_as_all_at_once(given_, dat
 
 
 @settings(max_examples=50, deadline=None)
-@given(fields(), st.lists(st.sampled_from([OPEN, FREE, FULL]), min_size=SQUARE_COUNT, max_size=SQUARE_COUNT))
+@given(fields(), st.lists(st.sampled_from([OPEN, FREE, OCCUPIED]), min_size=SQUARE_COUNT, max_size=SQUARE_COUNT))
 def test_remaining_counts_and_contradicted_fields(given_, states) -> None:
     where, weight, low, high = given_
     state, wrong = np.array(states, np.int8), np.zeros(len(low), np.bool_)
     found = misfits(state, where, weight, low, high, wrong)
     open_, room, least, most = remaining_counts(state, where, weight, low, high)
-    full = np.where(state[where] == FULL, weight, 0).sum(1)
+    full = np.where(state[where] == OCCUPIED, weight, 0).sum(1)
     assert (open_ == ((state[where] == OPEN) & (weight > 0))).all()
     assert (room == (weight * open_).sum(1)).all()
     assert (least == np.maximum(low - full, 0)).all()

@@ -13,7 +13,7 @@ from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import FrameHypothesis
 from kb.localisation.state import MAX_RESIDUAL, MAX_RESIDUAL_AFTER_MOVING, TrackerState
 from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import FULL, OPEN
+from kb.mapping.occupancy import OCCUPIED, OPEN
 from kb.mapping.patch import Patch
 from kb.objects.held_object import HeldObject
 from kb.perception.frame import Frame, turned
@@ -68,7 +68,7 @@ class Stroll:
         rows, columns = np.nonzero(occupancy.state != OPEN)
         squares = zip((columns + occupancy.west + i).tolist(), (rows + occupancy.south + j).tolist(), strict=True)
         there = np.array([self.occupied(*square) for square in squares])
-        return float((there != (occupancy.state[rows, columns] == FULL)).mean())
+        return float((there != (occupancy.state[rows, columns] == OCCUPIED)).mean())
 
 
 def kidnapped(seed: int) -> Stroll:

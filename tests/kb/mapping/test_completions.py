@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.counts.gibbs import DRAWN, FULL
+from geometry.counts.gibbs import DRAWN, OCCUPIED
 from kb.mapping.completions import (
     DRAWS_PER_COMPLETION,
     MAX_COMPLETIONS,
@@ -47,7 +47,7 @@ def test_completions_agree_with_settled_squares_and_with_nearly_all_counts(view:
     images = draw_completions(view, ground, NO_COMPLETIONS).images
     assert images.shape == (MAX_COMPLETIONS, *ground.shape)
     settled = ground != DRAWN
-    assert all((image[settled] == (ground[settled] == FULL)).all() for image in images)
+    assert all((image[settled] == (ground[settled] == OCCUPIED)).all() for image in images)
     where, weight, low, high = view.counts
     for image in images:
         count = (image.ravel()[where] * weight).sum(1)

@@ -10,7 +10,7 @@ from geometry.counts import gibbs
 from geometry.counts.gibbs import DRAWN
 from kb.mapping.completions import MAX_COMPLETIONS, Completions
 from kb.mapping.obstacle_chance import ERROR_PROBABILITY, ERROR_PROBABILITY_AT_EDGE, UNSEEN_PROBABILITY, ObstacleChance
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 SIDE = 5
 images = arrays(np.int8, (MAX_COMPLETIONS, SIDE, SIDE), elements=st.integers(0, 1))
@@ -51,7 +51,7 @@ def test_squares_of_one_completion_go_together() -> None:
 def test_completions_do_not_change_settled_squares() -> None:
     occupancy, shown = OccupancyMap(), np.ones((MAX_COMPLETIONS, SIDE, SIDE), np.int8)
     occupancy.state[occupancy.index(1, 1)] = FREE
-    occupancy.state[occupancy.index(3, 3)] = FULL
+    occupancy.state[occupancy.index(3, 3)] = OCCUPIED
     assert ObstacleChance(occupancy, of(shown * 0)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
     assert ObstacleChance(occupancy, of(shown)).met([[(1, 1)], [(3, 3)]]) == [0.0, 1.0]
 

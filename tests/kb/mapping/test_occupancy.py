@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.perception.frame import MAX_SAMPLED_SQUARES, Frame, Samples
 from kb.perception.retina import OWN_FIELD, count_ranges
 from tests.kb.eyes import Occupied, random_room, retina, world_of
@@ -46,7 +46,7 @@ def test_settled_squares_are_true(seed: int) -> None:
         occupancy.stand(*square, number)
         found = settled(occupancy)
         assert len(found) >= 63
-        assert all(occupied(*s) == (state == FULL) for s, state in found.items())
+        assert all(occupied(*s) == (state == OCCUPIED) for s, state in found.items())
     assert occupancy.overruled == 0
 
 
@@ -106,7 +106,7 @@ def test_single_fields_and_full_counts_settle() -> None:
     occupancy.observe(
         tiny([[0], [1, 2], [3, 4]], [[1], [1, 1], [1, 1]], [0] * 3), np.array([(1, 1), (0, 0), (2, 2)]), 0, 0, 0
     )
-    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE, (3, 0): FULL, (4, 0): FULL}
+    assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE, (2, 0): FREE, (3, 0): OCCUPIED, (4, 0): OCCUPIED}
 
 
 def test_the_difference_of_two_fields_settles() -> None:
@@ -114,7 +114,7 @@ def test_the_difference_of_two_fields_settles() -> None:
     occupancy.observe(tiny([[0, 1], [1, 2]], [[1, 1]] * 2, [0, 0]), np.array([(1, 1), (1, 1)]), 0, 0, 0)
     assert settled(occupancy) == {}
     occupancy.observe(tiny([[0, 1, 2]], [[1, 1, 1]], [0]), np.array([(2, 2)]), 0, 0, 1)
-    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FULL}
+    assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE, (2, 0): OCCUPIED}
 
 
 def test_samples_between_two_squares_settle_nothing() -> None:
@@ -199,7 +199,7 @@ def test_a_new_impression_overrules_settled_squares() -> None:
     observe(occupancy, world_of(changed), (10, 9), 1)
     assert occupancy.overruled > 0
     for (x, y), state in settled(occupancy).items():
-        assert world_of(changed)(x, y) == (state == FULL)
+        assert world_of(changed)(x, y) == (state == OCCUPIED)
 
 
 def test_the_same_impression_from_the_same_place_adds_nothing() -> None:
@@ -224,7 +224,7 @@ def test_after_a_withdrawal_the_same_impression_counts_again() -> None:
     )
     assert (1, 0) not in settled(occupancy)
     occupancy.observe(*counts, 0, 0, 1)
-    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE, (2, 0): FREE}
+    assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE, (2, 0): FREE}
 
 
 def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
@@ -234,7 +234,7 @@ def test_withdrawn_squares_are_open_and_their_fields_forgotten() -> None:
     row, column = occupancy.index(1, 0)
     occupancy.withdraw(np.array([row * occupancy.state.shape[1] + column], np.int32))
     occupancy.observe(tiny([[1]], [[1]], [0]), np.array([(0, 0)]), 0, 0, 1)
-    assert settled(occupancy) == {(0, 0): FULL, (1, 0): FREE}  # the field of three would have filled square 2
+    assert settled(occupancy) == {(0, 0): OCCUPIED, (1, 0): FREE}  # the field of three would have filled square 2
 
 
 def test_standing_does_not_overrule_and_declaring_does() -> None:
@@ -242,7 +242,7 @@ def test_standing_does_not_overrule_and_declaring_does() -> None:
     observe(occupancy, occupied, (0, 0), 0)
     occupancy.stand(1, 1, 1)
     occupancy.stand(0, 0, 1)
-    assert settled(occupancy)[1, 1] == FULL
+    assert settled(occupancy)[1, 1] == OCCUPIED
     assert settled(occupancy)[0, 0] == FREE
     mask = np.zeros(occupancy.state.shape, bool)
     mask[occupancy.index(1, 1)] = True

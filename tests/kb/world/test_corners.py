@@ -9,7 +9,7 @@ import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kb.mapping.occupancy import FULL, OPEN
+from kb.mapping.occupancy import OCCUPIED, OPEN
 from kb.mapping.patch import patch_of
 from kb.world.corners import CORNER_SIDES, corners, known_floor
 from kb.world.model import Node
@@ -88,7 +88,7 @@ def test_a_wall_seen_where_a_moved_thing_may_reach_is_not_floor_under_it() -> No
     thing = Node("o1", "object", 100, f"part{label}", patch_of(reach, model.view), 0, moved=True, polygon=outline)
     labels = np.where(reach, label, model.labels).astype(np.int32)
     moved = replace(model, labels=labels, objects=(thing,))
-    assert (moved.view.state[reach] == FULL).all()
+    assert (moved.view.state[reach] == OCCUPIED).all()
     assert corners(moved)["northeast"].square == (6, 3)
     assert not (known_floor(moved) & (drawn == "b")).any()
     askew = replace(moved, objects=(replace(thing, polygon=None),))

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kb.body import Grasp, Move, Release
-from kb.mapping.occupancy import FREE, FULL, OPEN, MapView
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, MapView
 from kb.mapping.patch import Patch, patch_of, patch_of_polygon
 from kb.objects.held_object import HeldObject
 from kb.objects.shape_fit import ShapeMeasurer
@@ -87,7 +87,7 @@ def test_a_patch_is_the_squares_of_its_mask(rows: int, columns: int, seed: int, 
 
 def test_open_squares_are_counted_around_an_object_too() -> None:
     state = np.array([[0, -1, 0, 0], [-1, 1, 1, 0], [0, -1, 0, -1]], np.int8)
-    thing = state == FULL
+    thing = state == OCCUPIED
     likely = np.where(state == OPEN, 0.1, thing).astype(np.float32)
     likely[1, 0] = 0.5
     view = MapView(0, 0, likely, state, thing, np.zeros(state.shape, np.int16))
@@ -109,7 +109,7 @@ SHAPES = {
 def test_known_objects_are_measured_right(shape: str) -> None:
     full = np.array([list(row) for row in reversed(SHAPES[shape])]) == "g"
     framed = np.pad(full, 2)
-    state = np.where(framed, FULL, FREE).astype(np.int8)
+    state = np.where(framed, OCCUPIED, FREE).astype(np.int8)
     view = MapView(-7, 4, framed.astype(np.float32), state, np.ones_like(framed), np.zeros(state.shape, np.int16))
     measured = ShapeMeasurer().measure(patch_of(framed, view), view)
     assert measured.fits[0] == (shape, 0)
@@ -120,7 +120,7 @@ def test_known_objects_are_measured_right(shape: str) -> None:
 
 def test_a_patch_that_is_hardly_settled_is_not_measured() -> None:
     state = np.full((4, 4), OPEN, np.int8)
-    state[1, 1] = FULL
+    state[1, 1] = OCCUPIED
     thing = np.ones((4, 4), bool)
     view = MapView(0, 0, np.full((4, 4), 0.5, np.float32), state, thing, np.zeros((4, 4), np.int16))
     measured = ShapeMeasurer().measure(patch_of(thing, view), view)
@@ -190,7 +190,7 @@ def test_walls_stay_walls_within_the_tolerance_of_a_held_object() -> None:
         before, HeldObject("o1", shapely.box(x + 0.1, 1.3, x + 3.1, 4.3), None, slack=0.2, proven=True)
     )
     wall = model.view.locate(x - 0.5, 2.5)
-    assert model.view.state[wall] == FULL
+    assert model.view.state[wall] == OCCUPIED
     assert model.view.probability[wall] == 1.0
     assert patch.squares() == {(column, row) for column in range(x, x + 4) for row in range(1, 5)}
 
@@ -208,7 +208,7 @@ def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
         polygon = shapely.box(i + aside, j + 1, i + aside + 3, j + 4)
         knowledge.objects = (replace(thing, polygon=polygon, patch=patch_of_polygon(polygon), colour="g"),)
         for column in (i - 1, i, i + 1):
-            memory.occupancy.state[memory.occupancy.index(column, j + 1)] = FULL if wall else OPEN
+            memory.occupancy.state[memory.occupancy.index(column, j + 1)] = OCCUPIED if wall else OPEN
         knowledge._grasp("north")
         return knowledge.memory.in_hand
 

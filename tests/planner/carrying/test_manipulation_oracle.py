@@ -12,7 +12,7 @@ import shapely.affinity
 from geometry.cspace.bottleneck import Bottleneck
 from geometry.manipulation.plan_carrying import CarryingPlan, Inside
 from kb.language.reader import facts_from_text
-from kb.mapping.occupancy import FULL
+from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.task.task import Task
 from kb.world.model import Node
@@ -145,7 +145,7 @@ def test_an_obstacle_that_may_be_part_of_the_object_proves_nothing(inexact: bool
     model = known_model(STOPPED_UP)
     x, y = model.view.west + 11, model.view.south + 5
     small, square = shapely.box(x, y, x + 1, y + 1), shapely.box(x - 4 - apart, y - 1, x - apart, y + 3)
-    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == OCCUPIED
     beside = Node("o1", "object", POSSIBLE_OBJECT - 1, "part1", patch_of_polygon(small), 0, polygon=small)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square, moved=True, inexact=inexact)
     model = replace(model, objects=(beside, node))
@@ -165,7 +165,7 @@ def test_an_immovable_obstacle_may_cover_the_squares_at_its_rim_in_part(movable:
         rows[n] = rows[n][: 11 - half] + "r" * thick + rows[n][12 + half :]
     model = known_model(rows)
     x, y = model.view.west + 11 - half, model.view.south + 6 - half
-    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == FULL
+    assert model.view.state[model.view.locate(x + 0.5, y + 0.5)] == OCCUPIED
     fixed, square = shapely.box(x, y, x + thick, y + thick), shapely.box(x - 6, y - 2, x - 2, y + 2)
     other = Node("o1", "object", 60, "part1", patch_of_polygon(fixed), 0, polygon=fixed, movable=movable)
     node = Node("o2", "object", 99, "part2", patch_of_polygon(square), 0, polygon=square)
@@ -208,7 +208,7 @@ def test_an_object_with_many_contacts_keeps_its_distance(contacts: int, clearanc
     found = ManipulationOracle().find(Request(node, {"r": room}, contacts=contacts), situation_of(model))
     assert isinstance(found, ManipulationPlan)
     walls = shapely.union_all(
-        [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == FULL).nonzero(), strict=True)]
+        [shapely.box(c, r, c + 1, r + 1) for r, c in zip(*(model.view.state == OCCUPIED).nonzero(), strict=True)]
     ).difference(shapely.box(5, 6, 10, 10))
     shape = shapely.Polygon([(x + 5, y + 6) for x, y in ell])
     nearest = 1.0

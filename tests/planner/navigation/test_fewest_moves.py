@@ -16,7 +16,7 @@ from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps
 from planner.screen.sweeps import sweep_is_free
-from planner.screen.unseen_gain import VIEW_REACH
+from planner.screen.unseen_gain import GAIN_REACH
 from planner.sights.frontiers import best_views
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
@@ -127,7 +127,7 @@ def test_the_best_view_has_the_most_gain_for_its_cost() -> None:
     (look,) = best_views(cost_maps, met, MOVE_COST, SQUARE_COST)
     columns = look.squares % met.shape[1]
     assert met.ravel()[look.squares].all()
-    assert columns.min() > 40 - VIEW_REACH  # from further west hardly anything new comes into sight
+    assert columns.min() > 40 - GAIN_REACH  # from further west hardly anything new comes into sight
     assert (columns < 39).any()  # and it need not border on unseen squares
     west = met & (np.arange(met.shape[1]) < columns.min())
     (nearer,) = best_views(cost_maps, west, MOVE_COST, SQUARE_COST)

@@ -7,7 +7,7 @@ import pytest
 
 from geometry.raster.components import with_edge_neighbours
 from kb.language.reader import facts_from_text
-from kb.mapping.occupancy import FULL, OPEN
+from kb.mapping.occupancy import OCCUPIED, OPEN
 from kb.world.corners import Corner
 from planner.goals.corner_goal import approach_for_goals
 from planner.navigation.fewest_moves import FewestMoves
@@ -109,7 +109,7 @@ def test_the_robot_does_not_stand_between_an_object_and_its_corner(corner: tuple
 def test_the_robot_stands_in_the_way_where_no_other_side_is_floor() -> None:
     cost_maps, mask = room()
     by_side = sides(mask)
-    cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, FULL)
+    cost_maps = looking(cost_maps, by_side["west"] | by_side["south"], 1.0, OCCUPIED)
     squares = inspection_squares(cost_maps, mask, 1.0, TO_TAKE._replace(corner=(1, 1)))
     assert len(squares)
     assert (by_side["east"] | by_side["north"]).ravel()[squares].all()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely.affinity import translate
 
 from geometry.motion.se2 import Translate
-from kb.mapping.occupancy import FULL
+from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.world.model import Node, WorldModel
 from planner.skills.failed_grasps import MAX_RETRIES, FailedGrasps
@@ -32,7 +32,7 @@ NORTH = Translate(0.0, 6.0)
 def before_the_door(x: float, wide: float, inexact: bool = True) -> tuple[Node, WorldModel]:
     """Return an object, `wide` squares wide, that stands right below the wall with the door, its west side at x."""
     model = known_model(DOOR)
-    sill = min(row for row in range(1, 12) if model.view.state[model.view.locate(0, row)] == FULL)
+    sill = min(row for row in range(1, 12) if model.view.state[model.view.locate(0, row)] == OCCUPIED)
     polygon = shapely.box(x, sill - 4.0, x + wide, sill)
     node = Node("o1", "object", 95, "part1", patch_of_polygon(polygon), 0, polygon=polygon, moved=True, inexact=inexact)
     return node, replace(model, objects=(node,))
@@ -42,7 +42,7 @@ def walls_of(model: WorldModel) -> shapely.Geometry:
     view = model.view
     boxes = [
         shapely.box(column + view.west, row + view.south, column + view.west + 1, row + view.south + 1)
-        for row, column in zip(*(view.state == FULL).nonzero(), strict=True)
+        for row, column in zip(*(view.state == OCCUPIED).nonzero(), strict=True)
     ]
     return shapely.union_all(boxes)
 

@@ -11,7 +11,7 @@ from shapely.affinity import rotate, translate
 
 from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.localisation.hypotheses.contacts import Obstructions, likeliest_contact_near
-from kb.mapping.occupancy import FREE, FULL, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 
 ELL = shapely.Polygon([(1, 0), (6, 0), (6, 2), (3, 2), (3, 5), (1, 5)])
 UTAK = (0.5, 1.5)
@@ -27,7 +27,7 @@ def map_with(open_: dict[Square, float], full: list[Square]) -> OccupancyMap:
         occupancy.state[occupancy.index(*square)] = OPEN
         occupancy.logit[occupancy.index(*square)] = odds
     for square in full:
-        occupancy.state[occupancy.index(*square)] = FULL
+        occupancy.state[occupancy.index(*square)] = OCCUPIED
     return occupancy
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, Observation, count_contradictions
 from kb.localisation.hypotheses.reestimation import reestimate_two_walks, reestimate_walk
 from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, line_crossings
-from kb.mapping.occupancy import FULL, OccupancyMap
+from kb.mapping.occupancy import OCCUPIED, OccupancyMap
 from kb.perception.frame import Frame, turned
 from kb.perception.retina import count_ranges
 from tests.kb.eyes import Occupied, impression, random_room, world_of
@@ -104,4 +104,4 @@ def known_to_be_occupied(
     for number, (i, j) in enumerate((start, here)):
         samples = Frame().samples()
         occupancy.observe(samples, count_ranges(impression(occupied, (i, j)).retina), i, j, number)
-    return bool(occupancy.state[occupancy.index(*wall)] == FULL)
+    return bool(occupancy.state[occupancy.index(*wall)] == OCCUPIED)

@@ -7,7 +7,7 @@ from shapely.affinity import translate
 from kb.body import Move, Push
 from kb.knowledge import Knowledge
 from kb.localisation.tracker import Tracker
-from kb.mapping.occupancy import FREE, FULL
+from kb.mapping.occupancy import FREE, OCCUPIED
 from kb.objects.held_object import HeldObject
 from tests.kb.eyes import Occupied, impression, world_of
 from tests.kb.localisation.hypotheses.test_remap import around
@@ -62,7 +62,7 @@ def test_an_object_before_a_wall_is_no_larger_than_it_seemed(by: float) -> None:
     assert tracker.state.held_objects["o1"].polygon.equals(
         translate(shapely.box(18, 10, 20, 15), -HERE[0] - by, -HERE[1])
     )
-    assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == FULL
+    assert tracker.state.occupancy.state[tracker.state.occupancy.index(3, 0)] == OCCUPIED
 
 
 def test_an_object_that_was_moved_before_is_no_larger_than_it_seemed() -> None:
