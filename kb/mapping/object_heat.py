@@ -1,5 +1,4 @@
-"""Common features of the completions of the map: how likely squares are occupied, and where an object of a shape
-may be.
+"""Common features of completions: how likely squares are occupied, and where an object of a shape may be.
 
 Counts that settle no single square may yet say where a wall runs, where a door is in it, and that something as wide as
 long stands apart from it: simple maps that agree with all counts (kb.mapping.completions) show it. The share of

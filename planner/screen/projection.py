@@ -22,7 +22,6 @@ from kb.mapping.patch import Patch
 from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from planner.screen.unseen_gain import expected_gain
 
-Bools = Bools  # (rows, columns)
 SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column
 LEVEL_MAX_PROBABILITY = (
     MAX_FREE_PROBABILITY,

@@ -17,7 +17,6 @@ from kb.mapping.occupancy import OPEN
 from kb.world.model import MAX_FREE_PROBABILITY, Node
 from kb.world.rooms import Door
 from planner.screen.projection import (
-    FIFTHS_PER_SQUARE,
     SURELY_OCCUPIED,
     CostMaps,
     SquareIndices,
