@@ -17,9 +17,12 @@ Notes = Ints
 MIN_NOTES, MAX_NOTES = 32, 1024  # room on the smallest and the largest screens (tuned by benchmarks.screens)
 
 
-def new_notes(cells: int) -> Notes:
-    """Return scratch (2, size) for notes and for as many clearances; the size grows with the number of cells."""
-    return np.empty((2, min(max(MIN_NOTES, cells >> 6), MAX_NOTES)), np.int32)
+def new_notes(cells: int, min_notes: int = MIN_NOTES) -> Notes:
+    """Return scratch (2, size) for notes and for as many clearances; the size grows with the number of cells.
+
+    min_notes : the least size.
+    """
+    return np.empty((2, min(max(min_notes, cells >> 6), MAX_NOTES)), np.int32)
 
 
 @bare

@@ -60,17 +60,21 @@ def test_rows_beyond_the_limit_are_announced(
     assert capsys.readouterr().out.endswith("\n... and more than these 10000 rows\n")
 
 
-def test_queries_may_call_the_robot_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    facts = ["node(org).", "offset(org,100,200).", "node(o1)."]
-    monkeypatch.setattr("simulator.run.story.facts_of_line", lambda line: facts)
-    scene = ROOT / "examples" / "go_northeast"
+def test_queries_may_call_the_robot_utak(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "ep.jsonl"
+    main(["run", str(scene), "--log", str(path)])
+    header, waking, *rest = path.read_text().splitlines()
+    line = json.loads(waking)
+    line["belief"]["facts"] = ["node(org).", "offset(org,100,200).", "node(o1)."]
+    path.write_text("\n".join([header, json.dumps(line), *rest]) + "\n")
+    capsys.readouterr()
     for query, said in {
         "offset(utak, E, N)": "E    N\n100  200\n",
         "offset(org, E, N)": "E    N\n100  200\n",
         "node(utak)": "yes\n",
         'X = "utak"': 'X\n"utak"\n',
     }.items():
-        assert main(["query", str(scene), query, "--at", "0"]) == 0
+        assert main(["query", str(path), query, "--at", "0"]) == 0
         assert capsys.readouterr().out == said
 
 
