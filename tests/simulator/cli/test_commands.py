@@ -172,7 +172,7 @@ def expecting(folder: Path, text: str) -> Path:
     return folder
 
 
-def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_test_runs_scenarios(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     expecting(scene, "fails.")
     assert main(["test", str(scene)]) == 0
     assert capsys.readouterr().out == f"ok {scene}: limit in 30 steps: the script has ended\n"
@@ -181,7 +181,7 @@ def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsy
     seen = capsys.readouterr()
     assert f"FAILED {good}: not met: within(0); Utak does not believe that the task is done; limit in 30" in seen.out
     assert "1 of 2 passed" in seen.err
-    monkeypatch.setattr(sys.modules["planner.cycle"], "Robot", DoneRobot)
+    scripted_robot.install(DoneRobot)
     assert main(["test", str(good)]) == 0
     assert main(["test", str(scene)]) == 1
     assert "Utak believes that an impossible task is done" in capsys.readouterr().out

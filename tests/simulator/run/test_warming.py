@@ -123,7 +123,7 @@ def test_only_uncompiled_uses_are_compiled(monkeypatch) -> None:
 CODE = """
 import numpy as np
 from geometry.kernels import jit
-jit.NOTICE_DELAY, jit.PROGRESS_INTERVAL = 0.0, 0.0
+jit.PROGRESS.notice_delay, jit.PROGRESS.interval = 0.0, 0.0
 from geometry.homotopy.funnel import measure_line
 measure_line(np.zeros((2, 2)), 2)
 print(*jit.kernel_status())
