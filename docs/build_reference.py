@@ -23,6 +23,7 @@ MADE = "Made from the code by `python docs/build_reference.py`; do not edit.\n"
 # What a program that uses the geometry alone calls, by module, in reading order.
 GEOMETRY = {
     "geometry.screen": ["Screen"],
+    "geometry.skeleton.pathgraph_arrays": ["PathgraphArrays"],
     "geometry.routes.route": ["Route"],
     "geometry.passages.necks": ["Passage"],
     "geometry.cspace.plan_motion": ["plan_motion", "MotionPlan"],
@@ -69,9 +70,9 @@ def cell(text: str) -> str:
 
 def commands_page() -> str:
     """Return the page with every command of `utak` and its options."""
-    from simulator.cli.parsing import COMMANDS, EXIT_CODES, parser
+    from simulator.cli.parsing import COMMANDS, EXIT_CODES, build_parser
 
-    parts = next(action for action in parser()._actions if isinstance(action, argparse._SubParsersAction))
+    parts = next(action for action in build_parser()._actions if isinstance(action, argparse._SubParsersAction))
     helps = {choice.dest: choice.help for choice in parts._choices_actions}
     lines = ["# Commands", "", MADE, EXIT_CODES[0].upper() + EXIT_CODES[1:] + "."]
     for command in COMMANDS:

@@ -244,15 +244,18 @@ def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
     """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to."""
     (ax, ay), (bx, by) = _mouth_ends(walls, mouth)
     x, y = (ax + bx) / 2, (ay + by) / 2
-    found = [
-        ((column + 0.5 - x) ** 2 + (row + 0.5 - y) ** 2, row, column)
-        for column, row in _squares_of(walls, mouth.floor)
-        if (bx - ax) * (row + 0.5 - ay) - (by - ay) * (column + 0.5 - ax) < 0 and (column, row) not in taken
-    ]
-    if not found:  # no centre lies in so small a piece of floor: take the square that begins at the midpoint
+    mask, west, south = _centre_mask(walls.corners[walls.triangles[list(mouth.floor)]])
+    for column, row in taken:
+        if 0 <= row - south < mask.shape[0] and 0 <= column - west < mask.shape[1]:
+            mask[row - south, column - west] = False
+    rows, columns = np.nonzero(mask)
+    across, up = columns + (west + 0.5), rows + (south + 0.5)
+    beyond = (bx - ax) * (up - ay) - (by - ay) * (across - ax) < 0
+    across, up = across[beyond], up[beyond]
+    if not len(across):  # no centre lies in so small a piece of floor: take the square that begins at the midpoint
         return np.floor(x + GATE_OFFSET * (by - ay)) + 0.5, np.floor(y - GATE_OFFSET * (bx - ax)) + 0.5
-    _, row, column = min(found)
-    return column + 0.5, row + 0.5
+    nearest = int(np.argmin((across - x) ** 2 + (up - y) ** 2))  # of several the one first by row, then by column
+    return float(across[nearest]), float(up[nearest])
 
 
 def _squares_of(walls: Walls, triangles: Iterable[int]) -> tuple[tuple[int, int], ...]:
@@ -267,13 +270,22 @@ def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
 
 def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
     """Return the squares (column, row) whose centres lie in triangles (n, 3, 2), or on their edges; by row."""
+    mask, west, south = _centre_mask(triangles)
+    rows, columns = np.nonzero(mask)
+    return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))
+
+
+def _centre_mask(triangles: Longs) -> tuple[Bools, int, int]:
+    """Return a mask of the squares whose centres lie in triangles (n, 3, 2), or on their edges, and its corner.
+
+    The mask is (rows, columns) bool; its square [0, 0] is that in column `west` and row `south`, which are returned.
+    """
     if not len(triangles):
-        return ()
+        return np.zeros((0, 0), np.bool_), 0, 0
     (west, south), (east, north) = triangles.min(axis=(0, 1)).tolist(), triangles.max(axis=(0, 1)).tolist()
     mask = np.zeros((north - south, east - west), np.bool_)
     mark_centres(2 * (triangles - np.array([west, south])), mask)
-    rows, columns = np.nonzero(mask)
-    return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))
+    return mask, west, south
 
 
 @compiled

@@ -157,7 +157,7 @@ class _WalkExplainer:
     def _blocked_walk(self, command: Move) -> tuple[Explanation, ...]:
         """Return where the walk may have ended, its whole way included, as far as the observation agrees."""
         surprise = self._state.surprise(command, self._ranges)
-        motion = Translate(*self._state.frame.to_lattice(command.east, command.north))
+        motion = Translate(*self._state.frame.to_map(command.east, command.north))
         found = possible_ends(surprise, None, motion)
         ended = [(end, self._explanation(end.how, end.place, found[0].place)) for end in found]
         return consistent_ends(surprise, ended)

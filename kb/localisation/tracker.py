@@ -98,7 +98,7 @@ class Tracker:
             self.state = state = replace(state, in_hand=None)
         shift = (0.0, 0.0)
         if isinstance(command, Move) and state.in_hand is None:
-            shift = state.frame.to_lattice(command.east, command.north)
+            shift = state.frame.to_map(command.east, command.north)
         x, y = state.place
         return self._after_walk(
             ranges, DeadReckoning((x + shift[0], y + shift[1]), blocked_ends((x, y), shift)), command

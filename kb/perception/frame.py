@@ -71,7 +71,7 @@ class Frame:
     angle: int = 0
     origin: XY = CENTRE
 
-    def to_lattice(self, east: float, north: float) -> XY:
+    def to_map(self, east: float, north: float) -> XY:
         """Return a vector of the robot frame as a vector (x, y) of the map frame, in squares."""
         return turned(east, north, self.angle)
 
@@ -85,7 +85,7 @@ class Frame:
 
     def place_from_utak(self, east: float, north: float) -> XY:
         """Return a point of the robot frame as a point (x, y) of the map frame, in squares."""
-        x, y = self.to_lattice(east, north)
+        x, y = self.to_map(east, north)
         return x + self.origin[0], y + self.origin[1]
 
     def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
@@ -114,7 +114,7 @@ class Frame:
 
         They are several where the direction points between two squares.
         """
-        column, row = self.to_lattice(*ADJACENT_OFFSETS[DIRECTIONS.index(direction)])
+        column, row = self.to_map(*ADJACENT_OFFSETS[DIRECTIONS.index(direction)])
         return [(x, y) for x in _nearest_squares(column) for y in _nearest_squares(row)]
 
     def directions(self) -> dict[Square, str]:

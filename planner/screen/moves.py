@@ -233,7 +233,7 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
     """
     if not isinstance(command, Move):
         return command
-    dx, dy = model.frame.to_lattice(command.east, command.north)
+    dx, dy = model.frame.to_map(command.east, command.north)
     if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
         return command
     return _straight_to(place, model)

@@ -83,7 +83,7 @@ class FrameHypothesis(NamedTuple):
         place : a point of Utak's own frame, (east, north) in squares.
         """
         west, south, east, north = self.box
-        dx, dy = Frame(self.angle).to_lattice(*place)
+        dx, dy = Frame(self.angle).to_map(*place)
         columns = _split_interval(west, east, math.ceil(dx) - dx)
         rows = _split_interval(south, north, math.ceil(dy) - dy)
         return [self._replace(box=(w, s, e, n)) for w, e in columns for s, n in rows]
@@ -245,7 +245,7 @@ def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
 
     For all of these origins everything at rest looked the same.
     """
-    away = np.array([frame.to_lattice(*observation.place) for observation in observations]).reshape(-1, 2)
+    away = np.array([frame.to_map(*observation.place) for observation in observations]).reshape(-1, 2)
     corners = observation_squares(frame, observations)
     west, south = np.maximum((corners - away).max(0), 0.0).tolist()
     east, north = np.minimum((corners + 1 - away).min(0), 1.0).tolist()

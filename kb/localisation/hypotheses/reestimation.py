@@ -83,7 +83,7 @@ class WalkCorrection(NamedTuple):
 
     def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
         """Return an object where it lies as corrected."""
-        aside = Translate(*frame.to_lattice(*self._aside(held.name)))
+        aside = Translate(*frame.to_map(*self._aside(held.name)))
         if not any(aside):
             return held
         first = held.first if held.name == self.in_hand else aside.carry(held.first)
@@ -282,7 +282,7 @@ class WalkInFrame:
     def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
         """Find the ends of a motion. observations : all, at their believed places."""
         x, y = observations[motion.number - 1].place
-        self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_lattice(*motion.shift))
+        self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_map(*motion.shift))
         halts = [
             WalkEnd(frame.place_to_utak(*place), at)
             for at in range(len(met))

@@ -321,7 +321,7 @@ def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motio
     """Return a command as a motion of the map frame. place : of Utak when the command is given, map frame."""
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
-    return Translate(*frame.to_lattice(command.east, command.north))
+    return Translate(*frame.to_map(command.east, command.north))
 
 
 def count_clashes(

@@ -73,7 +73,7 @@ class CarriedMotion:
         pose = next(pose for pose in observations[-1].moved if pose.name == motion.in_hand)
         self._place = frame.place_from_utak(*observations[-1].place)
         self._polygon = object_at(held_objects[motion.in_hand], pose, frame).polygon
-        self._motion = Translate(*frame.to_lattice(*motion.shift))
+        self._motion = Translate(*frame.to_map(*motion.shift))
         before = remap(
             frame, frame, observations, held_objects.values(), surprise.prefixes.first(motion.number)
         ).occupancy

@@ -1,9 +1,9 @@
-"""The examples of docs/reference-incremental.md give what the page says."""
+"""The examples of docs/changing_screens.md give what the page says."""
 
 import doctest
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference-incremental.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "changing_screens.md"
 
 
 def test_the_examples_of_the_reference_page_hold():

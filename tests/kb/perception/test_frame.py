@@ -40,14 +40,14 @@ def test_quarter_turns_are_exact(x: int, y: int, quarters: int) -> None:
 
 @given(vector, frames)
 def test_a_vector_and_its_way_back_are_the_same(v: tuple[float, float], frame: Frame) -> None:
-    assert frame.to_utak(*frame.to_lattice(*v)) == pytest.approx(v, abs=1e-9)
+    assert frame.to_utak(*frame.to_map(*v)) == pytest.approx(v, abs=1e-9)
     assert frame.place_to_utak(*frame.place_from_utak(*v)) == pytest.approx(v, abs=1e-9)
 
 
 @given(vector, vector, frames)
 def test_places_differ_by_vectors(p: tuple[float, float], v: tuple[float, float], frame: Frame) -> None:
     x, y = frame.place_from_utak(*p)
-    dx, dy = frame.to_lattice(*v)
+    dx, dy = frame.to_map(*v)
     assert frame.place_from_utak(p[0] + v[0], p[1] + v[1]) == pytest.approx((x + dx, y + dy), abs=1e-9)
     assert frame.place_from_utak(0, 0) == pytest.approx(frame.origin)
 
