@@ -319,8 +319,11 @@ def patched_globals(root: Path) -> Iterator[str]:
                         yield f"{short(path, root)}:{line or node.lineno} patches {text}"
 
 
-SETTERS = ("setattr", "delattr", "setitem", "delitem")  # of pytest's MonkeyPatch; the first two also of Python
-MOCKS = ("patch", "patch.object", "patch.multiple", "patch.dict")  # of unittest.mock, with "mock." before them or not
+# The calls of Python, of pytest's MonkeyPatch under whatever name, and of unittest.mock that put in or take away.
+PATCHING = re.compile(
+    r"(.*\.)?(set|del)(attr|item)|(unittest\.)?(mock\.|mocker\.)?patch(\.(object|multiple|dict))?", re.DOTALL
+)
+PATCHED_ARGUMENTS = ("target", "dic", "in_dict")  # the names of their first arguments
 
 
 def _programs_in(tree: ast.Module) -> Iterator[tuple[int, ast.Module]]:
@@ -335,19 +338,15 @@ def _programs_in(tree: ast.Module) -> Iterator[tuple[int, ast.Module]]:
 
 def _patched(node: ast.AST) -> Iterator[ast.expr]:
     """Yield the expressions for that in which a statement or a call puts something else."""
-    if isinstance(node, ast.Call) and node.args:
-        called = ast.unparse(node.func)
-        if (
-            called.rpartition(".")[2] in SETTERS
-            or called.removeprefix("unittest.").removeprefix("mock.").removeprefix("mocker.") in MOCKS
-        ):
-            yield node.args[0]
+    if isinstance(node, ast.Call) and PATCHING.fullmatch(ast.unparse(node.func)):
+        yield from node.args[:1]
+        yield from (word.value for word in node.keywords if word.arg in PATCHED_ARGUMENTS)
     elif isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store | ast.Del):
         yield node.value
 
 
 def _bound_names(tree: ast.Module) -> dict[str, str]:
-    """Return the dotted names of ours that the imports of a program, at whatever depth, bind to names."""
+    """Return the dotted names of ours that a program, at whatever depth, binds to names."""
     named = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -356,6 +355,14 @@ def _bound_names(tree: ast.Module) -> dict[str, str]:
                 named[alias.asname or whole] = whole
         elif isinstance(node, ast.ImportFrom) and node.module:
             named |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            value = node.value
+            if isinstance(value, ast.Call) and ast.unparse(value.func).endswith("import_module") and value.args:
+                named.setdefault(node.targets[0].id, str(getattr(value.args[0], "value", "")))
+            elif isinstance(value, ast.Name | ast.Attribute):
+                first, dot, rest = ast.unparse(value).partition(".")
+                named.setdefault(node.targets[0].id, named.get(first, "") + dot + rest)
     return {name: whole for name, whole in named.items() if whole.split(".")[0] in PATCHED_PACKAGES}
 
 
