@@ -43,9 +43,14 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     Parameters
     ----------
     bones : SkeletonGraph
-        Nodes and chains of the skeleton.
+        Nodes and chains of the skeleton; its array of nodes becomes part of the result.
     state : (rows + 2, columns + 2) uint8
-        Links of the skeleton.
+        Links of the skeleton (see skeleton.py), of which ``bones`` was made.
+
+    Returns
+    -------
+    Chains
+        Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
     """
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)
@@ -60,7 +65,32 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
 def fill_cells(
     states: Flags, width: int, node: Ints, port: Ints, lowest: Ints, start: Ints, cells: Ints, neck: Ints, leave: Ints
 ) -> None:
-    """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave`` (-1 at first)."""
+    """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave``.
+
+    Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+
+    Parameters
+    ----------
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    width : int
+        Width of the padded screen.
+    node : (n,) int32
+        Cell of each node.
+    port : (m, 2) int32
+        First and last end of each chain: 4 times the number of the node plus the direction (0 east, 1 north, 2 west, 3
+        south) in which the chain leaves it.
+    lowest : (m,) int32
+        Cell of the lowest place of each chain.
+    start : (m + 1,) int32
+        Index into ``cells`` at which those of each chain start.
+    cells : (start[m],) int32
+        Filled with the cells of all chains, both end nodes included.
+    neck : (m,) int32
+        Filled with the index into ``cells`` of the lowest cell of each chain, the first one when a ring has it twice.
+    leave : (n, 4) int32
+        All -1 at first; filled with the number of the chain that leaves a node to the east, north, west, south.
+    """
     for chain in range(port.shape[0]):
         cell, direction = node[port[chain, 0] >> 2] + 0, port[chain, 0] & 3
         leave[port[chain, 0] >> 2, direction] = chain
