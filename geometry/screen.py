@@ -43,9 +43,9 @@ MAX_SIDE = 32766  # squares: with its frame a column of them can be counted in 1
 class Screen:
     """Free space on a grid of squares.
 
-    Points are (x, y) in squares, x to the east and y to the north; the square in column i and row j has its centre at
-    (i + 0.5, j + 0.5). A point passes between squares that share an edge. It may touch the corners of blocked squares,
-    but never passes between two blocked squares that touch at a corner.
+    Points are (x, y) in squares, x to the east and y to the north, from the south-west corner; the square in column i
+    and row j has its centre at (i + 0.5, j + 0.5). A point passes between squares that share an edge. It may touch the
+    corners of blocked squares, but never passes between two blocked squares that touch at a corner.
 
     Parameters
     ----------
@@ -94,7 +94,8 @@ class Screen:
         Parameters
         ----------
         rows, columns : (n,) array of int
-            Row and column of each square. Of a square named more than once the last value counts.
+            Row (0 in the south) and column of each square, whole numbers. Of a square named more than once the last
+            value counts.
         values : (n,) array of bool, or bool
             True where the square becomes free, False where it becomes blocked; one value for all squares or one for
             each.
@@ -191,7 +192,8 @@ class Screen:
         Returns
         -------
         networkx.MultiGraph
-            As ``pathgraph``, of the squares whose clearance is at least the radius; empty when there are none. A new
+            As ``pathgraph`` (nodes with ``x``, ``y``, ``clearance``, edges with ``length``, ``clearance``, ``points``,
+            all in squares), of the squares whose clearance is at least the radius; empty when there are none. A new
             graph at each call.
 
         Raises

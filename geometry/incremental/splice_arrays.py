@@ -23,7 +23,10 @@ SPARE_ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many m
 
 
 class Splice(NamedTuple):
-    """The nodes after a change, and their numbers before and after it.
+    """The nodes of a skeleton's graph after a change, and their numbers before and after it.
+
+    Cells are flat indices into the padded screen. Only a stretch of the list of nodes, which is ordered by cells, is
+    merged anew; nodes before it keep their numbers.
 
     Attributes
     ----------

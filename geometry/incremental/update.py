@@ -32,9 +32,10 @@ def change_squares(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares; changed in place.
+        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton; changed in place.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
     bones : SkeletonGraph
         The graph before the change. Its arrays may become those of the result.
     rows, columns : (n,) int32

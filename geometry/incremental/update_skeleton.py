@@ -44,7 +44,8 @@ class ChangeLog(NamedTuple):
     states : (cells,) uint8
         The states of the skeleton, which are changed in place.
     mark : (cells,) uint8
-        TOUCHED, MOVED and the like, 0 for all other cells.
+        Bits: TOUCHED (1, logged), MOVED (2, other clearance), JOINED (4, its chain is joined again), PASSED (8, a walk
+        has passed it); 0 for all other cells.
     touched : (cells,) int32
         Room for the touched cells, of which the first ``size[0]`` are listed.
     before : (cells,) uint8
@@ -68,9 +69,10 @@ def regrow(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares; changed in place.
+        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton; changed in place.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
     bounds : (rows + 2, 3) int32
         For each row the first and last column that change, and the index in ``fresh`` of the value of the first. The
         last is -1 in rows where none does.

@@ -183,7 +183,11 @@ def largest_distance(out: SquaredDistances) -> int:
 
 @bare
 def steps_needed_for(largest: int) -> int:
-    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared."""
+    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared.
+
+    Sites (nearest blocked squares of columns) further aside are no nearer than that. Rounded up to whole columns; 0 for
+    0 and 1.
+    """
     return int(np.ceil(0.5 * np.sqrt(float(largest)) - 0.5))
 
 

@@ -16,8 +16,8 @@ def disc_stays_clear(square: SquaredDistances, start: XY, goal: XY, radius: floa
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) squared clearances in half squares, padded (see distance_transform); 0 where
-        blocked.
+    square : (rows + 2, columns + 2) squared clearances in half squares, (2 * clearance in squares)^2, padded by one
+        blocked cell on each side; 0 where blocked.
     start, goal : points (x, y) in squares, both in the same square of the raster; (0, 0) is its south-west corner,
         without the padding.
     radius : radius of the disc, in squares.

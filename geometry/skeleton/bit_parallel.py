@@ -23,7 +23,8 @@ EVEN_BYTES, EVEN_PAIRS, LOWER_HALF = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xF
 def degrees(word: int) -> int:
     """Return a word with the number of links (0 to 4) of each of its eight cells in the byte of the cell.
 
-    `word` : the states of eight cells, a byte each (see skeleton.py); a link is one of the four lowest bits.
+    `word` : the states of eight cells, a byte each (see skeleton.py); a link is one of the four lowest bits (1 east, 2
+        north, 4 west, 8 south).
     """
     return (word & LOWEST_BITS) + (word >> 1 & LOWEST_BITS) + (word >> 2 & LOWEST_BITS) + (word >> 3 & LOWEST_BITS)
 
@@ -36,7 +37,7 @@ def node_marks(word: int, degree: int) -> int:
 
     Parameters
     ----------
-    word : the states of eight cells, a byte each (see skeleton.py).
+    word : the states of eight cells, a byte each: bits 1 to 8 links, 16 to 64 flags, 128 HALT.
     degree : their numbers of links, as `degrees` returns them.
     """
     two = degree >> 1 & ~degree

@@ -39,7 +39,7 @@ class Buffers(NamedTuple):
 
 
 class Tenant:
-    """The holder of a set of arrays: when it dies, the set is spare."""
+    """The holder of a set of arrays, without attributes: when it is collected, the set is spare."""
 
 
 class Scratch(NamedTuple):
@@ -78,7 +78,7 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
     shape : (int, int)
         Padded shape: (rows + 2, columns + 2).
     kind : type
-        Least type of ``square``; a spare set of the larger type serves as well.
+        Least type of ``square``, np.int16 or np.int32; a spare set of the larger type serves as well.
 
     Returns
     -------

@@ -11,7 +11,10 @@ from geometry.skeleton.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):
-    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+    """The pathgraph of n nodes and m chains, by cells of the padded screen.
+
+    A cell is the flat index row * (columns + 2) + column, both counted with the blocked frame of one cell, from the
+    south-west. Nodes are junctions and ends of the skeleton, chains the lines of cells between them.
 
     Attributes
     ----------
@@ -26,7 +29,7 @@ class Chains(NamedTuple):
     cells : (start[m],) int32
         Cells of all chains, one chain after the other, both end nodes included.
     neck : (m,) int32
-        Index into ``cells`` of the lowest cell of each chain in the total order of skeleton.py.
+        Index into ``cells`` of the lowest cell of each chain (least clearance, then least index): its narrowest place.
     """
 
     node: Ints
@@ -45,7 +48,7 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     bones : SkeletonGraph
         Nodes and chains of the skeleton; its array of nodes becomes part of the result.
     state : (rows + 2, columns + 2) uint8
-        Links of the skeleton (see skeleton.py), of which ``bones`` was made.
+        Links of the skeleton (bits 1, 2, 4, 8 to the east, north, west, south), of which ``bones`` was made.
 
     Returns
     -------

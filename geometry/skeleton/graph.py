@@ -23,7 +23,10 @@ WORDS_AHEAD = 1 << 14  # words of states listed ahead of the walk: twice as many
 
 
 class SkeletonGraph(NamedTuple):
-    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+    """The pathgraph of n nodes and m chains, by cells of the padded screen.
+
+    A cell is the flat index row * (columns + 2) + column, both counted with the blocked frame of one cell, from the
+    south-west. Nodes are junctions and ends of the skeleton, chains the lines of cells between them.
 
     Attributes
     ----------
@@ -33,7 +36,7 @@ class SkeletonGraph(NamedTuple):
         First and last end of each chain, as 4 times the number of the node plus the direction in which the chain leaves
         it (0 east, 1 north, 2 west, 3 south). The first ends ascend, and each is less than its last end.
     neck : (m,) int32
-        Lowest cell of each chain in the total order of skeleton.py: its narrowest place.
+        Lowest cell of each chain (least clearance, then least index): its narrowest place.
     steps : (m,) int32
         Number of steps from square to square from end to end of each chain.
     """
@@ -50,10 +53,11 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares.
+        Squared clearances in half squares, (2 * clearance in squares)^2.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton (see skeleton.py); the bit HALT of the first cell (least index) of a ring
-        without a junction is set.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. That bit, HALT, of
+        the first cell (least index) of a ring without a junction is set.
     words : (n,) uint64
         The memory of ``state`` by eights.
 
@@ -209,7 +213,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Return whether a cell of this state (see skeleton.py) is a node.
+    """Return whether a cell of this state (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
 
     It is when flagged HALT, or with links or flags but not two links. State 0, off the skeleton, is none.
     """

@@ -19,8 +19,9 @@ class PathgraphArrays(NamedTuple):
 
     Nodes are the junctions and ends of the skeleton, edges the chains between them. Lengths, clearances and
     coordinates are in squares; points are (x, y) in the frame of the screen, where the square in column i and row j
-    has its centre at (i + 0.5, j + 0.5). Nodes come in ascending order of (y, x), edges in ascending order of their
-    first node. The arrays of a ``Screen`` are read-only.
+    has its centre at (i + 0.5, j + 0.5), row 0 in the south. Nodes come in ascending order of (y, x), edges in
+    ascending order of their first node. The clearance of a point is its distance to the nearest point of a square that
+    is not free. The arrays of a ``Screen`` are read-only.
 
     Attributes
     ----------
@@ -91,7 +92,7 @@ class PathgraphArrays(NamedTuple):
         Parameters
         ----------
         edge : int
-            Number of the edge, from 0 on.
+            Number of the edge, from 0 on: its row of ``edges``.
 
         Returns
         -------
@@ -107,9 +108,10 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, with a blocked frame.
+        Squared clearances in half squares, (2 * clearance in squares)^2, with a blocked frame.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton (see skeleton.py).
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
     bones : SkeletonGraph
         The nodes and chains of ``state``.
 

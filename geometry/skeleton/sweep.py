@@ -22,11 +22,14 @@ def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -
     Parameters
     ----------
     free : (rows, columns) bool
-        Free squares.
+        True on free squares; row 0 in the south.
     square : (rows + 2, columns + 2) int16 or int32
-        Filled with squared clearances in half squares (see distance_transform.py); its type must hold them.
+        Filled with squared clearances in half squares, (2 * clearance in squares)^2, 0 where blocked; its type must
+        hold them. The first and last row and column are a blocked frame.
     state : (rows + 2, columns + 2) uint8
-        Filled with the links and flags of the skeleton (see skeleton.py).
+        Filled with the links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north,
+        west, south; 16 says that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a
+        ring.
     words : (n,) uint64
         The memory of ``state`` by eights, 0 beyond its last cell.
     """
@@ -44,7 +47,7 @@ def grow_all(square: SquaredDistances, level: int, state: States, words: Words) 
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares.
+        Squared clearances in half squares, (2 * clearance in squares)^2.
     level : int
         The least squared clearance, in half squares, that counts as free; the higher, the larger the body and the
         smaller the skeleton. Levels beyond the type of ``square`` count as its greatest value.
