@@ -62,14 +62,17 @@ class Destination:
 def unreachable_reason(where: Sequence[Destination]) -> str:
     """Return in words why goals cannot be attained although it is known where each of them holds.
 
+    Either no way leads there, or no square is in all of the destinations.
+
     Parameters
     ----------
     where : Sequence[Destination]
-        The destinations of all goals, none of which can be reached.
+        The destinations of all goals, at least one, none of which can be reached.
 
     Returns
     -------
     str
+        A clause without full stop.
     """
     both = [set(d.squares.tolist()) for d in where]
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"

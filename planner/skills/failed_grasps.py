@@ -23,9 +23,10 @@ class FailedGrasps:
         return any(self._failed.values())
 
     def record(self, node: Node | None, model: WorldModel) -> None:
-        """Record that a grasp of an object from the robot's present square failed; nothing for an unknown outline.
+        """Record that a grasp of an object from the robot's present square failed.
 
-        Both the present place and the middle of the square are recorded, for plans grasp from the middle.
+        Nothing is recorded for None, and for an object of unknown outline. Both the present place and the middle of the
+        square are recorded, for plans grasp from the middle.
         """
         if node is None or node.polygon is None:
             return
@@ -35,7 +36,10 @@ class FailedGrasps:
         self._failed[node.name] = (*self._failed.get(node.name, ()), *_rotated(grasps, -node.turned))
 
     def grasps(self, node: Node) -> tuple[XY, ...]:
-        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares."""
+        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
+
+        Along the axes of the map, in the order of recording; () for none. The middle is the centroid of the outline.
+        """
         return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
     def forgive(self, node: Node) -> bool:
@@ -53,5 +57,8 @@ class FailedGrasps:
 
 
 def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
-    """Return grasps, (n, 2) from the object's middle, after the object is turned by degrees, counter-clockwise."""
+    """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
+
+    grasps : (n, 2), (x, y) from the object's middle, in squares.
+    """
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))
