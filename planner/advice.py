@@ -52,7 +52,7 @@ class See:
 
     Attributes
     ----------
-    viewpoint : the squares from which they can be seen, and the reason.
+    viewpoint : the squares from which they can be seen (flat indices on the arrays of the view), and the reason.
     """
 
     viewpoint: Viewpoint

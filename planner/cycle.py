@@ -41,7 +41,7 @@ class StepReport(NamedTuple):
     ----------
     command : the command that was given; None on waking.
     impression : what the body returned after it.
-    belief : what is believed since, ready for JSON.
+    belief : what is believed since, ready for JSON, as `kb.world.facts.belief` returns it.
     why : the reason of the command, in words.
     """
 
@@ -108,6 +108,11 @@ class Robot:
         -------
         StepReport
             The first impression and what is believed after it; its command is None.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
         """
         impression = self.body.wake()  # (2)
         self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
@@ -127,6 +132,8 @@ class Robot:
         ------
         ValueError
             When the task has ended.
+        BadInputError
+            The user's encodings are wrong.
         """
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:

@@ -40,7 +40,10 @@ class Stage:
 
     @property
     def goes_on(self) -> bool:
-        """Whether the robot has more to do when all objects are where they shall be."""
+        """Whether the robot has more to do when all objects of the stage are where they shall be.
+
+        It has when another stage follows, or when the stage has goals for the robot itself.
+        """
         return self.followed or len(self.own) > 0
 
     def __str__(self) -> str:

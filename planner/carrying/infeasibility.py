@@ -69,8 +69,8 @@ class Infeasibility:
     Attributes
     ----------
     proved : whether there is none, whatever the unseen squares hold.
-    message : why, in words; "" where the refutation tells it.
-    refutation : what geometry refuted; None when nothing was proved.
+    message : why, in words, without full stop; "" where the refutation tells it.
+    refutation : what geometry refuted; None when nothing was proved, or when it needed no geometry.
     """
 
     proved: bool
@@ -89,7 +89,7 @@ class Infeasibility:
         return None if self.refutation is None else self.refutation.neck()
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""
         return "" if self.refutation is None else self.refutation.unless()
 
 

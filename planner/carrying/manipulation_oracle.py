@@ -62,7 +62,7 @@ class OtherObjects(StrEnum):
     Attributes
     ----------
     CLEAR : lead round all of them.
-    ASIDE : lead as if those that may be moved were not there.
+    ASIDE : lead as if those that may be moved were not there; they are then moved aside first.
     """
 
     CLEAR = "clear"
@@ -99,7 +99,7 @@ class ManipulationPlan:
 
     @property
     def is_simple(self) -> bool:
-        """Return whether it takes one grasp, one or two pushes and no turn."""
+        """Return whether the plan takes one grasp, at most two pushes and no turn."""
         legs = self.plan.legs
         return len(legs) == 1 and len(legs[0].motions) <= 2 and all(isinstance(m, Translate) for m in legs[0].motions)
 
@@ -149,10 +149,17 @@ class CarryingFloor(NamedTuple):
 
 
 class ManipulationOracle:
-    """Finds manipulation plans, and remembers what geometry answered to the same question."""
+    """Finds manipulation plans, and remembers what geometry answered to the same question.
+
+    It asks geometry for one end, one certainty level of squares and one treatment of other objects at a time; an
+    encoding chooses the order.
+    """
 
     def __init__(self, pull: bool = True) -> None:
-        """Make an oracle that has been asked nothing. pull : whether a held object may be pulled."""
+        """Make an oracle that has been asked nothing.
+
+        pull : whether a held object may be pulled; False when it may only be pushed.
+        """
         self._pull = pull
         self._answers: dict[tuple[Any, ...], CarryingPlan] = {}
         self._found_nothing = False  # whether the last request had no plan

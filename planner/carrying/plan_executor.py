@@ -58,7 +58,7 @@ class PlanExecutor:
     ----------
     pull : whether a held object may be pulled.
     failed : the grasps by which an object did not move. Only this class changes it.
-    missed : plans that ended, with the object in hand, before they led to their end, since `forget_misses`.
+    missed : how many plans ended, with the object in hand, before they led to their end, since `forget_misses`.
     """
 
     def __init__(
@@ -72,9 +72,9 @@ class PlanExecutor:
 
         Parameters
         ----------
-        pull : whether a held object may be pulled.
+        pull : whether a held object may be pulled; False when it may only be pushed.
         oracle : what finds plans; a new one if None. It belongs to this executor from now on.
-        plan : a plan that is under way already; None for none.
+        plan : a plan that is under way already, map frame; None for none.
         operations : the functions on remaining plans; the real ones if None.
         """
         self.pull = pull
@@ -93,7 +93,7 @@ class PlanExecutor:
 
     @property
     def turns(self) -> bool:
-        """Return whether the plan under way turns its object."""
+        """Return whether what is left of the plan under way turns its object; False when there is no plan."""
         legs = () if self._plan is None else self._plan.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
@@ -150,7 +150,7 @@ class PlanExecutor:
         return found if isinstance(found, Infeasibility) else None
 
     def forget_misses(self) -> None:
-        """Count missed plans from zero again."""
+        """Count missed plans (`missed`) from zero again."""
         self.missed = 0
 
     def release_looping(self, model: WorldModel) -> Act:
@@ -241,12 +241,15 @@ class PlanExecutor:
         return unplanned_act(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
     def drop_other_plan(self, name: str) -> None:
-        """Drop the plan under way unless it carries the object `name`."""
+        """Drop the plan under way unless it carries the object `name`; nothing happens when there is none."""
         if self._plan is not None and self._plan.name != name:
             self._plan = None
 
     def depart(self, act: Act) -> None:
-        """Note that a command is given. A push that no plan asks for ends the plan under way."""
+        """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan.
+
+        act : what is given; nothing is noted for a command of a plan.
+        """
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
@@ -280,8 +283,13 @@ class PlanExecutor:
         """Return what to do when a motion did not move the held object: draw it back once, then release it.
 
         An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
-        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. plan :
-        the one that no longer holds. Returns None when nothing failed.
+        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
+        None when nothing failed, or when nothing is held: then a grasp that the plan relied on is marked as failed.
+
+        Parameters
+        ----------
+        plan : the one that no longer holds; None for none.
+        model : what is believed.
         """
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:

@@ -94,5 +94,5 @@ def turn_cost(model: WorldModel) -> float:
 
 
 def _first_see(looks: Iterable[Viewpoint]) -> See | None:
-    """Return the advice to use the first of some viewpoints that has squares; None for none."""
+    """Return the advice to use the first of some viewpoints that has squares; None when none has."""
     return next((See(look) for look in looks if len(look.squares)), None)

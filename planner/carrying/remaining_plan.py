@@ -59,7 +59,10 @@ class RemainingPlan:
 
     @property
     def ended(self) -> bool:
-        """Return whether nothing is left but to release the object. That is done only when the hand is needed."""
+        """Return whether nothing is left but to release the object, or nothing at all.
+
+        The release is done only when the hand is needed.
+        """
         return not self.legs or (self.grasped and len(self.legs) == 1 and not self.legs[0].motions)
 
     @property
@@ -208,7 +211,7 @@ def square_index(place: XY, model: WorldModel) -> SquareIndices:
 
 
 def is_at(model: WorldModel, place: XY) -> bool:
-    """Return whether the robot stands exactly at a point (x, y) of the map frame, but for rounding."""
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 

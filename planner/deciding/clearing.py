@@ -124,7 +124,7 @@ class ObstacleClearer:
     """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile."""
 
     def __init__(self) -> None:
-        """Be moving nothing."""
+        """Make a clearer that is moving nothing."""
         self._moving = ""
         self._stays: frozenset[str] = frozenset()
 

@@ -269,7 +269,7 @@ class Decider:
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
-        """Return what the parameters of the task mean now, and remember it as bound."""
+        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound."""
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)

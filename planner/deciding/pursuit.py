@@ -98,7 +98,10 @@ class Pursuer:
             self._circles.tire(to_map_squares(subgoal.squares, model))
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
+        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
+
+        look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
+        """
         if look is None:
             return None
         return self.pursue([look], stage, situation, lambda: look.what, TaskVerdict.LIMIT)

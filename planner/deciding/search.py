@@ -235,6 +235,6 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
-    """Return whether a subgoal can be reached over squares that are surely free."""
+    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0)."""
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

@@ -87,8 +87,8 @@ class Transporter:
         ----------
         goal : one goal of the stage; its first argument is the parameter that means the object.
         stage : of the task.
-        situation : what is believed.
-        reconciled : what the parameters of the task mean.
+        situation : what is believed; its binding tells which object the parameter means, if any is known.
+        reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
         tools : what the decision is worked out with.
         """
         x = str(goal.args[0])
@@ -360,7 +360,7 @@ class Transporter:
     ) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
 
-        shut_in : it is known that it does.
+        shut_in : it is known that it does; by default that is tested.
         """
         out = tools.executor.lead_out(node, situation) if shut_in or not robot_can_leave(node, situation) else None
         if out is None:

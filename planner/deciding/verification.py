@@ -38,7 +38,7 @@ class Verifier:
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def is_unsettled(self, node: Node) -> bool:
-        """Return whether the robot has begun to look at an object that is not settled."""
+        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
         return node.name in self._unsettled
 
     def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
@@ -126,7 +126,8 @@ def robot_square(model: WorldModel) -> Bools:
 def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     """Return where to feel whether an object that stands against a wall goes on in what seems to be wall.
 
-    Returns None when it was moved or is held, when it touches nothing, or when nothing about it is to be felt.
+    Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
+    to be felt.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Origin(NamedTuple):
 
 
 class Origins:
-    """Remembers for each parameter of the task where the thing that it means was at first."""
+    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`)."""
 
     def __init__(self) -> None:
         """Remember no origin yet."""

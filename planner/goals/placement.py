@@ -79,7 +79,7 @@ class NoViewpoints:
     """Deferred viewpoints of which there are none."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Return no viewpoint."""
+        """Return (): no viewpoint."""
         return ()
 
 

@@ -23,7 +23,10 @@ StateKey = tuple[object, ...]
 
 
 class LoopGuard:
-    """Remembers which command was given in which state of belief, and which subgoals led in a loop."""
+    """Remembers which command was given in which state of belief, and which subgoals led in a loop.
+
+    A loop is the same command in the same state. Loops are counted by the squares of subgoals, in the map frame.
+    """
 
     def __init__(self) -> None:
         """Remember no command and no loop yet."""

@@ -19,7 +19,7 @@ class FailedGrasps:
         self._retries: dict[str, int] = {}
 
     def __bool__(self) -> bool:
-        """Return whether any grasp is remembered."""
+        """Return whether any failed grasp of any object is remembered."""
         return any(self._failed.values())
 
     def record(self, node: Node | None, model: WorldModel) -> None:
@@ -46,7 +46,7 @@ class FailedGrasps:
         """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
 
         A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
-        nothing is forgotten.
+        nothing is forgotten, and False is returned.
         """
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:
