@@ -279,8 +279,15 @@ class ManipulationOracle:
     def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
         """Return what geometry says of one end; from memory where the same was asked before.
 
-        The plan is in the frame of `end` and `floor`, which is one: the view frame, or that with the margin for unseen
-        squares. Its status is found, impossible or limit (neither found nor refuted).
+        The plan is in squares, in the frame of `end` and `floor`, which is one: the view frame, or that with the margin
+        for unseen squares. Its status is found, impossible or limit (neither found nor refuted).
+
+        Parameters
+        ----------
+        request : what is to be carried; its own ends are not read.
+        end : where the object shall lie.
+        floor : where object and robot are, and the squares that they may use.
+        model : what is believed; it tells from which squares the object cannot be grasped for sure.
         """
         shape, utak, free, walk = floor
         held, turn, contacts = request.held, request.turn_cost, request.contacts

@@ -100,6 +100,12 @@ def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> N
     """Return the first of some objects that a route over their squares comes to.
 
     Raises StopIteration when the route crosses none of them.
+
+    Parameters
+    ----------
+    way : the route, from the robot on, on the arrays of the view.
+    things : the objects.
+    model : what is believed.
     """
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
@@ -109,7 +115,14 @@ def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[
     """Yield an object that blocks the robot if it goes on by `depth` squares in what seems to be wall.
 
     It is drawn out by one square more than that, or as far as there is room: so all of it is seen. One Obstacle for
-    each side on which that is so, its end relative to where the object lies.
+    each side on which that is so, its end relative to where the object lies; nothing for an object that does not block
+    so.
+
+    Parameters
+    ----------
+    thing : the object.
+    depth : in squares, 1 or more.
+    situation : what is believed.
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
     for side in SIDE_DIRECTIONS:
@@ -121,7 +134,10 @@ def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[
 
 
 class ObstacleClearer:
-    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile."""
+    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile.
+
+    An obstacle is an object that blocks the robot's way to some part of the floor.
+    """
 
     def __init__(self) -> None:
         """Make a clearer that is moving nothing."""

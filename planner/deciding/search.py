@@ -235,6 +235,9 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
-    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0)."""
+    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0).
+
+    False for a subgoal without squares.
+    """
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

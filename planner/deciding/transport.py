@@ -41,7 +41,10 @@ MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looke
 
 
 class Transporter:
-    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
+    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that.
+
+    It decides for one goal at a time; the tools that it decides with are lent for the time of a call.
+    """
 
     def __init__(
         self,
@@ -220,6 +223,14 @@ class Transporter:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it.
 
         In a loop the object is released instead.
+
+        Parameters
+        ----------
+        advice : the command that the executor advises, and its reason.
+        node : the object that is carried.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
         """
         if isinstance(advice.command, Push | Turn) and tools.pursuer.closes_loop(situation.model, advice.command):
             advice = tools.executor.release_looping(situation.model)

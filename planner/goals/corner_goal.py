@@ -320,7 +320,8 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
 def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
     """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares.
 
-    First for the eastern or western side of the object, then for the northern or southern one.
+    First for the eastern or western side of the object, then for the northern or southern one: those that `end`, the
+    corner, is towards.
     """
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south

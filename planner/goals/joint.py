@@ -70,7 +70,10 @@ def _all_ends(placement: Placement) -> list[End]:
 def _may_share(one: End, other: End, shape: Any) -> bool:
     """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only.
 
-    shape : shapely Polygon, in squares, in the frame of the ends.
+    Parameters
+    ----------
+    one, other : the ends, in squares, in one frame.
+    shape : shapely Polygon, in squares, in the same frame.
     """
     room = enclosing_region(one, shape).intersection(enclosing_region(other, shape))
     return bool(room.area >= shape.area - REGION_ROUNDING)

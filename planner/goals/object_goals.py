@@ -75,7 +75,10 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
 
 
 def _without_rim(end: End) -> End:
-    """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged. Same frame."""
+    """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged.
+
+    end : in squares, in any frame; the result is in the same one.
+    """
     if not isinstance(end, Inside):
         return end
     inner = Inside(end.polygon.buffer(-REGION_RIM, join_style="mitre"))

@@ -297,7 +297,10 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
 def _along(side: str, east: Any, north: Any) -> Any:
     """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed.
 
-    Numbers or arrays of one shape, in squares, robot frame; the result is of the same kind.
+    Parameters
+    ----------
+    side : of the corner in the robot frame: northeast, northwest, southeast or southwest.
+    east, north : numbers, or arrays of one shape, in squares, robot frame; the result is of the same kind and unit.
     """
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 

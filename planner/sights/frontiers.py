@@ -78,8 +78,9 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
 
     A stretch next to floor that surely goes on unseen is left out: it belongs to a frontier.
 
-    Returns one Viewpoint for each gap; none is possible. Its squares (flat indices on the arrays of the view) are the
-    squares of the gap itself, reachable at GAP_LEVEL only: the robot would see beyond from there.
+    Returns one Viewpoint for each gap; [] for none. Its squares (flat indices on the arrays of the view) are the
+    squares of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot would see
+    beyond.
     """
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)

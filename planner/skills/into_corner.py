@@ -149,7 +149,10 @@ def _square_at(place: XY) -> Square:
 
 
 def _map_square(corner: Corner, situation: Situation) -> Square:
-    """Return the square (x, y) of the map frame that has a corner. corner : in the view frame."""
+    """Return the square (x, y) of the map frame in which a corner of the floor lies: the one of floor.
+
+    corner : in squares, view frame. situation : its view tells where the view frame lies.
+    """
     return corner.square[0] + situation.model.view.west, corner.square[1] + situation.model.view.south
 
 
