@@ -180,7 +180,7 @@ def chance_by_seen_squares(squares: Longs) -> Floats:
 
 
 def _not_slender(ratio: Floats) -> Floats:
-    """Return how well a ratio of length to width agrees with a brick: 1 up to 4, beyond it less, down to MIN_LIKENESS."""
+    """Return how well a ratio of length to width agrees with a brick: 1 up to 4, less beyond, at least 0.1."""
     return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
 
