@@ -109,7 +109,7 @@ class _WalkExplainer:
         )
 
     def judge(self) -> Judgement:
-        """Return the chosen explanation, with what was learnt while choosing."""
+        """Return the chosen explanation, with what was learnt while choosing; the state is not changed."""
         state, first = self._state, self._whole
         if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]

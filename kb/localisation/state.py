@@ -132,7 +132,7 @@ class TrackerState:
 
     @property
     def off_middle(self) -> bool:
-        """Return whether the believed origin of the frame is not the middle of the square of waking."""
+        """Return whether the believed origin of the frame is not exactly the middle of the square of waking."""
         return self.frame.origin != CENTRE
 
     @property
@@ -174,7 +174,10 @@ class TrackerState:
         return self._spread(other for other in self.hypotheses if other.is_plausible)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
-        """Return the greatest difference in orientation from the believed frame, in radians; 0 for no hypotheses."""
+        """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians.
+
+        It is 0 for no hypotheses.
+        """
         return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
 
     @property

@@ -180,9 +180,9 @@ class Tracker:
         self.state = replace(self.state, confirmations=number)
 
     def _note_motion(self, explanation: Explanation) -> None:
-        """Note in `state` that motions slip, or which of the last motions was blocked, if an explanation says so.
+        """Note in `state` that motions slip, or which of the remembered motions was blocked, if an explanation says so.
 
-        After a slip all remembered motions are forgotten.
+        After a slip (an end beside the predicted one) all remembered motions are forgotten.
         """
         state = self.state
         if explanation.how == "slipped":

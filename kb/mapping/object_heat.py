@@ -143,7 +143,10 @@ def likeness(found: Blobs, shape: str) -> Floats:
 def end_probability(found: Blobs) -> Floats:
     """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1.
 
-    It is 1 for a part that is seen all around, and 0 for one that is long enough to be a wall.
+    It is 1 for a part that is seen all around, less by a factor for each side of a square beyond which nothing was
+    seen, and 0 for one that is long enough to be a wall.
+
+    found : the edge-connected occupied parts of a completion.
     """
     wall = (found.outward > 0) & (found.area >= WALL_ELONGATION * found.outward)
     return np.where(wall, 0.0, END_PROBABILITY**found.outward)
@@ -154,6 +157,8 @@ def part_seen_probability(found: Blobs) -> Floats:
 
     It is 0 for a part that goes on unseen along one side of a square at most, along too many, or that has too great an
     area for those sides.
+
+    found : the edge-connected occupied parts of a completion.
     """
     compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
     may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
@@ -180,16 +185,22 @@ def chance_by_seen_squares(squares: Longs) -> Floats:
 
 
 def _not_slender(ratio: Floats) -> Floats:
-    """Return how well a ratio of length to width agrees with a brick: 1 up to 4, less beyond, at least 0.1."""
+    """Return how well a ratio agrees with a brick: 1 up to 4, less beyond, but at least MIN_LIKENESS (0.1).
+
+    ratio : length divided by width of each of n parts, (n,).
+    """
     return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
 
 def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
-    """Return 1 for values up to a limit, and less, down to 0, the further a value is above it by the tolerance."""
+    """Return 1 for values up to a limit, and less, down to 0, the further a value is above it; an array like `value`.
+
+    tolerance : above the limit, at which the result is 1 / e.
+    """
     return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 
 def _agreement(error: Floats, tolerance: Floats | float) -> Floats:
-    """Return exp(-(error / tolerance)^2): 1 for no error."""
+    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`."""
     answer: Floats = np.exp(-((error / tolerance) ** 2))
     return answer

@@ -139,7 +139,7 @@ class OccupancyMap:
         return self._odds.logit
 
     def copy(self) -> "OccupancyMap":
-        """Return an independent copy, to which more impressions can be added."""
+        """Return an independent copy, to which more impressions can be added; neither changes the other."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
@@ -315,7 +315,7 @@ class OccupancyMap:
         Parameters
         ----------
         x, y : int
-            The square, map frame.
+            The square, map frame; the map must have room for it.
         number : int
             The number of the impression received there.
         """
@@ -389,7 +389,10 @@ class OccupancyMap:
         return self._where, self._weight, self._low, self._high
 
     def _informative(self) -> Bools:
-        """Return which fields still say something of open squares, (n,) bool."""
+        """Return which fields still say something of open squares, (n,) bool, in the order of the fields.
+
+        A field says nothing when all its squares are settled, or when any number of its open squares may be occupied.
+        """
         _, weight, low, high = remaining_counts(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 

@@ -72,6 +72,7 @@ class Odds:
     """
 
     def __init__(self, logit: Logits, changes: tuple[Fields | Forgotten | Grown, ...] = ()) -> None:
+        """Begin with nothing computed; `logit` is not changed."""
         self._before, self._changes = logit, changes
 
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
@@ -124,7 +125,7 @@ def _fit(logits: Logits, fields: Fields) -> None:
 
 
 def _logit(p: Floats) -> Floats:
-    """Return the log odds of probabilities, clipped to 0.002 and 0.998; an array like `p`."""
+    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`."""
     p = np.clip(p, MIN_TARGET_SHARE, MAX_TARGET_SHARE)
     answer: Floats = np.log(p / (1 - p))
     return answer

@@ -33,7 +33,7 @@ class Patch(NamedTuple):
         return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
 
     def squares(self) -> set[Square]:
-        """Return its squares (x, y), that is (column, row), map frame; empty when the mask is."""
+        """Return its squares (x, y), that is (column, row) of the map frame; empty when its mask has none."""
         rows, columns = np.nonzero(self.mask)
         return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
 

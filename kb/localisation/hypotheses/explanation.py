@@ -69,7 +69,10 @@ class Explanation(NamedTuple):
 
     @property
     def remaps(self) -> bool:
-        """Return whether the frame, or where earlier observations were made, is another one than believed."""
+        """Return whether the frame, or where earlier observations were made, is another one than believed.
+
+        So it is for the kinds turned, misled, lost and anew.
+        """
         return self.how in ("turned", "misled", "lost", "anew")
 
     @property
@@ -79,7 +82,10 @@ class Explanation(NamedTuple):
 
     @property
     def is_odd(self) -> bool:
-        """Return whether both the orientation and the origin of the frame are unusual, and neither is weighed."""
+        """Return whether both the angle of the frame (not 0) and its origin (not the middle of a square) are unusual.
+
+        False where the prior cost contains the odds of the origin already.
+        """
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 

@@ -46,7 +46,10 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def frame(self) -> Frame:
-        """Return the frame whose origin is the middle of the square where the box allows it, else that of the box."""
+        """Return the likeliest frame: with its origin in the middle of the square of waking if the box contains it.
+
+        Else the origin is the middle of the box.
+        """
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Frame(self.angle)
@@ -69,7 +72,7 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def area(self) -> float:
-        """Return the area of the box in squares^2."""
+        """Return the area of the box in squares^2, 0 to 1; 0 for an exact origin."""
         west, south, east, north = self.box
         return (east - west) * (north - south)
 
@@ -98,7 +101,10 @@ class FrameHypothesis(NamedTuple):
 
 
 def exact_hypothesis(frame: Frame) -> FrameHypothesis:
-    """Return the hypothesis that the frame is exactly `frame`: its box is a point. Its prior cost is 0."""
+    """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin.
+
+    Its prior cost is 0.
+    """
     return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
 
@@ -142,7 +148,7 @@ class Observation(NamedTuple):
 
 
 class UnsettledDisc(NamedTuple):
-    """A part of the table where an object was moved, so that observations need not agree there.
+    """A disc of the table where an object was moved, so that observations need not agree there.
 
     Attributes
     ----------

@@ -76,7 +76,9 @@ class MapDescription:
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
         """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm).
 
-        effort : the number of completions of each scene, and of sweeps over each.
+        A completion is a map that agrees with all counts; its price is the log odds against it.
+
+        effort : the number of completions of each scene (an independent part of the map), and of sweeps over each.
         """
         for number, scene in enumerate(self._scenes):
             key = (*scene.told(self._view), *effort, self._rounds)
@@ -146,7 +148,10 @@ class FrameTrial:
 
     @property
     def odds(self) -> float:
-        """Return the log odds against the frame, by its map and its orientation; infinite before the first draw."""
+        """Return the log odds (natural logarithm) against the frame, by its map and its orientation; less is better.
+
+        It is infinite before the first draw.
+        """
         return self.description.price + self._oblique
 
 
@@ -234,9 +239,11 @@ def weigh_hypotheses(
 def _odds(
     trials: Mapping[SquaresKey, FrameTrial], alike: Mapping[SquaresKey, AlikeHypotheses]
 ) -> dict[SquaresKey, float]:
-    """Return the log odds against each trial, by key, after those close to the best one were drawn once more.
+    """Return the log odds (natural logarithm) against each trial, by key, origin included; the less the better.
 
-    trials, alike : by the same keys; more completions are drawn in `trials`.
+    Those close to the best one are drawn once more before.
+
+    trials, alike : by the same keys (see `_squares_key`); more completions are drawn in `trials`.
     """
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
@@ -257,7 +264,10 @@ def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation
 
 
 def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
-    """Return hypotheses of the same map, at least one, as one."""
+    """Return hypotheses of the same map, at least one, as one: the likeliest of their frames, and what is against it.
+
+    same : hypotheses of one angle by which all observations fall on the same squares.
+    """
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else OFF_CENTRE_COST - math.log(area)
@@ -265,9 +275,11 @@ def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
 
 
 def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[SquaresKey]:
-    """Return the keys of those that are worth weighing again, the likeliest first.
+    """Return the keys of the hypotheses that are worth weighing again, the likeliest first.
 
-    alike : by key. least : the least prior cost, in log odds.
+    Those are of a prior cost near to the least one, or of an angle within 2 degrees of the best.
+
+    alike : by key (see `_squares_key`). least : the least prior cost, in log odds.
     """
     best = [angle for (angle, _), one in alike.items() if one.prior_cost == least]
     near = (
@@ -284,7 +296,7 @@ def _first_trials(
 ) -> dict[SquaresKey, FrameTrial]:
     """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others.
 
-    Completions are drawn of all of them. alike : by key.
+    Completions (maps that agree with all counts) are drawn of all of them. alike : by key (see `_squares_key`).
     """
     parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
@@ -298,7 +310,7 @@ def _first_trials(
 
 
 def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
-    """Return the trial of a frame, with completions drawn by FULL_EFFORT."""
+    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT."""
     trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial

@@ -50,7 +50,10 @@ class RemappedMap(NamedTuple):
 
 
 def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
-    """Return where an object lies, in Utak's own frame; `taken` is where it was first held. frame : that of `held`."""
+    """Return where an object lies, and where it lay when it was first held, in Utak's own frame.
+
+    held : map frame. frame : the frame that relates this map frame to Utak's own.
+    """
     return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
 
 
@@ -71,7 +74,7 @@ class MapReplay:
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
     def copy(self) -> "MapReplay":
-        """Return an independent copy, to go on with."""
+        """Return an independent copy, to go on with: neither changes the other."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
@@ -111,7 +114,7 @@ class MapReplay:
 
     @property
     def contradicted(self) -> bool:
-        """Return whether any integrated observation contradicts the frame."""
+        """Return whether any observation integrated so far contradicts the map of those before it in this frame."""
         return self._residual > 0
 
     def finish(
@@ -211,7 +214,7 @@ class RemapCache:
         return self._by_frame[frame]
 
     def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
-        """Return the map of a frame, replayed or shifted from a frame with the same squares.
+        """Return the map of a frame, and the held objects in it, replayed or shifted from a frame of the same squares.
 
         only_whether : whether an incomplete map, which ends at the first contradiction, will do.
         """

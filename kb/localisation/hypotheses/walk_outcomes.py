@@ -181,7 +181,7 @@ def entered_square(place: Position, towards: Position) -> Square:
 
 
 def add(place: Position, shift: Position) -> Position:
-    """Return the sum of a place and a shift of the same frame, in squares."""
+    """Return the sum of a place and a shift of the same frame: (x, y) or (east, north) in squares."""
     return place[0] + shift[0], place[1] + shift[1]
 
 

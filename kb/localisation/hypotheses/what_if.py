@@ -109,7 +109,10 @@ class Surprise:
 
     @property
     def any_turned(self) -> bool:
-        """Return whether any object was ever turned, so that it tells where the origin of the frame lies."""
+        """Return whether any object was ever turned, or is to be turned now: then it tells where the origin lies.
+
+        An object that was turned by whole rounds in all does not count.
+        """
         return self.degrees != 0.0 or any(held.turned % 360 for held in self.held_objects.values())
 
     @property
@@ -125,7 +128,11 @@ class Surprise:
 
     @cached_property
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
-        """Return the frame hypotheses with which all observations before the command agree; cached."""
+        """Return those frame hypotheses with which all observations before the command agree, in their order; cached.
+
+        Only the last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute
+        all.
+        """
         return consistent_hypotheses(
             self.observations[-MAX_JUDGING_OBSERVATIONS:], self.hypotheses, self.unsettled_discs
         )
@@ -161,7 +168,7 @@ class Surprise:
 
     @cached_property
     def prefixes(self) -> ReplayPrefixes:
-        """Return the replays of the first observations in the believed frame; cached."""
+        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached."""
         return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 
     # -- evaluation of a frame -------------------------------------------------------------------
@@ -287,9 +294,12 @@ class Surprise:
         return RemapCache(self.frame, self.occupancy, self.observations, self.held_objects)
 
     def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
-        """Yield the motion as far as known obstacles let it go, and as commanded; or, cut short, all early ends.
+        """Yield the outcomes of the motion of the object in hand that are to be evaluated in a frame.
 
-        frame : the outcomes are in its map frame. cut_short : whether it ended early without a known reason.
+        In the map frame of `frame`: the motion as far as known obstacles let it go, if there are any on the way, and
+        then as commanded.
+
+        cut_short : whether it ended early without a known reason; then it is yielded as stuck, and with all early ends.
         """
         place, polygon, motion = self.motion_in(frame)
         if cut_short:
@@ -305,7 +315,10 @@ class Surprise:
 
     @cached_property
     def obstructions(self) -> Obstructions:
-        """Return the obstacles, known and possible, about the motion of the object in hand, believed frame; cached."""
+        """Return the obstacles, occupied squares and open ones, about the motion of the object in hand; cached.
+
+        In the map frame of the believed frame. An object must be in hand, and to be moved.
+        """
         return Obstructions(self.occupancy, *self.motion_in(self.frame), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
@@ -321,9 +334,13 @@ class Surprise:
         ]
 
     def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
-        """Return a copy of the map with the observation integrated at `place`, and the objects as in `held_objects`.
+        """Return a copy of the believed map with the new observation integrated as if it was made at `place`.
 
-        held_objects, place : where the objects and Utak are then, map frame of the believed frame; place in squares.
+        Parameters
+        ----------
+        held_objects : all objects that were ever held, where they lie then, map frame; they are subtracted from the
+            counts.
+        place : of Utak then, (x, y) in squares, map frame.
         """
         x, y = (math.floor(v) for v in place)
         samples, counts = subtract_held_objects(self.frame.samples(), self.ranges, x, y, held_objects)

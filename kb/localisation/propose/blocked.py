@@ -80,7 +80,10 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
 
 
 def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
-    """Return the MAX_ENDS (24) likeliest ends, or contacts, of a chance above MIN_END_CHANCE, the likeliest first."""
+    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most.
+
+    Those of a chance of MIN_END_CHANCE or less are left out; [] when none is left.
+    """
     return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 
 
@@ -176,5 +179,5 @@ def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
 
 
 def has_whole_way(explanations: Sequence[Explanation]) -> bool:
-    """Return whether one of the explanations is that the motion went its whole way."""
+    """Return whether one of the explanations is that the motion went its whole way (kind predicted)."""
     return any(explanation.how == "predicted" for explanation in explanations)

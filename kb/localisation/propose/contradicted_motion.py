@@ -42,9 +42,10 @@ def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> 
 
 
 def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
-    """Return whether the observation contradicts what it settles together with all earlier ones after an outcome.
+    """Return whether what the observation settles, together with all earlier ones, contradicts the observation itself.
 
-    outcome : of the motion of the object in hand, believed frame; nothing settled before contradicts it.
+    outcome : the supposed outcome of the motion of the object in hand, believed frame; nothing settled before
+    contradicts it.
     """
     held_objects = surprise.objects_after(outcome)
     occupancy = surprise.map_after(held_objects, outcome.place)

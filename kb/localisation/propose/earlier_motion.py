@@ -64,7 +64,11 @@ class CarriedMotion:
     """
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
-        """Find the ends of a motion with an object in hand, whose pose at the observation before it is known."""
+        """Find the ends of a motion with an object in hand.
+
+        motion : its object has a known pose at the observation before it. surprise : the believed frame, map and
+        objects.
+        """
         assert motion.in_hand is not None
         frame, observations, held_objects = (
             surprise.frame,
@@ -219,7 +223,9 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
     """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since.
 
-    The map of the surprise is not corrected. motion : earlier than the newest observation.
+    Places, observations and objects are corrected; the map of the surprise is not, and must be made anew.
+
+    motion : earlier than the newest observation. end : Utak's own frame.
     """
     frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]

@@ -98,9 +98,9 @@ def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
 
 
 def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
-    """Yield hypotheses to evaluate, the likeliest first, each time with whether they had been given up.
+    """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether they had been given up before.
 
-    Another origin is tried before orientations of a worse map prior. A batch may be empty.
+    Another origin is tried before orientations of a worse map prior. A set may be empty.
 
     reconsider : whether hypotheses that were given up are yielded at all.
     """
