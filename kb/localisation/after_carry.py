@@ -194,7 +194,8 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
 def contact_suspects(state: TrackerState, held: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
     """Return the open squares one of which probably stopped an object, (column, row) of the map frame.
 
-    Empty when nothing was stopped, when what stopped it is known, or when the object was never seen to move.
+    Those that the chosen outcome names, if it does. Else empty when nothing was stopped, when what stopped it is known,
+    or when the object was never seen to move.
 
     Parameters
     ----------

@@ -166,8 +166,8 @@ def suspected_squares(
 ) -> frozenset[Square]:
     """Return the likeliest of the open squares one of which blocked an object, or Utak with it.
 
-    As (column, row) of the map frame. Empty when nothing was blocked, when the object was never seen to move (the hand
-    may be empty), or when something known explains it.
+    As (column, row) of the map frame: those that the outcome names, if it does. Else empty when nothing was blocked,
+    when the object was never seen to move (the hand may be empty), or when something known explains it.
 
     Parameters
     ----------

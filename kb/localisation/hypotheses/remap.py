@@ -367,7 +367,8 @@ def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame)
     ----------
     taken : the object as it lay when it was first held, new frame; its outline is used.
     held : all else that is known of it.
-    pose : where it lies, Utak's own frame, as believed when it was first held at `pose.taken`.
+    pose : where it lies, Utak's own frame, if it was first held at `pose.taken`. Where `taken` lay elsewhere, the
+        result is shifted likewise.
     new : the frame of the result.
     """
     began = np.array([_centroid(taken.first, new)]) - pose.taken

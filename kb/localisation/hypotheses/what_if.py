@@ -128,7 +128,7 @@ class Surprise:
 
     @cached_property
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
-        """Return those frame hypotheses with which all observations before the command agree, in their order; cached.
+        """Return what all observations before the command leave of the frame hypotheses, in their order; cached.
 
         Only the last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute
         all.
