@@ -242,14 +242,19 @@ class TrackerState:
 
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
-        """Return those of `reestimable`, oldest first, whose observation has been integrated already."""
+        """Return the last straight motions whose observation has been integrated already, oldest first.
+
+        Only those that can be re-estimated (see `reestimable`): with an empty hand, or with an object that is known
+        still.
+        """
         return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
 
     @property
     def doubtful(self) -> tuple[MotionHypothesis, ...]:
-        """Return those of `earlier`, oldest first, that may well have ended elsewhere than believed.
+        """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first.
 
-        They have another end of a probability above LIKELY_END_CHANCE (0.05).
+        Their observation is integrated already, and they have another end of a probability above LIKELY_END_CHANCE
+        (0.05).
         """
         return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 

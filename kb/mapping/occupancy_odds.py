@@ -76,7 +76,10 @@ class Odds:
         self._before, self._changes = logit, changes
 
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
-        """Return the odds after one more change; these stay as they are."""
+        """Return the log odds after one more change, to be computed when they are asked for; these stay as they are.
+
+        change : fields to which open squares are fitted, squares of which all is forgotten, or rows and columns added.
+        """
         if "logit" in self.__dict__:
             return Odds(self.logit, (change,))
         return Odds(self._before, (*self._changes, change))

@@ -290,7 +290,7 @@ class Surprise:
 
     @cached_property
     def _maps(self) -> RemapCache:
-        """Return the cache of the maps of all frames that were asked for."""
+        """Return the cache of the maps, with the held objects, of all frames that were asked for; cached itself."""
         return RemapCache(self.frame, self.occupancy, self.observations, self.held_objects)
 
     def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
