@@ -23,7 +23,7 @@ MAX_BYTES_PER_READ = 65536  # bytes; the capacity of a pipe on Linux
 
 
 def _optional(name: str) -> ModuleType | None:
-    """Return a module of the standard library, or None when this system does not have it."""
+    """Return a module of the standard library by its name, or None when this system does not have it."""
     try:
         return __import__(name)
     except ImportError:
@@ -52,11 +52,11 @@ def limit_resource(kind: str, most: int) -> bool:
     ----------
     kind : the suffix of the RLIMIT constant: `AS` (bytes of memory), `NOFILE` (open files), `CORE` (bytes of a core
         dump).
-    most : the limit.
+    most : the limit, in the unit of that kind; it cannot be raised again.
 
     Returns
     -------
-    Whether the system supports and accepted the limit.
+    Whether the system supports and accepted the limit; when not, nothing has changed.
     """
     which = getattr(_resource, f"RLIMIT_{kind}", None)
     if which is None:
@@ -69,7 +69,10 @@ def limit_resource(kind: str, most: int) -> bool:
 
 
 def limit_processor_time(seconds: int) -> bool:
-    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so."""
+    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so.
+
+    A later call replaces the limit. False, and no limit, where the system has none or refuses it.
+    """
     if not hasattr(_resource, "RLIMIT_CPU"):
         return False
     used = sum(_resource.getrusage(_resource.RUSAGE_SELF)[:2])

@@ -77,7 +77,10 @@ def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType
 
 
 def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
-    """Return the type of an argument that is a whole fact of a vocabulary."""
+    """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G).
+
+    name : what the argument is called in messages. The first complaint about the fact is that about the argument.
+    """
 
     def check(term: Term) -> Complaint | None:
         if not isinstance(term, Symbol):
@@ -137,10 +140,10 @@ class BeliefPredicate(NamedTuple):
     ----------
     arguments : the types of its arguments.
     open : the extent to which it may hold beyond what is believed.
-    subject : the index of the argument that the fact is about.
-    confident : the last argument is a confidence. A fact with a confidence between 0 and 100 may have any other in
-        truth.
-    settled : the subjects of which the world model states all facts of this predicate that will ever hold.
+    subject : the index, from 0, of the argument that the fact is about.
+    confident : whether the last argument is a confidence in percent. A fact with a confidence between 0 and 100 may
+        have any other in truth.
+    settled : the names of the subjects of which the world model states all facts of this predicate that will ever hold.
     """
 
     arguments: tuple[ArgumentType, ...]
@@ -224,7 +227,10 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 
 
 def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
-    """Return the complaints about one fact; [] when it is valid."""
+    """Return the complaints about one fact; [] when it is valid.
+
+    One for an unknown predicate or a wrong number of arguments; else one for each argument that does not fit, in order.
+    """
     types = vocabulary.get(fact.name)
     if types is None:
         hint = did_you_mean(fact.name, vocabulary) or f"known here: {', '.join(sorted(vocabulary))}"
