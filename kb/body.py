@@ -41,6 +41,7 @@ class Grasp:
     direction: str
 
     def __post_init__(self) -> None:
+        """Raise ValueError unless the direction is one of DIRECTIONS."""
         if self.direction not in DIRECTIONS:
             raise ValueError(f"no such direction: {self.direction!r}; one of {', '.join(DIRECTIONS)} is meant")
 

@@ -51,6 +51,7 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is an integer in the range."""
         if not isinstance(term, Number):
             return Complaint(term.span, f"{name} must be an integer, not {abbreviated(term)}")
         if not low <= term.value <= high:
@@ -68,6 +69,7 @@ def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
     words = tuple(known)
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is one of the words."""
         if isinstance(term, Symbol) and not term.args and term.name in words:
             return None
         hint = did_you_mean(str(term).strip('"').lower(), words) or f"one of {', '.join(words)}"
@@ -100,6 +102,7 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
     form = re.compile(pattern)
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is a name that matches."""
         if isinstance(term, Symbol) and not term.args and form.fullmatch(term.name):
             return None
         return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"such as {such_as}")
@@ -116,6 +119,7 @@ def wkt_argument(name: str, *kinds: str) -> ArgumentType:
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is a quoted shape of an accepted kind."""
         from kb.language.wkt import WktError, parse_wkt
 
         if not isinstance(term, Text):

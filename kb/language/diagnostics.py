@@ -42,7 +42,11 @@ class Problem(NamedTuple):
     hint: str = ""
 
     def __str__(self) -> str:
-        """Return `file:line:col-col: error: what`, then the source line, a caret and the hint."""
+        """Return `file:line:col-col: error: what`, then the source line, a line of carets under the place, the hint.
+
+        Lines are joined by line ends, without one at the end; source line, carets and hint are left out when they are
+        ''.
+        """
         line, start, end = self.span
         text = [f"{self.file}:{line}:{start}-{end}: error: {self.what}"]
         if self.source:

@@ -36,7 +36,10 @@ _msvcrt: Any = None if _fcntl else _optional("msvcrt")
 
 
 def missing_features() -> list[str]:
-    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing."""
+    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing.
+
+    The sentences have no full stop.
+    """
     missing = []
     if _resource is None:
         missing.append("the memory of a question is not limited on this system: only its time is")
@@ -108,6 +111,7 @@ def read_lines_from_parent() -> Iterator[bytes]:
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
     def watch() -> None:
+        """Put each line of the standard input into `lines`; end the process at its end."""
         rest = b""
         with suppress(OSError):
             # Not through sys.stdin: Python aborts at exit while a thread waits for input with the lock of sys.stdin.

@@ -156,7 +156,10 @@ class _Reader:
         return _RefusedError()
 
     def fact(self) -> Fact:
-        """Read one fact with its full stop."""
+        """Read one fact with its full stop, and return it.
+
+        Raises _RefusedError, after recording a problem, where something else stands.
+        """
         token = self.peek
         if token.kind != "name":
             raise self.not_a_fact(token)
@@ -167,7 +170,10 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
-        """Read one term. depth : the number of terms around it."""
+        """Read one term, and return it. depth : the number of terms around it.
+
+        Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
+        """
         token = self.peek
         if depth > MAX_TERM_DEPTH:
             raise self.refuse(token, f"terms are nested more than {MAX_TERM_DEPTH} deep")

@@ -37,7 +37,10 @@ class Source:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The lines of the text, without line ends."""
+        """The lines of the text, without line ends; line n of a span is at index n - 1.
+
+        An empty text has one line, ''.
+        """
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
@@ -179,7 +182,7 @@ def _disallowed_characters(source: Source) -> list[Problem]:
 
 
 def _character_and_remedy(char: str) -> tuple[str, str]:
-    """Return the description of a character that is not allowed, and a hint."""
+    """Return the description of a character that is not allowed, and a hint: what it is, and the remedy."""
     code = ord(char)
     if char in TYPOGRAPHIC_QUOTES:
         return f"a typographic quotation mark (U+{code:04X})", 'write plain " quotes'

@@ -79,7 +79,7 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
 
 
 def _block_end(text: str, start: int) -> int:
-    """Return the index after the block comment that begins at `start` (comments nest), or -1 when it is not closed."""
+    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed."""
     depth = 0
     for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1

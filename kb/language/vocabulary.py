@@ -58,10 +58,12 @@ EXPECTATION_VOCABULARY: Vocabulary = {
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
     """Return the type of a name or of `name(argument)`, such as corner(northeast).
 
-    otherwise : an example of the inner argument, for hints.
+    name : the name that takes an argument. argument : the type of its one argument. otherwise : an example of the inner
+    argument, for hints.
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it fits."""
         if not isinstance(term, Symbol) or not term.args:
             return NAME_ARGUMENT.check(term)
         if term.name != name:
@@ -83,6 +85,7 @@ def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the first complaint about a term, or None when it is a valid fact of the vocabulary."""
         if not isinstance(term, Symbol):
             return Complaint(term.span, f"{name} must be a fact, not {abbreviated(term)}")
         return next(iter(_complaints(term, vocabulary)), None)

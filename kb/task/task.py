@@ -79,7 +79,7 @@ class Task:
         return frozenset(words & set(self.parameters))
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return the claims about one parameter."""
+        """Return the claims about one parameter, in the order of start.lp; () when there are none."""
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
@@ -255,7 +255,7 @@ def _claims(
 
 
 def _claim(fact: Fact) -> Claim:
-    """Return the claim that a fact states."""
+    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain."""
     if fact.name != "confidence":
         return Claim(fact)
     inner, degree = fact.args
@@ -265,7 +265,10 @@ def _claim(fact: Fact) -> Claim:
 
 
 def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
-    """Yield a problem for each pair of certain claims about one object that cannot both hold."""
+    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that object.
+
+    Certain are claims with a confidence of 100 percent; kinds are shape and colour.
+    """
     certain: dict[tuple[str, Term], Fact] = {}
     for claim in claims:
         if claim.confidence < CERTAIN_CONFIDENCE:
@@ -353,6 +356,9 @@ def _wrong_kind(
 
 
 def _not_introduced(name: str, parameters: Mapping[str, Parameter]) -> tuple[str, str]:
-    """Return message and hint for a parameter that start.lp does not introduce."""
+    """Return message and hint for a parameter that start.lp does not introduce.
+
+    name : the parameter. parameters : those that are introduced, by name; the hint names the most similar one.
+    """
     hint = did_you_mean(name, [*parameters, "utak", "start"])
     return f"{name} is not introduced in start.lp", hint or f"write object({name}). in start.lp (or door, room)"

@@ -38,7 +38,7 @@ class ClauseError(Exception):
     Attributes
     ----------
     what : the message.
-    at : line and column.
+    at : line and column, from 1.
     hint : a remedy, or '' for none.
     """
 
@@ -49,7 +49,7 @@ class ClauseError(Exception):
 
 @dataclass(frozen=True)
 class Constant:
-    """A ground term: an integer, or a clingo symbol (a name, a string, a compound term)."""
+    """A term without variables: an integer, or a clingo symbol (a name, a string, a compound term)."""
 
     value: Any
     at: tuple[int, int]
@@ -96,7 +96,7 @@ class Atom:
     name : the predicate.
     parts : the arguments.
     negations : the number of `not` before the atom, 0 to 2.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     name: str
@@ -112,7 +112,15 @@ class Atom:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold."""
+    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold.
+
+    Attributes
+    ----------
+    first : the first term.
+    rest : pairs (sign, term); each sign, in ASP syntax, compares its term with the one before.
+    negated : whether `not` stands before the chain.
+    at : line and column, from 1.
+    """
 
     first: ClauseTerm
     rest: tuple[tuple[str, ClauseTerm], ...]
@@ -135,10 +143,10 @@ class Aggregate:
     Attributes
     ----------
     function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
-    elements : what is counted or summed.
-    guards : (sign, term) such that `term sign value` must hold.
+    elements : what is counted, summed or compared.
+    guards : pairs (sign, term) such that `term sign value` must hold.
     negated : whether `not` stands before it.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     function: str
@@ -176,7 +184,7 @@ class Clause:
     ----------
     head : the atom that it states; None for a constraint or a query.
     body : its literals.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     head: Atom | None
@@ -193,7 +201,7 @@ def translate_rule(rule: AST) -> list[Clause]:
 
     Returns
     -------
-    The clauses.
+    The clauses, at least one; `at` of each part counts lines and columns from 1.
 
     Raises
     ------
@@ -203,7 +211,7 @@ def translate_rule(rule: AST) -> list[Clause]:
 
 
 def place_of(node: AST) -> tuple[int, int]:
-    """Return the line and the column at which a part of a syntax tree begins."""
+    """Return the line and the column, both from 1, at which a part of a syntax tree begins."""
     begin = node.location.begin
     return begin.line, begin.column
 
@@ -234,7 +242,7 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
-        """Return the literals, followed by the comparisons for the intervals in their arguments."""
+        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments."""
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals
@@ -242,7 +250,7 @@ class _Translator:
         return tuple(found)
 
     def _literal(self, node: AST) -> Literal:
-        """Return one literal."""
+        """Return one literal; raise ClauseError for a theory atom."""
         if node.ast_type == ASTType.ConditionalLiteral:
             condition = self._conjunction(node.condition)
             (literal, *intervals) = self._conjunction([node.literal])
@@ -262,7 +270,7 @@ class _Translator:
         raise ClauseError("theory atoms are not known here", at)
 
     def _atom(self, node: AST) -> Atom:
-        """Return an atom with its negations."""
+        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`."""
         found, at = node.atom.symbol, place_of(node.atom.symbol)
         if found.ast_type == ASTType.UnaryOperation:
             raise ClauseError("classical negation is not known here", at, "write not, for what is not believed")
@@ -271,7 +279,11 @@ class _Translator:
         return Atom(found.name, tuple(map(self._term, found.arguments)), int(node.sign), at)
 
     def _aggregate(self, node: AST, negated: bool, at: tuple[int, int]) -> Aggregate:
-        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard."""
+        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard.
+
+        `{ literal : condition }` becomes a `#count`. negated : whether `not` stands before it. at : its line and
+            column, from 1.
+        """
         sides = ((node.left_guard, 0), (node.right_guard, 1))
         guards = [
             (
@@ -288,7 +300,7 @@ class _Translator:
         return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
     def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
-        """Return an element of an aggregate with terms."""
+        """Return an element of an aggregate: its tuple of terms, and its condition."""
         outer, self._intervals = self._intervals, []
         found = tuple(map(self._term, terms))
         waiting, self._intervals = self._intervals, outer
@@ -336,7 +348,10 @@ class _Translator:
 
 
 def variables_of(part: Any) -> Iterator[str]:
-    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included."""
+    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included.
+
+    A name is yielded as often as it appears; `_` has names such as `?1`, an interval's variable such as `.1`.
+    """
     if isinstance(part, Variable):
         yield part.name
     elif isinstance(part, tuple):
@@ -357,8 +372,9 @@ def variables_of(part: Any) -> Iterator[str]:
 def global_variables(body: Sequence[Literal]) -> dict[str, None]:
     """Return the named variables of a body, in the order in which they appear.
 
-    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out.
-    The result is a dictionary that serves as an ordered set.
+    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out. So
+    are `_` and the variables of intervals. The result is a dictionary from each name to None, which serves as an
+    ordered set.
     """
     found: dict[str, None] = {}
     for literal in body:
@@ -371,7 +387,7 @@ def global_variables(body: Sequence[Literal]) -> dict[str, None]:
 
 
 def atoms_of(part: Any) -> Iterator[Atom]:
-    """Yield the atoms in literals, those in aggregates and conditions included."""
+    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order."""
     if isinstance(part, Atom):
         yield part
     elif isinstance(part, tuple):

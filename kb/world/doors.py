@@ -128,6 +128,7 @@ def _passages(screen: Screen) -> list[Passage]:
     height, width = (size - 2 * NECK_UNSEEN_MARGIN for size in screen.shape)
 
     def within(passage: Passage) -> bool:
+        """Return whether all ends of a passage's mouths lie inside the view, not on its edge; view frame."""
         ends = [point for mouth in passage.mouths for point in mouth]
         return all(0 < x < width and 0 < y < height for x, y in ends)
 

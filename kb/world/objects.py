@@ -370,6 +370,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return (rows, columns) probabilities of squares to be occupied, changed for the object."""
         may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
         return np.where(sure, np.float32(1), np.where(open_, may, chance))
 
