@@ -69,7 +69,7 @@ class SubcellExtent(NamedTuple):
 
     @property
     def play(self) -> float:
-        """The greatest value of `plays`, in squares: no side lies further from where it is believed to be."""
+        """The greatest value of `plays`, in squares; 0 when every side is believed to fill its squares."""
         return max(max(sides) for sides in self.plays)
 
     def after(self, quarters: int) -> "SubcellExtent":

@@ -68,6 +68,9 @@ class Touches:
         return self.current[DIRECTIONS.index(direction)] if self.current else None
 
     def colour_of(self, patch: Patch) -> str | None:
-        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was."""
+        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was.
+
+        The patch is of the map frame; the colour is one lower-case letter.
+        """
         colours = [self.colours[square] for square in sorted(patch.squares()) if square in self.colours]
         return colours[0] if colours else None

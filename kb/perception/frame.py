@@ -77,19 +77,31 @@ class Frame:
     origin: XY = CENTRE
 
     def to_map(self, east: float, north: float) -> XY:
-        """Return a vector of the robot frame as a vector (x, y) of the map frame, in squares."""
+        """Return a vector (east, north) of the robot frame as a vector (x, y) of the map frame, in squares.
+
+        A vector is a difference of points: the origin of the frames does not matter.
+        """
         return turned(east, north, self.angle)
 
     def to_utak(self, x: float, y: float) -> XY:
-        """Return a vector of the map frame as a vector (east, north) of the robot frame, in squares."""
+        """Return a vector (x, y) of the map frame as a vector (east, north) of the robot frame, in squares.
+
+        A vector is a difference of points: the origin of the frames does not matter.
+        """
         return turned(x, y, -self.angle)
 
     def place_to_utak(self, x: float, y: float) -> XY:
-        """Return a point of the map frame as a point (east, north) of the robot frame, in squares."""
+        """Return a point (x, y) of the map frame as a point (east, north) of the robot frame, in squares.
+
+        The robot frame has its origin where the robot woke.
+        """
         return self.to_utak(x - self.origin[0], y - self.origin[1])
 
     def place_from_utak(self, east: float, north: float) -> XY:
-        """Return a point of the robot frame as a point (x, y) of the map frame, in squares."""
+        """Return a point (east, north) of the robot frame as a point (x, y) of the map frame, in squares.
+
+        The map frame has its origin at the south-west corner of square (0, 0), the one in which the robot woke.
+        """
         x, y = self.to_map(east, north)
         return x + self.origin[0], y + self.origin[1]
 

@@ -139,7 +139,10 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
 
 
 def _small_parts(mask: Bools) -> Iterator[Bools]:
-    """Yield the mask of each edge-connected part whose longer side is at most MAX_THING_EXTENT squares."""
+    """Yield the mask of each edge-connected part whose longer side is at most MAX_THING_EXTENT squares.
+
+    `mask` and the results are (rows, columns) bool, of one shape; longer parts are left out.
+    """
     parts = components(mask)
     for n, (south, west, north, east) in enumerate(bounding_boxes(parts.labels, parts.number)[1:].tolist(), 1):
         if max(north - south, east - west) < MAX_THING_EXTENT:

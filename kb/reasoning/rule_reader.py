@@ -70,7 +70,7 @@ def read_statements(text: str) -> list[dict[str, Any]]:
 
 
 def _kept(node: AST) -> bool:
-    """Return whether a statement has an effect; raise ClauseError for one that is not allowed."""
+    """Return whether a statement has an effect in an encoding; raise ClauseError for one that is not allowed."""
     name = str(node.ast_type).rpartition(".")[2]
     if node.ast_type not in KEPT_STATEMENTS and name not in IGNORED_STATEMENTS:
         raise ClauseError(REFUSED_STATEMENTS.get(name, f"{name} is not known here"), place_of(node))

@@ -108,6 +108,6 @@ def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
 
 
 def _satisfiable(program: str, rules: Sequence[str]) -> bool:
-    """Return whether the program with these rules has an answer set."""
+    """Return whether the program with these rules has an answer set; False also when an error occurs."""
     control, failed = _grounded(program, rules)
     return failed is None and bool(control.solve().satisfiable)

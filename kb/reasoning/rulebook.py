@@ -60,7 +60,7 @@ class RuleAtom:
 
     @property
     def signature(self) -> Signature:
-        """The name and the number of arguments."""
+        """The name of the predicate and its number of arguments."""
         return self.name, len(self.constants)
 
 
@@ -168,7 +168,7 @@ class Rulebook:
 
     @property
     def self_contained(self) -> tuple[Statement, ...]:
-        """The rules that depend on no predicate but those that they define themselves."""
+        """The rules that depend on no predicate but those that they define themselves, in the order of the files."""
         return self._applicable(frozenset())
 
     @property
@@ -265,7 +265,7 @@ class Rulebook:
 
 
 def _form(signature: Signature) -> str:
-    """Return a predicate as text, such as shape/3."""
+    """Return a predicate (name, number of arguments) as text, such as shape/3."""
     return f"{signature[0]}/{signature[1]}"
 
 

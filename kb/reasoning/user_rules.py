@@ -272,7 +272,10 @@ def _span(at: Sequence[int]) -> SourceSpan:
 
 
 def _one_line(message: str) -> str:
-    """Return the first line of a message of clingo's; the lines below show the rewritten program."""
+    """Return the first line of a message of clingo's, with single blanks and without a colon at its end.
+
+    The lines below show the rewritten program.
+    """
     return " ".join(message.split("\n")[0].split()).rstrip(":")
 
 

@@ -106,7 +106,7 @@ class Atom:
 
     @property
     def signature(self) -> tuple[str, int]:
-        """The name and the number of arguments."""
+        """The name of the predicate and its number of arguments."""
         return self.name, len(self.parts)
 
 
@@ -227,13 +227,13 @@ class _Translator:
         self._intervals: list[Literal] = []
 
     def clause(self, rule: AST) -> Clause:
-        """Return a rule without pools as a clause."""
+        """Return a rule without pools as a clause; raise ClauseError for what is not supported."""
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
 
     def _head(self, node: AST) -> Atom | None:
-        """Return the head atom, or None for a constraint."""
+        """Return the head atom, or None for a constraint; raise ClauseError for any other head."""
         if node.ast_type == ASTType.Literal and node.sign == Sign.NoSign:
             if node.atom.ast_type == ASTType.BooleanConstant and not node.atom.value:
                 return None
@@ -319,7 +319,12 @@ class _Translator:
         return AggregateElement((Constant(clingo.String(name), at), *parts), literals)
 
     def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
-        """Return a term; whole : whether it may be an interval, because it is one side of a comparison."""
+        """Return a term; raise ClauseError for a function of Python (@name).
+
+        whole : whether it may be an interval, because it is one side of a comparison. Any other interval is replaced by
+            a
+        variable, and the comparison of that variable with the interval is appended to `_intervals`.
+        """
         at = place_of(node)
         if node.ast_type == ASTType.SymbolicTerm:
             value = node.symbol

@@ -93,7 +93,7 @@ def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
 
 
 def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
-    """Yield the atoms of a body that are negated or stand in aggregates or conditional literals."""
+    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals."""
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal

@@ -160,18 +160,24 @@ class _Search:
         return found
 
     def reads_fixed_confidence(self, atom: Atom) -> bool:
-        """Return whether the last argument is a variable for a confidence that is read as it is believed now."""
+        """Return whether an atom's last argument is a variable for a confidence that is read as it is believed now."""
         return (
             bool(atom.parts) and isinstance(atom.parts[-1], Variable) and atom.parts[-1].name in self.fixed_confidences
         )
 
     def truth_of_negated(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return the truth of an atom with `not` before it. A variable `_` in it matches anything."""
+        """Return the truth of an atom with `not`, or `not not`, before it; None when it is not known.
+
+        A variable `_` in it matches anything.
+        """
         held = self.truth_of_atom(atom, given)
         return held if held is None or atom.negations == 2 else not held
 
     def truth_of_atom(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return whether an atom holds for some values of its unbound variables; None when that is not known."""
+        """Return whether an atom, its negations left out, holds for some values of its unbound variables.
+
+        None when that is not known.
+        """
         if next(self.matches(atom, given, False), None) is not None:
             return True
         return None if next(self.matches(atom, given, True), None) is not None else False
@@ -205,7 +211,7 @@ class _Search:
         return given if self.may_equal(value_of(term, given), value, possible) else None
 
     def may_equal(self, a: Value, b: Value, possible: bool) -> bool:
-        """Return whether two values are equal; in the possible mode, whether they may be equal."""
+        """Return whether two values are certainly equal; with `possible`, whether they may be equal."""
         truth = compare("=", a, b, self.beliefs.known_names)
         return truth is True or (possible and truth is None)
 
@@ -348,7 +354,7 @@ class _Search:
             yield found
 
     def count_element(self, element: AggregateElement, given: Bindings, tally: Tally) -> None:
-        """Add to `tally` the tuples of one element, certain and possible ones."""
+        """Add to `tally` the tuples of one element of an aggregate: certain ones, and those that only may be there."""
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(element.condition, element.terms)
         for possible in (False, True):
             for found in find_bindings(element.condition, given, self.beliefs, possible, fixed_confidences):

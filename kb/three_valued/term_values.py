@@ -74,7 +74,7 @@ def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
 
 
 def is_interval(term: ClauseTerm) -> bool:
-    """Return whether a term is an interval."""
+    """Return whether a term is an interval, `low..high`."""
     return isinstance(term, Operation) and term.sign == ".."
 
 
@@ -103,7 +103,7 @@ def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterab
 
 
 def from_clingo(value: clingo.Symbol) -> Value:
-    """Return a clingo symbol as a value: numbers become Python integers."""
+    """Return a clingo symbol as a value: numbers become Python integers, all else stays."""
     return value.number if value.type == clingo.SymbolType.Number else value
 
 

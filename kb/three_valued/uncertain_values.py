@@ -47,7 +47,10 @@ class Unknown:
 
 
 def as_clingo(value: Value) -> clingo.Symbol:
-    """Return a known value as a clingo symbol. clingo orders all symbols: numbers, names, strings, terms."""
+    """Return a known value, an integer or a clingo symbol, as a clingo symbol.
+
+    clingo orders all symbols: numbers, names, strings, terms.
+    """
     return clingo.Number(value) if isinstance(value, int) else value
 
 

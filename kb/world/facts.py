@@ -283,5 +283,5 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _hundredths(length: float) -> int:
-    """Return a length in squares as a whole number of hundredths."""
+    """Return a length in squares as a whole number of hundredths of squares, rounded."""
     return round(FACT_UNITS_PER_SQUARE * length)

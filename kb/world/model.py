@@ -228,7 +228,10 @@ class WorldModel:
 
     @cached_property
     def space(self) -> Bools:
-        """All squares that were seen and are taken for floor, reachable or not, (rows, columns) bool."""
+        """All squares that were seen and are taken for floor, reachable or not: (rows, columns) bool.
+
+        On the view's arrays. They are occupied with a probability of at most MAX_FREE_PROBABILITY.
+        """
         return free_squares(self.view)
 
     @cached_property
@@ -265,7 +268,7 @@ class WorldModel:
         return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
 
     def object(self, name: str) -> Node | None:
-        """Return the object of this name; None when there is none."""
+        """Return the node of the object with this name, `o<n>`; None when there is none."""
         return next((node for node in self.objects if node.name == name), None)
 
     @property
