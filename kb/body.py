@@ -103,7 +103,7 @@ class Impression:
 
 
 class Body(Protocol):
-    """The only way from the mind to the world. The simulator, or a real robot, implements it."""
+    """The only way from the mind to the world: what moves the robot, and senses for it, has these two methods."""
 
     def wake(self) -> Impression:
         """Return the first impression, at the point where the robot woke: the origin of the robot frame."""

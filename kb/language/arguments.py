@@ -96,8 +96,9 @@ def _check_colour(term: Term) -> Complaint | None:
 def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
     """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`.
 
-    name : the name of the argument in messages, without an article. pattern : the expression. such_as : an example of a
-    valid name, for the hint.
+    name : the name of the argument in messages, without an article.
+    pattern : the expression.
+    such_as : an example of a valid name, for the hint.
     """
     form = re.compile(pattern)
 
@@ -113,9 +114,8 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
 def wkt_argument(name: str, *kinds: str) -> ArgumentType:
     """Return the type of quoted shapes in well-known text, coordinates in squares.
 
-    name : what the argument is called in messages, with its article. kinds : the kinds of shapes that fit, at least one
-        of
-    POINT, LINESTRING, POLYGON and MULTIPOLYGON.
+    name : what the argument is called in messages, with its article.
+    kinds : the kinds of shapes that fit, at least one of POINT, LINESTRING, POLYGON and MULTIPOLYGON.
     """
 
     def check(term: Term) -> Complaint | None:

@@ -77,7 +77,7 @@ class CannotOpenError(Exception):
     Attributes
     ----------
     path : the file's name as the user gave it.
-    why : the reason.
+    why : the reason, in the words of the system.
     """
 
     def __init__(self, path: str, why: str) -> None:
@@ -107,7 +107,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
     Returns
     -------
-    The hint; '' when no valid word is similar (a difflib ratio below 0.6).
+    The hint, such as "did you mean square?"; '' when no valid word is similar (a difflib ratio below 0.6).
     """
     import difflib  # only when something is misspelt
 

@@ -131,7 +131,7 @@ def lock_file(handle: int) -> bool:
 
     Parameters
     ----------
-    handle : the file descriptor.
+    handle : the file descriptor, as of os.open.
 
     Returns
     -------

@@ -26,9 +26,8 @@ class Source:
     ----------
     file : the file's name as the user gave it.
     text : the whole text; printable ASCII, tabs and line ends when `source_from_bytes` accepted it.
-    hide_text : the file is a link that leads out of its folder. Then messages show none of its text, because the author
-        of
-        the link may have no right to read the file.
+    hide_text : whether the file is a link that leads out of its folder. Then messages show none of its text, because
+        the author of the link may have no right to read the file.
     """
 
     file: str

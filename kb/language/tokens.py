@@ -51,9 +51,8 @@ class Token(NamedTuple):
 def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
     """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
 
-    source : the text. problems : the problem of each comment or string that is not closed is appended to this list, as
-        soon
-    as its token is reached.
+    source : the text.
+    problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
     """
     text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):

@@ -58,8 +58,9 @@ EXPECTATION_VOCABULARY: Vocabulary = {
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
     """Return the type of a name or of `name(argument)`, such as corner(northeast).
 
-    name : the name that takes an argument. argument : the type of its one argument. otherwise : an example of the inner
-    argument, for hints.
+    name : the name that takes an argument.
+    argument : the type of its one argument.
+    otherwise : an example of the inner argument, for hints.
     """
 
     def check(term: Term) -> Complaint | None:
@@ -218,9 +219,9 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 
     Parameters
     ----------
-    source : the text in which the facts stand.
-    facts : the facts.
-    vocabulary : the predicates of this kind of file.
+    source : the text in which the facts stand, for the messages.
+    facts : the facts, in the order of the text.
+    vocabulary : the predicates of this kind of file, with the types of their arguments.
 
     Returns
     -------

@@ -366,10 +366,10 @@ def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> flo
     Parameters
     ----------
     polygon : shapely Polygon
-        The believed outline, map frame.
+        The believed outline, map frame, in squares; its corners are on the grid when their coordinates are whole.
     otherwise : float
-        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact: its image
-        shows it exactly.
+        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact, so the result
+        is 0: its image shows it exactly.
     """
     return 0.0 if is_grid_aligned(polygon) else max(otherwise, COMMAND_ROUNDING)
 
@@ -387,7 +387,8 @@ def initial_short(polygon: Any) -> SideValues:
     """Return by how much further in the sides of an object that never moved may lie than its outline, in squares.
 
     The values are those of west, east, south and north. `polygon` is its believed outline, a shapely Polygon, map
-    frame. All are 0 when it is None, OUTLINE_TOLERANCE when it does not lie on the grid.
+    frame. All are 0 when it is None, 1 (a side lies less than that further in) when it lies on the grid, else
+    OUTLINE_TOLERANCE.
     """
     if polygon is None:
         return NO_INSETS

@@ -292,9 +292,11 @@ class Calculator:
     def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
         """Return a list with the result of an operation, a number; [] when it has none, after recording the error.
 
-        sign : the operator in ASP syntax, as a string. at : the place (line, column), from 1. parts : one or two
-            operands. It has
-        no result for an operand that is no number, a division by zero, and beyond 32 bits.
+        It has none for an operand that is no number, for a division by zero, and beyond 32 bits.
+
+        sign : the operator in ASP syntax, as a string.
+        at : the place (line, column), from 1.
+        parts : one or two operands, the left one first.
         """
         place = (at.arguments[0].number, at.arguments[1].number)
         strange = [part for part in parts if part.type != clingo.SymbolType.Number]

@@ -177,10 +177,10 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], se
     The response is {"atoms": texts, "derived": texts of atoms that heads of rules may have derived}, or {} without a
     search.
 
-    name : the name of the program in messages; '' for the rules alone. program : the text of the encoding and its
-        facts.
-    reaching : the rules, at least one. search : whether to search for the best answer; else the program is only
-        grounded.
+    name : the name of the program in messages; '' for the rules alone.
+    program : the text of the encoding and its facts; '' for the rules alone.
+    reaching : the rules, at least one.
+    search : whether to search for the best answer; else the program is only grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
@@ -219,10 +219,12 @@ def _as_fact(text: str) -> Fact | None:
 
 
 def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
-    """Return the error with the message `what` at the first rule that may have derived an atom; else at the first rule.
+    """Return the error at the first rule that may have derived an atom; at the first rule when none may.
 
-    reaching : the rules. text : the atom as text. atom : the same as a fact; None when it is none, then its name
-        decides.
+    reaching : the rules, at least one.
+    text : the atom as text.
+    atom : the same as a fact; None when it is none, then its name alone decides.
+    what : the message.
     """
     name = text.partition("(")[0]
     for one in reaching:

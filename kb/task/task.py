@@ -64,8 +64,8 @@ class Task:
     Attributes
     ----------
     parameters : the parameters by name, in the order of start.lp.
-    claims : the claims about parameters, in order.
-    goals : what shall hold, in order; `first(G)` and `then(G)` are kept as they stand.
+    claims : the claims about objects' shapes and colours, in the order of start.lp.
+    goals : what shall hold, facts in the order of goal.lp; `first(G)` and `then(G)` are kept as they stand.
     """
 
     parameters: Mapping[str, Parameter]
@@ -336,9 +336,11 @@ def _wrong_kind(
 ) -> Iterator[Problem]:
     """Yield the problem of an argument that is no parameter of an accepted kind; nothing when it is one.
 
-    goal : the goal, without `first` or `then`. term : its argument, a plain name. kinds : the kinds of parameters
-        (object,
-    door, room) and the words (utak, start) that it accepts. parameters : those of start.lp, by name.
+    source : goal.lp.
+    goal : the goal, without `first` or `then`.
+    term : its argument, a plain name.
+    kinds : the kinds of parameters (object, door, room) and the words (utak, start) that the argument may be.
+    parameters : those of start.lp, by name.
     """
     if term.name in kinds:
         return

@@ -26,9 +26,8 @@ class Tally:
     def add(self, values: ValueTuple, possible: bool) -> None:
         """Add a tuple of terms.
 
-        values : the tuple; its first value is the weight; a tuple may be empty for `#count`. possible : whether the
-            tuple may be
-        absent; else it is certain.
+        values : the tuple; its first value is the weight. For `#count` it may be empty.
+        possible : whether the tuple may be absent; else it is certain.
         """
         if not possible:
             self._certain[values] = None

@@ -49,7 +49,13 @@ class ClauseError(Exception):
 
 @dataclass(frozen=True)
 class Constant:
-    """A term without variables: an integer, or a clingo symbol (a name, a string, a compound term)."""
+    """A term without variables.
+
+    Attributes
+    ----------
+    value : an integer, or a clingo symbol (a name, a string, a compound term).
+    at : line and column, from 1.
+    """
 
     value: Any
     at: tuple[int, int]
@@ -59,7 +65,11 @@ class Constant:
 class Variable:
     """A variable.
 
-    Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name such as `.1`.
+    Attributes
+    ----------
+    name : its name. Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name
+        such as `.1`.
+    at : line and column, from 1.
     """
 
     name: str
@@ -68,7 +78,14 @@ class Variable:
 
 @dataclass(frozen=True)
 class Operation:
-    """Arithmetic on one or two terms; the sign `..` denotes an interval."""
+    """Arithmetic on one or two terms.
+
+    Attributes
+    ----------
+    sign : the operator in ASP syntax; `..` denotes an interval, `|` the absolute value, `?` bitwise or.
+    parts : the operands, the left one first.
+    at : line and column, from 1.
+    """
 
     sign: str
     parts: tuple["ClauseTerm", ...]
@@ -77,7 +94,14 @@ class Operation:
 
 @dataclass(frozen=True)
 class Compound:
-    """A term with arguments; a tuple has the name ''."""
+    """A term with arguments.
+
+    Attributes
+    ----------
+    name : its name; '' for a tuple.
+    parts : the arguments in order.
+    at : line and column, from 1.
+    """
 
     name: str
     parts: tuple["ClauseTerm", ...]
@@ -130,7 +154,13 @@ class Comparison:
 
 @dataclass(frozen=True)
 class AggregateElement:
-    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold."""
+    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold.
+
+    Attributes
+    ----------
+    terms : the tuple; its first term is the weight.
+    condition : the literals; () for none.
+    """
 
     terms: tuple[ClauseTerm, ...]
     condition: tuple["Literal", ...]
@@ -158,7 +188,14 @@ class Aggregate:
 
 @dataclass(frozen=True)
 class ConditionalLiteral:
-    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold."""
+    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold.
+
+    Attributes
+    ----------
+    literal : the literal before the colon.
+    condition : the literals after it.
+    at : line and column, from 1.
+    """
 
     literal: "Literal"
     condition: tuple["Literal", ...]
@@ -167,7 +204,13 @@ class ConditionalLiteral:
 
 @dataclass(frozen=True)
 class BooleanLiteral:
-    """The literal `#true` or `#false`."""
+    """The literal `#true` or `#false`.
+
+    Attributes
+    ----------
+    value : whether it is true, a `not` before it included.
+    at : line and column, from 1.
+    """
 
     value: bool
     at: tuple[int, int]
@@ -217,7 +260,7 @@ def place_of(node: AST) -> tuple[int, int]:
 
 
 class _Translator:
-    """Translates one rule.
+    """Translates one rule of clingo's syntax tree, without pools.
 
     The comparisons for intervals in arguments are collected in `_intervals`, until their conjunction is complete.
     """
@@ -321,9 +364,10 @@ class _Translator:
     def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
         """Return a term; raise ClauseError for a function of Python (@name).
 
-        whole : whether it may be an interval, because it is one side of a comparison. Any other interval is replaced by
-            a
-        variable, and the comparison of that variable with the interval is appended to `_intervals`.
+        An interval that is not wanted as such is replaced by a variable; the comparison of this variable with the
+        interval is appended to `_intervals`.
+
+        whole : whether the term may be an interval, because it is one side of a comparison.
         """
         at = place_of(node)
         if node.ast_type == ASTType.SymbolicTerm:

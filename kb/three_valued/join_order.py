@@ -93,7 +93,8 @@ def _needs(literal: Literal, own: set[str]) -> set[str]:
 def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
     """Return whether a literal can be evaluated now and binds variables by that.
 
-    bound : the names of the bound variables. own : those of the body itself, not local to an aggregate or a condition.
+    bound : the names of the bound variables.
+    own : the names of the variables of the body itself, not local to an aggregate or a condition.
     """
     if isinstance(literal, Atom):
         return literal.negations == 0 and all(_matchable(part, bound) for part in literal.parts)

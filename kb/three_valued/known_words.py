@@ -81,9 +81,9 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
 def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -> None:
     """Raise ClauseError when a term is a constant that an argument type does not accept.
 
-    slot : the type. term : the argument; anything but a constant is accepted. names : constants that are accepted, too,
-        as
-    text by the name of the type.
+    slot : the type.
+    term : the argument; anything but a constant is accepted.
+    names : constants that are accepted, too, as text by the name of the type.
     """
     if not isinstance(term, Constant) or str(term.value) in names.get(slot.name, ()):
         return

@@ -52,9 +52,11 @@ class Beliefs:
     def add_derived(self, signature: Signature, row: FactRow, possible: bool) -> bool:
         """Add a row of a predicate that rules define. Return whether it is new.
 
-        signature : the predicate. row : its arguments. possible : whether the row only may hold; such a row is not new
-            either when
-        it holds certainly, or is covered by one that may hold already.
+        A row that only may hold is not new when it holds certainly, or is covered by one that may hold already.
+
+        signature : the predicate (name, number of arguments).
+        row : its arguments.
+        possible : whether the row only may hold.
         """
         rows = (self._possible if possible else self._rows).setdefault(signature, {})
         if row in rows or (
@@ -122,9 +124,8 @@ class Beliefs:
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
 
-        declared : what the vocabulary says of the predicate. subject : the value of the argument that the fact is
-            about; None
-        when it is open.
+        declared : what the vocabulary says of the predicate.
+        subject : the value of the argument that the fact is about; None when it is open.
         """
         if declared.open is Openness.NEVER:
             return

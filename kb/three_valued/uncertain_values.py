@@ -118,6 +118,8 @@ def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
 def narrow(value: Unknown, sign: str, other: Value) -> Value:
     """Return what an unknown value can still be where `value sign other` holds.
 
+    other : the value with which it is compared, known or not. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
+
     Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
     """
     limits, least = bounds(value), bounds(other)

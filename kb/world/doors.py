@@ -60,9 +60,10 @@ class DoorwayNecks(NamedTuple):
     Attributes
     ----------
     necks : list of DoorwayNeck
-        Those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
+        The necks in the view frame, those first that have floor ENCODED_DOOR_RATIO times as wide on both sides.
     screen : Screen
-        The floor on which they were found: the view with NECK_UNSEEN_MARGIN free squares about it.
+        The floor on which they were found: the view with NECK_UNSEEN_MARGIN free squares about it, so that its origin
+        lies that many squares further west and south than that of the view frame.
     """
 
     necks: list[DoorwayNeck]
@@ -213,11 +214,11 @@ def _certainty(
     square along the line is unseen or occupied, or an end touches no verge; up to 50 when what stands at an end is
     shorter than the shortest wall; from 50 to 100 by how much of the line and of its ends is determined.
 
-    passage, line : the neck, and the line across it, view frame. across : (rows, columns) of the squares along the
-        line.
-    model : the world model. verge, doubtful : (rows, columns) bool, squares that bound the floor, and those that may
-        but
-    more likely do not. walls : the connected parts of what is probably occupied, with their lengths.
+    passage, line : the neck, and the line across it, view frame.
+    across : (rows, columns) of the squares along the line, on the view's arrays.
+    model : the world model.
+    verge, doubtful : (rows, columns) bool, squares that bound the floor, and those that may but more likely do not.
+    walls : the connected parts of what is probably occupied, with their lengths.
     """
     parts = _sample_positions(line)
     inner = np.minimum(parts, 1 - parts) * passage.width >= min(UNCLEAR_EDGE, passage.width / 4) - 1e-9
@@ -244,10 +245,12 @@ def _certainty(
 def _share_determined(jamb: Indices, outward: Floats, furthest: float, surely_wall: Bools) -> float:
     """Return the share of a jamb's squares that are surely wall, 0 to 1.
 
-    It is looked up at the jamb, and up to `furthest` squares further outward; the best of all these depths counts. jamb
-    : (rows, columns) of its squares on the view's arrays. outward : vector from the middle of the neck to the jamb, in
-    squares.
-    surely_wall : (rows, columns) bool.
+    A jamb is the squares of wall that one end of a neck touches. The share is looked up there, and up to `furthest`
+    squares further outward; the best of all these depths counts.
+
+    jamb : (rows, columns) of its squares on the view's arrays.
+    outward : vector (x, y) from the middle of the neck to the jamb, in squares.
+    surely_wall : (rows, columns) bool, on the view's arrays.
     """
     ahead = outward / max(float(np.hypot(*outward)), 1e-9)
     shares = []

@@ -247,9 +247,10 @@ def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
 def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
     """Return for each segment the mean confidence in the squares on both sides of it, in percent, rounded down.
 
-    starts, ends : (n, 2) points, in squares, map frame. Each segment is sampled at SEGMENT_SAMPLES places, half a
-        square to
-    its left and to its right; squares beyond the view count as 0.
+    Each segment is sampled at SEGMENT_SAMPLES places, half a square to its left and to its right; squares beyond the
+    view count as 0.
+
+    starts, ends : (n, 2) points (x, y), in squares, map frame.
     """
     parts = (np.arange(SEGMENT_SAMPLES) + 0.5) / SEGMENT_SAMPLES
     step = ends - starts

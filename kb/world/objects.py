@@ -189,10 +189,13 @@ def _seen_node(
 ) -> Node:
     """Return the node of a region of the map.
 
-    name : that of the node. window : the map about the region. patch : the region's squares, map frame. measured : its
-        fits
-    and outline. shape : shape class -> confidence in percent. kinds : what each region is taken for. touches : felt
-        colours.
+    name : that of the node, `o<n>`.
+    window : the map about the region.
+    patch : the region's squares, map frame.
+    measured : its fits and outline.
+    shape : shape class -> confidence in percent.
+    kinds : what each region is taken for.
+    touches : felt colours.
     """
     open_, doubtful = count_open_squares(window.mask, window.view)
     return Node(
