@@ -258,6 +258,9 @@ class HeldObject:
     def told(self, agrees: Callable[[Any], bool]) -> "HeldObject | None":
         """Return the object with the insets of its sides narrowed by an impression.
 
+        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
+        side.
+
         Parameters
         ----------
         agrees : function
@@ -277,6 +280,9 @@ class HeldObject:
 
     def inset(self, insets: SubcellExtent) -> "HeldObject | None":
         """Return the object with other possible insets, its sides moved to where they are then believed to lie.
+
+        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
+        side.
 
         Parameters
         ----------

@@ -82,9 +82,9 @@ class SubcellExtent(NamedTuple):
 
 
 def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float, float]:
-    """Return the believed insets of two opposite sides, in squares.
+    """Return the believed insets of two opposite sides, in squares: west and east, or south and north.
 
-    `least` and `most` hold the bounds of the two sides' insets: west and east, or south and north.
+    `least` and `most` hold the least and the greatest possible inset of the two, in the same order.
     """
     if not any(least):
         return 0.0, 0.0

@@ -279,7 +279,7 @@ def _place_term(line: int, column: int) -> clingo.Symbol:
 
 
 class Calculator:
-    """The arithmetic of rules; clingo calls `calculated` while it grounds.
+    """The arithmetic of rules; clingo calls `calculated` while it grounds a program.
 
     Attributes
     ----------

@@ -249,7 +249,7 @@ class Rulebook:
         return stated and all(atom.signature in known | defined for atom in one.body)
 
     def _without_effect(self, one: Statement) -> Iterator[Problem]:
-        """Yield the reason why a statement has no effect, if it has none."""
+        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one."""
         where = [name for name in PREDICATES_BY_ENCODING if one in self._counting[name]]
         if not where:
             names = sorted(

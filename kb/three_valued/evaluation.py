@@ -129,7 +129,7 @@ class _Search:
             yield given
 
     def passes(self, truth: TruthValue) -> bool:
-        """Return whether a truth value suffices in this mode: True, and in the possible mode also None, not known."""
+        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode."""
         return truth is True or (self.possible and truth is None)
 
     # ---- atoms ----

@@ -41,7 +41,8 @@ class DoorwayNeck(NamedTuple):
     Attributes
     ----------
     passage : Passage
-        The neck as geometry found it, in squares, view frame: its width, mouths, and the clearance on both sides.
+        The neck as geometry found it, in squares, view frame (origin at the south-west corner of the map view's square
+        [0, 0]): its width, mouths, and the clearance on both sides.
     line : Segment
         The line across it, two points (x, y) on the walls, where it was seen best; in squares, view frame. The first is
         the end on the left of a robot that goes from the neck's first side to its second.
@@ -101,7 +102,8 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
     Returns
     -------
     DoorwayNecks
-        The necks, each with its certainty in percent; view frame.
+        The necks, each with its certainty in percent; view frame (origin at the south-west corner of the map view's
+        square [0, 0]).
     """
     walls, seen_verge = _wall_parts(model), verge & model.view.seen
     screen = Screen(np.pad(~verge, NECK_UNSEEN_MARGIN, constant_values=True))

@@ -238,13 +238,16 @@ class WorldModel:
     def verge(self) -> Bools:
         """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool.
 
-        The regions are verge with a confidence of at least PROBABLY_VERGE percent.
+        On the view's arrays. The regions are verge with a confidence of at least PROBABLY_VERGE percent.
         """
         return self._believed_verge(PROBABLY_VERGE)
 
     @cached_property
     def walls(self) -> Bools:
-        """Squares of regions that are almost surely verge, (rows, columns) bool: SURELY_VERGE percent at least."""
+        """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays.
+
+        The regions are verge with a confidence of at least SURELY_VERGE percent.
+        """
         return self._believed_verge(SURELY_VERGE)
 
     def _believed_verge(self, least: int) -> Bools:

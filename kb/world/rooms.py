@@ -43,8 +43,8 @@ class Door:
     name : str
         d1, d2, ... in the order of `Rooms.doors`. It may name another door in another world model.
     a, b : (x, y)
-        The ends of its neck, on the walls, in squares, view frame: the left and the right one as seen by a robot that
-        goes from the first of `sides` to the second.
+        The ends of its neck, on the walls, in squares, view frame (origin at the south-west corner of the map view's
+        square [0, 0]): the left and the right one as seen by a robot that goes from the first of `sides` to the second.
     sides : (int, int)
         The numbers of the rooms on its two sides; the same twice when both sides are one room.
     confidence : int
@@ -69,12 +69,15 @@ class Door:
 
     @property
     def width(self) -> float:
-        """The width from wall to wall, in squares."""
+        """The width of its neck from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
     def place(self) -> XY:
-        """The middle of its neck, (x, y) in squares, view frame."""
+        """The middle of its neck, (x, y) in squares, view frame.
+
+        The view frame has its origin at the south-west corner of the map view's square [0, 0].
+        """
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
@@ -84,7 +87,8 @@ class Opening(NamedTuple):
     Attributes
     ----------
     a, b : (x, y)
-        Its ends, on the walls, in squares, view frame.
+        Its ends, on the walls, in squares, view frame (origin at the south-west corner of the map view's square [0,
+        0]).
     least : float
         The width of the floor on the narrower side, in squares.
     narrow, wide : (x, y)
@@ -99,12 +103,15 @@ class Opening(NamedTuple):
 
     @property
     def width(self) -> float:
-        """The width from wall to wall, in squares."""
+        """The width of the neck from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
     def place(self) -> XY:
-        """The middle of its neck, (x, y) in squares, view frame."""
+        """The middle of the neck, (x, y) in squares, view frame.
+
+        The view frame has its origin at the south-west corner of the map view's square [0, 0].
+        """
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
@@ -338,7 +345,8 @@ def count_crossings(points: Floats, door: Door) -> int:
     Parameters
     ----------
     points : (n, 2) float64
-        The track, (x, y) in squares, view frame, oldest point first.
+        The track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square [0, 0]),
+        oldest point first.
     door : Door
         The door.
 
@@ -354,12 +362,13 @@ def count_crossings(points: Floats, door: Door) -> int:
 
 
 def went_through(track: Floats, door: Door) -> bool:
-    """Return whether a track was ever on the other side of a door than it began.
+    """Return whether a track was ever on the other side of a door than it began; True also when it came back later.
 
     Parameters
     ----------
     track : (n, 2) float64
-        The points of the track, (x, y) in squares, view frame, oldest first.
+        The points of the track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square
+        [0, 0]), oldest first.
     door : Door
         The door.
     """
