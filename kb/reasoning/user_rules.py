@@ -37,7 +37,7 @@ def read_rules(paths: Sequence[Path | str]) -> Rulebook:
 
     Parameters
     ----------
-    paths : the files, in order.
+    paths : the paths of the files, in order.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
 
     Parameters
     ----------
-    paths : the files, in order.
+    paths : the paths of the files, in order.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
 
 @lru_cache(maxsize=16)
 def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
-    """Return the checked rules of some sources."""
+    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them."""
     problems: list[Problem] = []
     statements: list[Statement] = []
     for source in sources:
@@ -99,7 +99,10 @@ def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
 
 
 def _statements(source: Source) -> list[Statement]:
-    """Return the statements of one source; raise BadInputError when it is no file of rules."""
+    """Return the statements of one source, in order.
+
+    Raises BadInputError when it is no file of rules, has no rule, or takes too much time or memory.
+    """
     problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
     if problems:
         raise BadInputError(problems)
@@ -116,7 +119,10 @@ def _statements(source: Source) -> list[Statement]:
 
 
 def _not_allowed(source: Source) -> Iterator[Problem]:
-    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash."""
+    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
+
+    Nothing is yielded after the first bracket that is nested more than MAX_TERM_DEPTH deep.
+    """
     depth = 0
     for token in tokenize(source, []):
         if token.text == "#include":
@@ -140,7 +146,7 @@ def solve_with_user_rules(
 
     Returns
     -------
-    The atoms; None when none of the rules reaches this encoding.
+    The atoms, clingo symbols; None when none of the rules reaches this encoding.
 
     Raises
     ------
@@ -168,8 +174,13 @@ def solve_with_user_rules(
 def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], search: bool = True) -> dict[str, Any]:
     """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
 
-    name : the name of the program in messages; '' for the rules alone. search : whether to search for the best answer;
-    else the program is only grounded.
+    The response is {"atoms": texts, "derived": texts of atoms that heads of rules may have derived}, or {} without a
+    search.
+
+    name : the name of the program in messages; '' for the rules alone.
+    program : the text of the encoding and its facts; '' for the rules alone.
+    reaching : the rules, at least one.
+    search : whether to search for the best answer; else the program is only grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
@@ -199,7 +210,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], se
 
 
 def _as_fact(text: str) -> Fact | None:
-    """Return the fact that a derived atom denotes; None when fact files could not express it."""
+    """Return the fact that the text of a derived atom denotes; None when fact files could not express it."""
     try:
         (fact,) = facts_from_text(f"{text}.")
     except (BadInputError, ValueError):
@@ -208,7 +219,13 @@ def _as_fact(text: str) -> Fact | None:
 
 
 def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
-    """Return the error at the first rule that may have derived an atom."""
+    """Return the error at the first rule that may have derived an atom; at the first rule when none may.
+
+    reaching : the rules, at least one.
+    text : the atom as text.
+    atom : the same as a fact; None when it is none, then its name alone decides.
+    what : the message.
+    """
     name = text.partition("(")[0]
     for one in reaching:
         for head in one.heads:
@@ -218,27 +235,30 @@ def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact |
 
 
 def _may_have_derived(constants: Sequence[str | None], atom: Fact) -> bool:
-    """Return whether the constants of a head agree with an atom."""
+    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything."""
     return len(constants) == len(atom.args) and all(
         constant is None or constant == str(term) for constant, term in zip(constants, atom.args, strict=True)
     )
 
 
 def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputError:
-    """Return the error at the first of the rules."""
+    """Return the error with the message `what` at the first of the rules, which are at least one."""
     return BadInputError([reaching[0].problem(what)])
 
 
 @cache
 def _worker() -> Worker:
-    """Return the process that all users' rules of this process share."""
+    """Return the process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)
     return worker
 
 
 def _error_at_place(source: Source, message: str) -> BadInputError:
-    """Return the error for a message of clingo's, at its place in the user's file."""
+    """Return the error for a message of clingo's, at its place in the user's file.
+
+    It stands at the start of the file when the message has no place.
+    """
     place = CLINGO_MESSAGE.search(message)
     if place is None:
         return BadInputError([source.problem(source.start(), _one_line(message))])
@@ -249,12 +269,15 @@ def _error_at_place(source: Source, message: str) -> BadInputError:
 
 
 def _span(at: Sequence[int]) -> SourceSpan:
-    """Return the span of one column."""
+    """Return the span of one column: at is [line, column], both from 1."""
     return SourceSpan(at[0], at[1], at[1])
 
 
 def _one_line(message: str) -> str:
-    """Return the first line of a message of clingo's; the lines below show the rewritten program."""
+    """Return the first line of a message of clingo's, with single blanks and without a colon at its end.
+
+    The lines below show the rewritten program.
+    """
     return " ".join(message.split("\n")[0].split()).rstrip(":")
 
 
