@@ -78,9 +78,9 @@ def total_contradictions(
 
 @compiled
 def _within(exempt: NDArray[np.float64], x: float, y: float) -> bool:
-    """Return whether a point lies on one of some discs, (n, 3) of x, y and radius in squares; edges belong to them.
+    """Return whether a point lies on one of some discs; their edges belong to them. False when there are none.
 
-    The point is (x, y) in squares, in the discs' frame. False when there are no discs.
+    `exempt` (n, 3) are x, y and radius of the discs, in squares. The point is (x, y) in squares, in the discs' frame.
     """
     found = False
     for n in range(len(exempt)):

@@ -157,6 +157,7 @@ class _Floor:
     """
 
     def __init__(self, walls: Walls) -> None:
+        """Join the triangles of `walls` over all edges that are no necks."""
         number = len(walls.triangles)
         self._parent = list(range(number))
         self.members = [[k] for k in range(number)]
@@ -256,7 +257,11 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
     """Return the passage of a doorway, with the side whose gate is further south, then west, as the first.
 
-    `taken` are the squares (column, row) between the mouths of any doorway: no gate lies there.
+    Parameters
+    ----------
+    walls : the triangulated floor.
+    doorway : two mouths, and the squares between them.
+    taken : the squares (column, row) between the mouths of any doorway: no gate lies there.
     """
     gates = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
     (here, one), (there, two) = sorted(gates, key=lambda way: way[0][::-1])
@@ -272,7 +277,8 @@ def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Pa
 def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
     """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it.
 
-    It enters from the wide floor. Each end is (x, y) in squares from the screen's south-west corner.
+    It enters from the wide floor. Each end is (x, y) in squares from the screen's south-west corner. `walls` is the
+    triangulated floor, of which the mouth is an edge.
     """
     p, q = walls.corners[walls.edges[mouth.edge]].tolist()
     x, y = walls.opposite(mouth.edge, mouth.side).tolist()

@@ -116,7 +116,7 @@ def close_crossed_steps(closed: Bools, line: Floats) -> None:
 def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
     """Return whether the segments a-b and p-q cross; an end that lies on the other's line counts as right of it.
 
-    All coordinates are in one unit. Segments on one line do not cross.
+    The numbers are x and y of the four ends, in one unit. Segments on one line do not cross.
     """
     apart = (orientation(ax, ay, bx, by, px, py) > 0) != (orientation(ax, ay, bx, by, qx, qy) > 0)
     return apart and (orientation(px, py, qx, qy, ax, ay) > 0) != (orientation(px, py, qx, qy, bx, by) > 0)
@@ -126,7 +126,7 @@ def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: fl
 def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
     """Return a positive number when c lies left of the ray from a through b, negative when right, 0 on its line.
 
-    It is twice the signed area of the triangle a b c.
+    It is twice the signed area of the triangle a b c, of which x and y are given in one unit.
     """
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 

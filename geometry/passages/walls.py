@@ -116,11 +116,12 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
 
 
 def _widths(points: Longs) -> Floats:
-    """Return the squared width of the floor about triangles with corners (m, 3, 2); 0 about obtuse ones.
+    """Return the squared width of the floor about triangles, (m,) float64, in square squares; 0 about obtuse ones.
 
-    They are (m,) float64, in square squares: squared diameters of the circles through the triangles' corners, less 1.
-    For walls go straight on between corners that are one square apart, so they come nearer to the centre than these
-    corners by what such a chord cuts off: 1 is subtracted from four times the squared radius.
+    They are squared diameters of the circles through the triangles' corners, less 1. For walls go straight on between
+    corners that are one square apart, so they come nearer to the centre than these corners by what such a chord cuts
+    off: 1 is subtracted from four times the squared radius. `points` (m, 3, 2) are the corners (x, y), in squares, each
+    triangle in one sense of rotation or the other.
     """
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c

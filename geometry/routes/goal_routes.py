@@ -65,6 +65,15 @@ class GoalArea:
     """
 
     def __init__(self, queries: LayerQueries, start: XY, goal: Bools, avoid: tuple[Passage, ...]) -> None:
+        """Find the parts of a goal set.
+
+        Parameters
+        ----------
+        queries : the layer that is asked.
+        start : (x, y) in squares from the screen's south-west corner.
+        goal : (rows, columns) bool, True on squares of the set; those in which the body cannot be do not count.
+        avoid : passages through which no route may lead; may be empty.
+        """
         self.queries, self.start, self.avoid = queries, start, avoid
         self.layer = queries.layer
         self.width: int = self.layer.square.shape[1]

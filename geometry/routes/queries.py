@@ -73,6 +73,14 @@ class LayerQueries:
     """
 
     def __init__(self, layer: Layer, level: int, radius: float) -> None:
+        """Take a layer, and make no scratch yet.
+
+        Parameters
+        ----------
+        layer : the free space of a body.
+        level : the least squared clearance of a cell where the body may be, in squared half squares; that of the layer.
+        radius : of the body, in squares; 0 for a point.
+        """
         self.layer = layer
         self.level = level
         self.radius = radius
@@ -172,7 +180,7 @@ class LayerQueries:
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
         """Return the floor cut along some passages.
 
-        The last barrier is kept, and returned again for the same passages.
+        The last barrier is kept, and returned again when `avoid`, the passages, is the same.
         """
         if self._barrier is None or self._barrier[0] != avoid:
             self._barrier = avoid, build_barrier(self.layer, self.level, avoid)
@@ -325,9 +333,9 @@ class LayerQueries:
         return self.with_ends(route, start, start)
 
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
-        """Return scratch for that many routes, with room for words of at least that many symbols (signed portals).
+        """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
 
-        It is kept, and made anew when it has too little room.
+        It is kept for each number of routes, and made anew when it has too little room.
         """
         buffers = self._buffers_of.get(wanted)
         if buffers is None or len(buffers.start) < room:

@@ -73,7 +73,7 @@ def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> I
 def build_forest(strips: Strips) -> Ints:
     """Return for each strip the signed portal towards the first strip of its component, (n,) int32; 0 at that strip.
 
-    Only portals without a crossing number are used: they form a tree in each component.
+    Only portals without a crossing number are used: in each component of the `strips` they form a tree.
     """
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(strips.low))]
     for portal in np.flatnonzero(strips.crossing == 0).tolist():
