@@ -70,12 +70,17 @@ class Counts(NamedTuple):
     high: NDArray[np.int16]
 
     def of(self, fields: NDArray[np.int64]) -> "Counts":
-        """Return the counts of some of the fields, given by number (index), in the order of these; new arrays."""
+        """Return the counts of some of the fields, given by number (index), in the order of these; new arrays.
+
+        A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+        """
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
 
 class _Raster(NamedTuple):
     """A raster with a frame of one unseen square, and the n squares of it that are drawn.
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Attributes
     ----------
@@ -108,7 +113,8 @@ def pictures(
 ) -> NDArray[np.int8]:
     """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0.
 
-    They agree as well as the sampling brings them; some counts may stay wrong.
+    They agree as well as the sampling brings them; some counts may stay wrong. A field is a set of squares that the
+    robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -165,6 +171,8 @@ def costs(
 
 def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     """Return the raster of a framed ground.
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -266,13 +274,16 @@ def _thresholds() -> NDArray[np.float32]:
 def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed):  # type: ignore[no-untyped-def]
     """Change rasters, in place, until they are simple and agree with the counts.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
-    raster : the `_Raster` of the ground.
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
     flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
     thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
     images : (m, size) int8, 1 where occupied, flat framed rasters; changed at drawn squares.
-    neighbours : (m, n) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits.
+    neighbours : (m, n) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
     counts : (m, fields) int32, the count of occupied squares of each raster under each field, by weight; kept up to
         date.
     flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
@@ -298,13 +309,16 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
 def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random):  # type: ignore[no-untyped-def]
     """Change one raster, in place, square by square, in one sweep for each inverse temperature.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
-    raster : the `_Raster` of the ground.
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
     flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
     thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
     image : (size,) int8, 1 where occupied, the flat framed raster; changed at drawn squares.
-    neighbours : (n,) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits.
+    neighbours : (n,) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
     counts : (fields,) int32, the count of occupied squares under each field, by weight; kept up to date.
     flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
     inverse_temperatures : (sweeps,) float32.
@@ -369,9 +383,10 @@ def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbo
 
     Parameters
     ----------
-    squares, shown_corners, around : fields of `_Raster`.
+    squares, shown_corners, around : attributes of `_Raster`.
     flip_costs : (8192,) float32, as of `_flip_costs`.
-    image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits.
+    image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
     k, other : numbers of the two drawn squares.
     """
     other_neighbours = neighbours[other]  # once k is changed
@@ -386,14 +401,14 @@ def try_flips(raster, flip_costs, image, neighbours, counts, count_error, thresh
     """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold.
 
     Return by how many squares more the counts are wrong then (negative: fewer); 0 when the squares are left as they
-    were.
+    were. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
-    raster : the `_Raster` of the ground.
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
     flip_costs : (8192,) float32, as of `_flip_costs`.
     image : (size,) the flat framed raster, 1 where occupied; changed when the squares flip, as are the next two.
-    neighbours : (n,) the occupied neighbours of each drawn square, as bits.
+    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS).
     counts : (fields,) the count of occupied squares under each field.
     count_error : by how many squares the counts are wrong before, all fields together.
     threshold : the rise of the cost that is allowed.
@@ -430,9 +445,9 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type
 
     Parameters
     ----------
-    squares, rank, around : fields of `_Raster`.
+    squares, rank, around : attributes of `_Raster`.
     image : (size,) the flat framed raster, 1 where occupied.
-    k : the number of the drawn square.
+    k : the number of the square, among those that are drawn (sampled).
     random : a random number; its lowest 11 bits are used.
     flipped : written from index 0 on: numbers of drawn squares, k first.
     """
@@ -471,9 +486,10 @@ def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-de
     Parameters
     ----------
     square : its flat index in the framed raster.
-    rank, around : fields of `_Raster`.
+    rank, around : attributes of `_Raster`.
     image : (size,) the flat framed raster, 1 where occupied; changed at the square.
-    neighbours : (n,) the occupied neighbours of each drawn square, as bits; changed for drawn squares about it.
+    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS);
+        changed for drawn squares about it.
     """
     image[square] = 1 - image[square]
     for n in range(8):
@@ -486,13 +502,14 @@ def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-de
 def count_error_change(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
     """Return by how many squares more the counts are wrong when a square is counted once more, or once less.
 
-    It is negative where they are wrong by fewer.
+    It is negative where they are wrong by fewer. A field is a set of squares that the robot sees as one; its count is
+    that of its occupied squares.
 
     Parameters
     ----------
-    k : the number of the drawn square.
+    k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share, limits : fields of `_Raster`.
+    ends, field, share, limits : attributes of `_Raster`.
     counts : (fields,) the count of occupied squares under each field; not changed.
     """
     worse = 0
@@ -509,11 +526,13 @@ def count_error_change(k, more, ends, field, share, limits, counts):  # type: ig
 def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
     """Count a square once more, or once less, under each of its fields: as often as the field samples it.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
-    k : the number of the drawn square.
+    k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : fields of `_Raster`.
+    ends, field, share : attributes of `_Raster`.
     counts : (fields,) the count of occupied squares under each field; changed.
     """
     for i in range(ends[k], ends[k + 1]):

@@ -32,6 +32,8 @@ def remaining_counts(
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
     state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
@@ -69,6 +71,8 @@ def misfits(
 ) -> int:
     """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
     state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
@@ -103,7 +107,8 @@ def settle(
 ) -> None:
     """Settle in place all squares that the counts settle, by single fields and by pairs of fields.
 
-    At most MAX_ROUNDS rounds are made. Where fields contradict each other some verdict is settled, without an error.
+    At most MAX_ROUNDS rounds are made. Where fields contradict each other some verdict is settled, without an error. A
+    field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -146,7 +151,8 @@ def _settle_by_single_fields(
     """Settle squares by single fields, and return whether any was settled.
 
     A field that can take no more occupied squares leaves its other squares free. A field that needs all its open
-    squares fills them. If two fields contradict each other, the square becomes OCCUPIED.
+    squares fills them. If two fields contradict each other, the square becomes OCCUPIED. A field is a set of squares
+    that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -203,7 +209,8 @@ def _settle_by_pairs(
     """Settle what two fields do not share, from the difference of their counts; return whether any square was settled.
 
     Only fields whose open squares all count once are compared, and of these pairs in which one is fresh. If pairs
-    contradict each other, the square becomes FREE.
+    contradict each other, the square becomes FREE. A field is a set of squares that the robot sees as one; its count is
+    that of its occupied squares.
 
     Parameters
     ----------
@@ -292,6 +299,8 @@ def _fields_by_square(
     state: SquareStates, where: Ints, weight: Numbers, open_weight: Longs, chosen: NDArray[np.bool_], entries: int
 ) -> tuple[Longs, Longs]:
     """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]].
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------

@@ -26,7 +26,8 @@ class Landmarks(NamedTuple):
     Attributes
     ----------
     symbol : (cells,) for each chain cell, the signed portal between it and the next cell of its chain; 0 within a row.
-    word : (size,) the reduced words (signed portals, from first to last cell) of all whole chains, one after the other.
+    word : (size,) the reduced words, from first to last cell (signed portals, negative when crossed southwards), of all
+        whole chains, one after the other.
     spelt : (m + 1,) the index in `word` at which each chain's word starts.
     length : (m,) the length of each chain when pulled tight between its ends, in squares.
     place : (n, 2) the nodes' centres (x, y), in squares from the screen's south-west corner.
@@ -68,6 +69,8 @@ class Anchor(NamedTuple):
 def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
     """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares; only the shape is read.
@@ -97,10 +100,13 @@ def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, 
 def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
     """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row.
 
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A cell's index is (row + 1) *
+    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
-    row, up, left : fields of the strips.
+    row, up, left : attributes of the strips.
     width : columns of the padded screen.
     symbol : (cells,) written, but for the last cell of each chain.
     """
@@ -127,6 +133,9 @@ def measure_chains(
 ) -> None:
     """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
 
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
+    with its cells.
+
     Parameters
     ----------
     start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
@@ -135,7 +144,8 @@ def measure_chains(
     body : True for a body, which keeps to the lines between centres of squares; False for a point.
     width : columns of the padded screen.
     length : (m,) written, in squares.
-    words : written: the signed portals of all chains, one chain after the other.
+    words : written: the signed portals (index plus 1, negative when crossed southwards) of all chains, one chain after
+        the other.
     spelt : (m + 1,) 0 at first, written: the index in `words` at which each chain's word starts.
     out, funnel : scratch, for the longest chain.
     """
@@ -154,6 +164,8 @@ def measure_chains(
 @bare
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
     """Fill the arcs out of every node. A chain from a node back to itself gives no arc.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
@@ -231,12 +243,13 @@ def ascend(
 
     Parameters
     ----------
-    cell : the index, in the flat padded screen, of a cell where the body may be.
+    cell : the index, in the flat padded screen, (row + 1) * width + column + 1, of a cell where the body may be.
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) the skeleton's states, 0 off the skeleton.
     width : columns of the padded screen.
-    row, up, left : fields of the strips.
-    word : written from index 0 on: the reduced word of signed portals from the cell to the skeleton.
+    row, up, left : attributes of the strips.
+    word : written from index 0 on: the reduced word of signed portals (index plus 1, negative when crossed southwards)
+        from the cell to the skeleton.
 
     Returns
     -------
@@ -254,14 +267,16 @@ def ascend(
 
 @bare
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """Return the anchor of a skeleton cell: its chain and position on the pathgraph.
+    """Return the anchor of a skeleton cell: its chain and position on the pathgraph, or its node.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
-    cell : index, in the flat padded screen, of a cell of the skeleton.
+    cell : index, in the flat padded screen, (row + 1) * width + column + 1, of a cell of the skeleton.
     states : (cells,) the skeleton's states, flat: links to the neighbours, and flags (see skeleton.py).
     width : columns of the padded screen.
-    node, leave, start, cells : the fields of `Chains` of these names.
+    node, leave, start, cells : the attributes of `Chains` of these names.
     """
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
@@ -287,8 +302,8 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 
     Parameters
     ----------
-    cell : index of the node's cell in the flat padded screen.
-    node, leave, start, cells : the fields of `Chains` of these names.
+    cell : index of the node's cell in the flat padded screen, (row + 1) * width + column + 1.
+    node, leave, start, cells : the attributes of `Chains` of these names.
     """
     number, found, position = find(node, cell), -1, 0
     for direction in range(4):
@@ -303,13 +318,15 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     start : (m + 1,) where the cells of each chain begin.
     symbol : (cells,) the signed portal after each chain cell, 0 for none.
     chain : the number of the chain.
     begin, end : indices of cells on the chain, from 0 at its first cell.
-    word : a reduced word of signed portals, extended; inverses cancel.
+    word : a reduced word of signed portals (index plus 1, negative when crossed southwards), extended; inverses cancel.
     size : the number of its symbols before. A returned size equal to the array's length says that there is no room.
     """
     first = start[chain]
@@ -328,7 +345,8 @@ def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, si
 
     Parameters
     ----------
-    other : the word to append, signed portals; its entries from `first` up to `last`, excluded, are used.
+    other : the word to append, signed portals (index plus 1, negative when crossed southwards); its entries from
+        `first` up to `last`, excluded, are used.
     first, last : see `other`.
     backwards : whether to append the inverse: the entries in reverse order, with their signs changed.
     word : the word that is extended; changed.

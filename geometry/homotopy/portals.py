@@ -14,11 +14,12 @@ WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the
 def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order.
 
-    It is empty when the line stays in one strip. The line may touch walls and their corners.
+    It is empty when the line stays in one strip. The line may touch walls and their corners. A signed portal is a
+    portal's index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     points : (x, y) in squares from the screen's south-west corner, at least one.
 
     Raises
@@ -54,7 +55,7 @@ def first_strip(strips: Strips, point: XY) -> tuple[int, int]:
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     point : (x, y) in squares from the screen's south-west corner.
 
     Returns
@@ -79,11 +80,11 @@ def symbol_into_square(strips: Strips, strip: int, row: int, point: XY) -> int:
 
     A point on a line between two rows belongs to the upper one, from whichever side the line comes: words between the
     same ends must end in the same strip. If the square above is blocked, the line ends in the strip in which it is, and
-    0 is returned.
+    0 is returned. A signed portal is a portal's index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     strip, row : the strip in which the line ends, and its row, from 0 in the south.
     point : the line's last point, (x, y) in squares from the screen's south-west corner.
 
@@ -111,7 +112,7 @@ def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     strip, row : the strip in which p lies, and its row, from 0 in the south.
     p, q : (x, y) in squares from the screen's south-west corner, as is the point that is returned.
     """
@@ -131,11 +132,12 @@ def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None
 def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
     """Return the signed portal at p, on the edge of a strip, through which the segment p-q gets furthest.
 
-    It is positive when the portal leads to the row above, negative when to the row below.
+    It is positive when the portal leads to the row above, negative when to the row below. A signed portal is a portal's
+    index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     strip, row : the strip that the segment leaves, and its row, from 0 in the south.
     p, q : (x, y) in squares from the screen's south-west corner; p lies on the strip's northern or southern edge.
 
@@ -162,7 +164,8 @@ def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
 def join_words(*words: Ints) -> Ints:
     """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array.
 
-    A signed portal followed by its negative is left out. Without words, or when all cancel, the result is empty.
+    A signed portal followed by its negative is left out. Without words, or when all cancel, the result is empty. A
+    signed portal is a portal's index plus 1, negative when it is crossed southwards.
     """
     whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
     size = 0
@@ -180,7 +183,7 @@ def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     word : (n,) int, signed portals.
     """
     numbers = strips.crossing[np.abs(word) - 1] * np.sign(word)

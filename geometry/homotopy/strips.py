@@ -154,10 +154,10 @@ def fill_portals(
 
     Parameters
     ----------
-    row, low, high : fields of `Strips`, read.
-    up, down : (n + 1,) zero at first, written: the fields of that name of `Strips`.
-    left, right, lower, upper, line : written in their first entries: the fields of that name of `Strips`. Twice as many
-        entries as there are strips are enough.
+    row, low, high : attributes of `Strips`, read.
+    up, down : (n + 1,) zero at first, written: the attributes of that name of `Strips`.
+    left, right, lower, upper, line : written in their first entries: the attributes of that name of `Strips`. Twice as
+        many entries as there are strips are enough.
     """
     found = 0
     for i in range(row.shape[0] - 2):
@@ -203,11 +203,12 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
 def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
     """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
 
-    A dead end is a part of free space, without rings, that one portal joins to the rest.
+    A dead end is a part of free space, without rings, that one portal joins to the rest. A signed portal is a portal's
+    index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    up, down, lower, upper : fields of `Strips`, read.
+    up, down, lower, upper : attributes of `Strips`, read.
     exits : (n,) zero at first, written: the signed portal that leads out of a dead-end strip; it stays 0 elsewhere.
     degree : (n,) the number of portals of each strip; used up.
     queue : (n,) scratch.
@@ -256,7 +257,7 @@ def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 
     Parameters
     ----------
-    rows, lows : the fields `row` and `low` of `Strips`.
+    rows, lows : the attributes `row` and `low` of `Strips`.
     row, column : those of the square, without padding, from the south-west.
     """
     low, high = 0 + rows[row], rows[row + 1] - 1
@@ -273,12 +274,13 @@ def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
     """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
 
-    Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free.
+    Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free. A signed
+    portal is a portal's index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    rows, up, left : the fields `row`, `up` and `left` of `Strips`.
-    cell, other : indices of the cells in the flat padded screen.
+    rows, up, left : the attributes `row`, `up` and `left` of `Strips`.
+    cell, other : indices of the cells in the flat padded screen, (row + 1) * width + column + 1.
     width : columns of the padded screen.
     """
     step = other - cell

@@ -17,7 +17,7 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     passage : the passage from which the floor is followed.
     spare : in squares.
 

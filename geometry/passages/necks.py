@@ -28,9 +28,10 @@ SQUARED_WIDTH_TOLERANCE = 1e-9  # square units; rounding by which squared widths
 class Passage(NamedTuple):
     """A neck of the floor, or a doorway of several equally narrow necks; all measures in squares.
 
-    Points are (x, y) in squares from the south-west corner of the screen, or of the frame into which it was shifted.
-    The first side is that whose gate lies further south, or further west if both are in one row; it comes first in
-    every pair. Left and right are those of a robot that goes from the first side to the second.
+    A neck is a straight line from wall to wall that is shorter than all beside it. Points are (x, y) in squares from
+    the south-west corner of the screen, or of the frame into which it was shifted. The first side is that whose gate
+    lies further south, or further west if both are in one row; it comes first in every pair. Left and right are those
+    of a robot that goes from the first side to the second.
 
     Attributes
     ----------
@@ -93,12 +94,15 @@ def _halfway(one: XY, other: XY) -> XY:
 class _Mouth(NamedTuple):
     """An end of a doorway.
 
+    A doorway is made of necks of one width that hang together; a neck is a straight line from wall to wall that is
+    shorter than all beside it.
+
     Attributes
     ----------
-    edge : the number of the neck, an edge of the triangulation.
+    edge : the number of the neck, an edge of the triangulation (`Walls.edges`).
     side : the side of the neck on which the floor is wide, 0 or 1: an index in `Walls.sides`.
     room : the squared width of that floor, in square squares.
-    floor : the numbers of the triangles of that floor.
+    floor : the numbers of the triangles of that floor (`Walls.triangles`).
     """
 
     edge: int
@@ -124,10 +128,14 @@ class _Doorway(NamedTuple):
 def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
     """Return all passages, ordered by place: row (from the south), then column; an empty list when there are none.
 
+    A passage is a neck, a straight line from wall to wall that is shorter than all beside it, or several equally narrow
+    necks with no wide floor between. Only those are returned with wide floor on both sides.
+
     Parameters
     ----------
-    walls : the triangulated floor.
-    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1.
+    walls : the floor as a triangulation of its walls' corners.
+    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1. The default gives
+        doors.
     """
     floor = _Floor(walls)
     found: list[_Doorway] = []
@@ -188,7 +196,10 @@ class _Floor:
 
 
 def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
-    """Yield the necks in groups of equal width, widest first; a neck is the number of an edge of `walls`."""
+    """Yield the necks in groups of equal width, widest first; each is a list of numbers of edges of `walls`.
+
+    A neck is a straight line from wall to wall that is shorter than all beside it.
+    """
     necks = np.flatnonzero(walls.neck)
     order = necks[np.argsort(-walls.length[necks], kind="stable")].tolist()
     for _, group in groupby(order, key=lambda edge: int(walls.length[edge])):
@@ -203,7 +214,7 @@ def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> It
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     floor : its parts, while these necks and all narrower ones are still closed.
     edges : numbers of the necks, all of one width.
     least : the squared width from which on floor counts as wide, in square squares.
@@ -240,7 +251,7 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     mouths : two or more, of necks of one width.
     between : the squares (column, row) whose centres lie on the narrower floor between them.
     """
@@ -259,7 +270,7 @@ def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Pa
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     doorway : two mouths, and the squares between them.
     taken : the squares (column, row) between the mouths of any doorway: no gate lies there.
     """
@@ -295,7 +306,7 @@ def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     mouth : the mouth.
     taken : squares (column, row) that are no gates: those between the mouths of any doorway.
     """

@@ -120,8 +120,8 @@ def _widths(points: Longs) -> Floats:
 
     They are squared diameters of the circles through the triangles' corners, less 1. For walls go straight on between
     corners that are one square apart, so they come nearer to the centre than these corners by what such a chord cuts
-    off: 1 is subtracted from four times the squared radius. `points` (m, 3, 2) are the corners (x, y), in squares, each
-    triangle in one sense of rotation or the other.
+    off: 1 is subtracted from four times the squared radius. `points` (m, 3, 2) int64 are the corners (x, y), in
+    squares.
     """
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c

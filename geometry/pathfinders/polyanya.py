@@ -61,7 +61,8 @@ class PolyanyaSearch(NamedTuple):
     Attributes
     ----------
     nodes : the search nodes.
-    word : (room,) the reduced word of the path found: signed portals, of which the first `sizes[0]` count.
+    word : (room,) the reduced word of the path found: signed portals (index plus 1, negative when crossed southwards),
+        of which the first `sizes[0]` count.
     funnel : scratch for pulling the path tight.
     line : (n, 2) the corners (x, y) of the path found, in squares from the screen's south-west corner; the first
         `sizes[1]` count.
@@ -100,16 +101,16 @@ def shortest_line(
 ) -> float:
     """Return the length of the shortest path of all, in squares; infinite when none is found.
 
-    The path's corners are left in `line`. The numbers of its symbols (signed portals) and corners are written to
-    `sizes`; the first is NO_PATH or SEARCH_OVERFLOW when none is found. No path as long as `limit` or longer is found,
-    unless start and goal lie in one strip.
+    The path's corners are left in `line`. The numbers of its symbols (signed portals: index plus 1, negative when
+    crossed southwards) and corners are written to `sizes`; the first is NO_PATH or SEARCH_OVERFLOW when none is found.
+    No path as long as `limit` or longer is found, unless start and goal lie in one strip.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; infinite for none.
-    nodes, word, funnel, line, sizes : the fields of a `PolyanyaSearch`; all changed.
+    nodes, word, funnel, line, sizes : the attributes of a `PolyanyaSearch`; all changed.
     """
     size = shortest_word(strips, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > funnel.x.shape[0]:
@@ -129,7 +130,7 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; paths as long or longer are not found.
     nodes : scratch.
@@ -173,6 +174,8 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
 def mark_dead_ends_to_goal(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
     """Mark with the stamp the strips of the dead end in which the goal's strip lies, if it lies in one.
 
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+
     Parameters
     ----------
     exits : (strips,) the signed portal by which every path out of a dead-end strip leaves it, 0 for other strips.
@@ -202,14 +205,15 @@ def add_start_nodes(
 ) -> None:
     """Add a node for every portal of the start's strip.
 
-    Where the start lies on the strip's southern edge beside a portal there, the portal's nearer end is the root.
+    Where the start lies on the strip's southern edge beside a portal there, the portal's nearer end is the root. A node
+    is an interval of a portal that is visible from its root, the last corner of a path.
 
     Parameters
     ----------
-    up, down, left, right, line : fields of the strips.
+    up, down, left, right, line : attributes of the strips.
     ends : x and y of the start, x and y of the goal, in squares.
     strip : the number of the start's strip.
-    span, link, counters : fields of `Nodes`; extended.
+    span, link, counters : attributes of `Nodes`; extended.
     """
     for portal in range(up[strip], up[strip + 1]):
         add_node(span, link, counters, 1.0 * left[portal], right[portal] + 1.0, 0.0, portal + 1, -1, -1)
@@ -244,14 +248,15 @@ def add_successors(
 ) -> None:
     """Add the nodes that follow a node which enters a strip: what its root sees of the other portals, and bends.
 
-    Dead ends are left out, but for those marked in `enter`.
+    Dead ends are left out, but for those marked in `enter`. A node is an interval of a portal that is visible from its
+    root, the last corner of a path.
 
     Parameters
     ----------
-    up, down, left, right, line, lower, upper, exits : fields of the strips (`exits` is `exit`).
+    up, down, left, right, line, lower, upper, exits : attributes of the strips (`exits` is `exit`).
     enter : (strips,) the stamp on dead ends that may be entered.
     ends : x and y of the start, x and y of the goal, in squares.
-    span, link, best, seen, counters : fields of `Nodes`; extended and changed.
+    span, link, best, seen, counters : attributes of `Nodes`; extended and changed.
     node : the number of the node.
     strip : the number of the strip that it enters.
     """
@@ -342,7 +347,7 @@ def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float
 
     Parameters
     ----------
-    best, seen : fields of `Nodes`, by corner; changed.
+    best, seen : attributes of `Nodes`, by corner; changed.
     stamp : the number of the present search.
     corner : 2 portal for a portal's west end, 2 portal + 1 for its east end.
     length : in squares.
@@ -361,9 +366,12 @@ def add_node(
 ) -> int:
     """Write a node, without putting it on the heap, and return its number.
 
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A node is an interval of a
+    portal that is visible from its root, the last corner of a path.
+
     Parameters
     ----------
-    span, link, counters : fields of `Nodes`; written, and the number of nodes raised by one.
+    span, link, counters : attributes of `Nodes`; written, and the number of nodes raised by one.
     west, east : the interval, x in squares; east < west for the goal.
     done : the length of the path to the root (for the goal: of the whole path), in squares.
     symbol : the signed portal entered, 0 for a bend or the goal.
@@ -395,15 +403,16 @@ def enqueue(
     """Put the nodes from number `first` on the heap, but return the best one instead when it comes next.
 
     Left out are bends, nodes beyond the limit, and nodes whose root has a shorter path. In open space the best new node
-    nearly always comes next. Return NO_PATH when it does not.
+    nearly always comes next. Return NO_PATH when it does not. A node is an interval of a portal that is visible from
+    its root, the last corner of a path.
 
     Parameters
     ----------
-    left, right, line : fields of the strips.
+    left, right, line : attributes of the strips.
     ends : x and y of the start, x and y of the goal, in squares.
     limit : in squares.
-    span, link : fields of `Nodes`; read.
-    key, heap, best, seen, counters : fields of `Nodes`; changed.
+    span, link : attributes of `Nodes`; read.
+    key, heap, best, seen, counters : attributes of `Nodes`; changed.
     first : the number of the first node to put there; the last is the last that was made.
     """
     size, stamp, next_node, least = counters[HEAP_SIZE], counters[STAMP_INDEX], NO_PATH, np.inf
@@ -446,11 +455,13 @@ def add_goal_node(
 ) -> None:
     """Add the goal as a node, if it is reached from a node's root within the strip that the node enters.
 
+    A node is an interval of a portal that is visible from its root, the last corner of a path.
+
     Parameters
     ----------
-    left, right, line : fields of the strips.
+    left, right, line : attributes of the strips.
     ends : x and y of the start, x and y of the goal, in squares.
-    span, link, counters : fields of `Nodes`; extended when the goal is reached, else as they were.
+    span, link, counters : attributes of `Nodes`; extended when the goal is reached, else as they were.
     node : the number of the node.
     """
     portal, root = abs(link[node, LINK_PORTAL]) - 1, link[node, LINK_ROOT]
@@ -473,12 +484,14 @@ def add_goal_node(
 def spell_word(link: Ints, node: int, word: Ints) -> int:
     """Write the reduced word of the portals on the path to a node, and return its size.
 
+    A node is an interval of a portal that is visible from its root, the last corner of a path.
+
     Parameters
     ----------
-    link : (room, 3) field of `Nodes`: portal, root and parent of each node.
+    link : (room, 3) attribute of `Nodes`: portal, root and parent of each node.
     node : the number of the last node.
-    word : written from index 0 on: signed portals in the order of the path. A returned size equal to its length says
-        that there was not enough room.
+    word : written from index 0 on: signed portals in the order of the path (index plus 1, negative when crossed
+        southwards). A returned size equal to its length says that there was not enough room.
     """
     size = 0
     while node >= 0:

@@ -94,7 +94,8 @@ def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, o
     """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`.
 
     Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
-    arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal.
+    arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal. A
+    chain is an edge of the pathgraph, with its cells.
 
     This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
     handing it on, costs more than the arc for which it is used.
@@ -165,7 +166,7 @@ def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
 
     Parameters
     ----------
-    sight : (n, landmarks) the nodes' distances from the landmarks, in squares.
+    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
     ends : (2, landmarks) the goal's distances from them, and the start's.
     end : 0 for the goal, 1 for the start.
     node : the number of the node.
@@ -183,7 +184,7 @@ def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search,
     """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
 
     Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity. The second entry of
-    `search.stamp` is set, so that searches use these distances.
+    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------

@@ -43,7 +43,8 @@ class Barrier(NamedTuple):
     def separates(self, one: int, other: int) -> bool:
         """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut.
 
-        A cell is never separated from itself.
+        A cell is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
+        2.
         """
         label = self.label.reshape(-1)
         return bool(one != other and (label[one] != label[other] or not label[one]))
@@ -62,7 +63,7 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
 
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
     passages : those along whose mouths the floor is cut; with none, only what is not connected is told apart.
     """
@@ -79,12 +80,14 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
 def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
     """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it.
 
-    Positions count the cells of the chain from 0 at its first cell.
+    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph, with its
+    cells.
 
     Parameters
     ----------
-    layer : the free space of a body, with its chains.
-    cell, other : edge neighbours on the skeleton, linked to each other; indices in the flat padded grid.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    cell, other : edge neighbours on the skeleton, linked to each other; indices in the flat padded grid, (row + 1) *
+        width + column + 1.
     """
     states, width, chains = layer.state.reshape(-1), layer.square.shape[1], layer.chains
     if is_node(states[cell]) and is_node(states[other]):
@@ -100,11 +103,12 @@ def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> l
     """Return the cells from a cell to the skeleton of its part: the steepest ascent if no step of it is cut.
 
     Otherwise the fewest cells over steps that are not cut; None when there are none. Cells are indices in the flat
-    padded grid, the given one first and a cell of the skeleton last; a cell of the skeleton gives itself alone.
+    padded grid, (row + 1) * width + column + 1, the given one first and a cell of the skeleton last; a cell of the
+    skeleton gives itself alone.
 
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
     barrier : which steps are cut.
     cell : a cell where the body may be.
@@ -122,11 +126,12 @@ def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> l
 def path_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal: Bools) -> list[int] | None:
     """Return the fewest cells from a cell to a goal cell over steps that are not cut; None when there is no path.
 
-    Both ends are included; a goal cell gives itself alone. Cells are indices in the flat padded grid.
+    Both ends are included; a goal cell gives itself alone. Cells are indices in the flat padded grid, (row + 1) * width
+    + column + 1.
 
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
     barrier : which steps are cut.
     cell : the cell at which the path begins.

@@ -140,8 +140,9 @@ class GoalArea:
 
         Returns
         -------
-        word : (n,) int32, reduced: the signed portals from the start's strip to that of the cell.
-        cell : index in the flat padded grid.
+        word : (n,) int32, reduced: the signed portals (index plus 1, negative when crossed southwards) from the start's
+            strip to that of the cell.
+        cell : index in the flat padded grid, (row + 1) * width + column + 1.
         """
         strips, goal = self.layer.runs, self.queries.centre(region.cell)
         word = word_of_line(strips, route.points.tolist())
@@ -158,8 +159,9 @@ class GoalArea:
 
         Parameters
         ----------
-        word : the reduced word of signed portals from the start to the cell.
-        cell : a cell of the set, an index in the flat padded grid.
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : a cell of the set, an index in the flat padded grid, (row + 1) * width + column + 1.
         """
         tight = self.to_cell(word, cell)
         while True:
@@ -176,8 +178,9 @@ class GoalArea:
 
         Parameters
         ----------
-        word : the reduced word of signed portals from the start to the cell.
-        cell : the cell at which the route ends, an index in the flat padded grid.
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : the cell at which the route ends, an index in the flat padded grid, (row + 1) * width + column + 1.
         step : what is added to it: 1 east, width north, -1 west, -width south.
         """
         other = cell + step
@@ -189,12 +192,14 @@ class GoalArea:
     def to_cell(self, word: Ints, cell: int) -> Route:
         """Return the tight route from the start to the centre of a cell, of the class of a word.
 
-        Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for.
+        Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A chain is an
+        edge of the pathgraph, with its cells.
 
         Parameters
         ----------
-        word : the reduced word of signed portals from the start to the cell.
-        cell : index in the flat padded grid.
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : index in the flat padded grid, (row + 1) * width + column + 1.
         """
         end = self.queries.centre(cell)
         tight = tight_route(self.layer, (*self.queries.snap(self.start), *end), word, nan, ())

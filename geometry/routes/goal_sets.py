@@ -23,7 +23,7 @@ class GoalRegion(NamedTuple):
     A part may go round walls, and the end of a route may move round them as well. So the part is folded: its rows of
     squares are vertices, and what leads through one portal to the same strip is one vertex. Read backwards from its
     end, the word of a route is taken back as far as it runs within the part. What is left, and the vertex where that
-    ends, name the class (Stallings 1983).
+    ends, name the class (Stallings 1983). A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
     Attributes
     ----------
@@ -44,8 +44,10 @@ class GoalRegion(NamedTuple):
 
         Parameters
         ----------
-        word : (n,) signed portals from the start's strip to that of the cell.
-        cell : a cell of the part, an index in the flat padded grid; KeyError for any other.
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to that of
+            the cell.
+        cell : a cell of the part, an index in the flat padded grid, (row + 1) * width + column + 1; KeyError for any
+            other.
         """
         symbols, here = word.tolist(), self.vertex[cell]
         while symbols and (here, -symbols[-1]) in self.step:
@@ -95,7 +97,7 @@ def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Boo
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    strips : the strips of the cells where the body may be.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     goal : (rows, columns) bool, the squares of the set; those where the body cannot be do not count.
     """
     inside = np.zeros(square.shape, np.bool_)
@@ -109,10 +111,12 @@ def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Boo
 def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number: int) -> GoalRegion:
     """Return the part with a number in `label`, folded.
 
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
-    strips : the strips of the cells where the body may be.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     label : (rows + 2, columns + 2) int, the number of the part of each padded cell.
     number : one that occurs in `label`.
     """
@@ -136,7 +140,8 @@ def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number:
 def fold(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict[tuple[int, int], int]]:
     """Return the vertex that stands for each one, and the steps, once no two steps of one name lead apart.
 
-    Where two steps from one vertex with the same signed portal lead to two vertices, these are made one.
+    Where two steps from one vertex with the same signed portal lead to two vertices, these are made one. A signed
+    portal is a portal's index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
@@ -175,7 +180,8 @@ def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: in
     """Return the padded cells of a goal set among which the nearest is: those beside a cell outside it, and the start.
 
     The start is among them only when it lies in the set. A path to the centre of any other cell passes a cell of the
-    set whose centre is as near to where it goes on. Cells are indices in the flat padded grid, ascending.
+    set whose centre is as near to where it goes on. Cells are indices in the flat padded grid, (row + 1) * width +
+    column + 1, ascending.
 
     Parameters
     ----------
@@ -198,12 +204,13 @@ def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: in
 def word_of_cells(strips: Strips, cells: list[int], width: int) -> Ints:
     """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other.
 
-    A step within a row crosses no portal.
+    A step within a row crosses no portal. A signed portal is a portal's index plus 1, negative when it is crossed
+    southwards.
 
     Parameters
     ----------
-    strips : the strips of the cells where the body may be.
-    cells : indices in the flat padded grid, each an edge neighbour of the one before.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    cells : indices in the flat padded grid, (row + 1) * width + column + 1, each an edge neighbour of the one before.
     width : columns of the padded grid.
     """
     symbols = [symbol_between(strips.row, strips.up, strips.left, a, b, width) for a, b in pairwise(cells)]

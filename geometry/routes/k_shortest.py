@@ -55,7 +55,8 @@ def k_shortest_paths(
     """Fill the store with up to `wanted` shortest paths from start to goal, and return their number.
 
     It is 0 when there is none. The paths stand in the store's order, shortest first. When one path is wanted and the
-    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK.
+    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK. A chain is an edge of the pathgraph,
+    with its cells.
 
     Parameters
     ----------
@@ -100,7 +101,8 @@ def add_deviations(
 ) -> int:
     """Add the best deviations from a taken path, at each of its arcs from its fork on; return the number of paths.
 
-    A deviation follows the path up to a node and leaves it there by an arc by which no path taken so far leaves.
+    A deviation follows the path up to a node and leaves it there by an arc by which no path taken so far leaves. A
+    chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
@@ -152,6 +154,8 @@ def add_deviations(
 def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, nodes: Ints) -> None:
     """Write to `nodes` the node from which each arc of a path comes.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
@@ -186,7 +190,8 @@ def count_common_arcs(arcs: Ints, size: Ints, row: int, other: int) -> int:
 def deviation_bound(landmarks: Landmarks, query: RouteQuery, search: Search, origin: int) -> float:
     """Return a lower bound of the length from a node to the goal over an arc that is not banned, in squares.
 
-    It is infinite when there is no such arc, or none that leads to the goal within the limit of the distances.
+    It is infinite when there is no such arc, or none that leads to the goal within the limit of the distances. A chain
+    is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
@@ -244,6 +249,8 @@ def record_path(
 ) -> None:
     """Write the path just found, from a node on, behind its first `fork` arcs.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
@@ -269,6 +276,8 @@ def record_path(
 @bare
 def arc_tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
     """Return the number of the node from which an arc comes.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------

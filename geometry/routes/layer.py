@@ -78,6 +78,8 @@ def find_pathgraph(square: SquaredDistances, level: int, state: States, words: W
 def build_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
     """Return the layer of a pathgraph: find its strips and landmarks.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.

@@ -47,7 +47,8 @@ class Trail(NamedTuple):
 
     Attributes
     ----------
-    cell : (room,) the padded cell of each link (index in the flat padded grid), or DROPPED.
+    cell : (room,) the padded cell of each link (index in the flat padded grid, (row + 1) * width + column + 1), or
+        DROPPED.
     before : (room,) the number of the link before, DROPPED at the start.
     after : (room,) the number of the link after, DROPPED at the goal.
     queue : (room,) numbers of links to examine.
@@ -74,7 +75,7 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in squares
         where the body may be.
     word : signed portals from the start's strip to the goal's, negative when crossed southwards.
@@ -96,13 +97,14 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
     """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal.
 
-    Cells are indices in the flat padded grid, the start's first and the goal's last.
+    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last.
 
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : signed portals from the start's strip to the goal's; need not be reduced.
+    word : signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's; need
+        not be reduced.
     """
     trail = new_trail(4 * len(word) + 1024)
     while write_cells_of_word(layer.runs, ends, word, layer.square.shape[1], trail) == TRAIL_OVERFLOW:
@@ -118,7 +120,8 @@ def lift_word(
     """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue.
 
     Return how many numbers these are (the clearance first, then the numbers of the chains in order), or TRAIL_OVERFLOW
-    when there is no room.
+    when there is no room. A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an
+    edge of the pathgraph, with its cells.
 
     Parameters
     ----------
@@ -127,7 +130,7 @@ def lift_word(
     width : columns of the padded grid.
     chains, strips : those of the layer.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : (n,) signed portals from the start's strip to the goal's.
+    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     trail : scratch; the answer stands at the beginning of its `queue`.
     """
     if (
@@ -157,7 +160,8 @@ def lift_word(
 def direction_of(step: int) -> int:
     """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south.
 
-    `step` is the difference of their indices in the flat padded grid: 1, the grid's width, or one of these negated.
+    `step` is the difference of their indices in the flat padded grid, (row + 1) * width + column + 1: 1, the grid's
+    width, or one of these negated.
     """
     if step == 1 or step == -1:
         return 1 - step
@@ -173,9 +177,9 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 
     Parameters
     ----------
-    strips : the strips of the free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : (n,) signed portals from the start's strip to the goal's.
+    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     width : columns of the padded grid.
     trail : written.
     """
@@ -216,6 +220,8 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
     """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more.
 
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+
     Parameters
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
@@ -245,7 +251,8 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
     """Lead the step from a link to a higher one over the highest edge neighbour of its group.
 
     A group is a connected part of the higher cells on the ring of a cell's eight neighbours. Nothing changes when the
-    other link is not higher, or is that highest neighbour.
+    other link is not higher, or is that highest neighbour. A cell's index is (row + 1) * width + column + 1, with width
+    = columns + 2.
 
     Parameters
     ----------
@@ -290,7 +297,7 @@ def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: boo
     Parameters
     ----------
     trail : the path; changed.
-    cell : index in the flat padded grid.
+    cell : index in the flat padded grid, (row + 1) * width + column + 1.
     last, next_link : numbers of the two links.
     forward : whether `next_link` comes after `last` on the path.
     """

@@ -50,8 +50,8 @@ def closed_paths(layer: Layer, start: Anchor, around: Bools, wanted: int) -> lis
 
     Parameters
     ----------
-    layer : the free space of a body, with its pathgraph.
-    start : the anchor of the start on the pathgraph.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
     around : (rows, columns) bool, the blocked squares of one object, row 0 in the south; at least one.
     wanted : how many paths at most.
 
@@ -102,11 +102,12 @@ def ray_crossings(layer: Layer, around: Bools) -> Ints:
 
     The ray goes north from the last of the squares `around` (the eastern one of the northernmost row), between its
     column and the column to the west. Crossings from east to west count 1, those from west to east -1. The sum goes on
-    from one chain to the next: only differences within a chain mean something.
+    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph,
+    with its cells.
 
     Parameters
     ----------
-    layer : the free space of a body, with its chains.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     around : (rows, columns) bool, row 0 in the south; at least one True.
     """
     width, cells = layer.square.shape[1], layer.chains.cells
@@ -128,8 +129,8 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
 
     Parameters
     ----------
-    layer : the free space of a body, with its pathgraph.
-    start : the anchor of the start on the pathgraph.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
     crossings : (cells,) as of `ray_crossings`: for each chain cell, crossings of the ray up to there.
 
     Returns
@@ -153,10 +154,12 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
 def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[int, int], two: tuple[int, int]) -> None:
     """Add a stretch of a chain to `arcs`, in both directions.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     arcs : by node, the arcs that leave it; extended.
-    layer : the free space of a body, with its chains.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     crossings : (cells,) for each chain cell, crossings of the ray up to there.
     chain : the number of the chain.
     one, two : the stretch's ends, each a node and its position on the chain; that of `one` is the lower.
@@ -197,7 +200,8 @@ def distances_to_origin(arcs: Arcs, origin: int) -> dict[tuple[int, int], float]
 def cells_of_path(chains: Chains, path: list[Arc]) -> list[int]:
     """Return the padded cells of a path, from its origin back to it: indices in the flat padded grid.
 
-    The first and the last cell are the same. An empty path gives an empty list.
+    The first and the last cell are the same. An empty path gives an empty list. A cell's index is (row + 1) * width +
+    column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------

@@ -77,7 +77,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        layer : the free space of a body.
+        layer : the free space of a body of one radius: skeleton, pathgraph and strips.
         level : the least squared clearance of a cell where the body may be, in squared half squares; that of the layer.
         radius : of the body, in squares; 0 for a point.
         """
@@ -131,7 +131,7 @@ class LayerQueries:
         """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number.
 
         The routes stand in `answers` of the buffers, in the order of their paths over the pathgraph; the next search
-        overwrites them.
+        overwrites them. A chain is an edge of the pathgraph, with its cells.
 
         Parameters
         ----------
@@ -225,10 +225,13 @@ class LayerQueries:
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """Return the tight route of a reduced word between two points, with its clearance and chains.
 
+        A chain is an edge of the pathgraph, with its cells.
+
         Parameters
         ----------
         start, goal : (x, y) in squares, where `admits` holds.
-        word : (n,) signed portals from the start's strip to the goal's.
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
+            goal's.
         """
         ends = (*self.snap(start), *self.snap(goal))
         found = self._lifted(ends, word)
@@ -259,13 +262,15 @@ class LayerQueries:
         """Return the shortest route of all, at any angle; None when start and goal are not connected.
 
         Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares, in
-        free squares.
+        free squares. A chain is an edge of the pathgraph, with its cells.
         """
         length = self.shortest_length(start, goal)
         return None if length == inf else self._polyanya_route(length, None)
 
     def _polyanya_route(self, length: float, ends: Ends | None) -> Route:
         """Return the route left in the scratch, lifted to the skeleton when its ends are given.
+
+        A chain is an edge of the pathgraph, with its cells.
 
         Parameters
         ----------
@@ -286,10 +291,13 @@ class LayerQueries:
     def _lifted(self, ends: Ends, word: Ints) -> Lifted:
         """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
 
+        A chain is an edge of the pathgraph, with its cells.
+
         Parameters
         ----------
         ends : x and y of the start, x and y of the goal, in squares.
-        word : (n,) signed portals from the start's strip to the goal's.
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
+            goal's.
         """
         found, self._trail_scratch = lift_to_skeleton(self.layer, ends, word, self._trail_scratch)
         return found
@@ -321,7 +329,7 @@ class LayerQueries:
         Parameters
         ----------
         start : (x, y) in squares, where the loop begins and ends.
-        rise : (n,) signed portals from the start up to the skeleton.
+        rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
         path : the arcs of the closed path, in the order in which they are walked.
         """
         cells = cells_of_path(self.layer.chains, path)
@@ -335,7 +343,8 @@ class LayerQueries:
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
         """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
 
-        It is kept for each number of routes, and made anew when it has too little room.
+        It is kept for each number of routes, and made anew when it has too little room. A signed portal is a portal's
+        index plus 1, negative when it is crossed southwards.
         """
         buffers = self._buffers_of.get(wanted)
         if buffers is None or len(buffers.start) < room:
@@ -357,7 +366,7 @@ class LayerQueries:
         """Return a body's route extended to its true ends, if they are not centres of squares.
 
         Within one square it becomes the straight line if that leaves room for the body. The length is that of the whole
-        line; clearance, signature and chains stay.
+        line; clearance, signature and chains stay. A chain is an edge of the pathgraph, with its cells.
 
         Parameters
         ----------
@@ -378,12 +387,16 @@ class LayerQueries:
     def cell(self, point: XY) -> int:
         """Return the index, in the flat padded grid, of the cell of a point's square.
 
-        The point is (x, y) in squares and must lie on the screen: this is not checked.
+        The point is (x, y) in squares and must lie on the screen: this is not checked. A cell's index is (row + 1) *
+        width + column + 1, with width = columns + 2.
         """
         return (int(point[1]) + 1) * self._width + int(point[0]) + 1
 
     def centre(self, cell: int) -> XY:
-        """Return the centre (x, y), in squares, of a cell given by its index in the flat padded grid."""
+        """Return the centre (x, y), in squares, of a cell given by its index in the flat padded grid.
+
+        A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+        """
         return cell % self._width - 0.5, cell // self._width - 0.5
 
     def _squared_clearance(self, point: XY) -> int:

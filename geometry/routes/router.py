@@ -48,7 +48,8 @@ class RouterBuffers(NamedTuple):
     store : the paths over the pathgraph.
     funnel : scratch for pulling a path tight.
     answers : the routes found.
-    start : (room,) word (signed portals) from the start up to the skeleton.
+    start : (room,) word (signed portals: index plus 1, negative when crossed southwards) from the start up to the
+        skeleton.
     goal : (room,) word from the goal up to the skeleton.
     whole : (room,) word from start to goal.
     stretch : (n + 2, 3) the chains that a path follows, each with the positions (indices of its cells) between which; n
@@ -71,11 +72,13 @@ def new_router_buffers(
 ) -> RouterBuffers:
     """Return scratch for a query.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     nodes, chains, landmark_count : the numbers of nodes, chains and landmarks of the pathgraph.
     wanted : the number of routes, at least 1.
-    room : symbols (signed portals) of the longest word.
+    room : symbols (signed portals: index plus 1, negative when crossed southwards) of the longest word.
     closed_steps : (b, 2) chain and position of steps that may not be taken: each from the cell at that position on the
         chain to the next.
     """
@@ -137,7 +140,7 @@ class RoutingData(NamedTuple):
 
 
 def routing_data(layer: Layer) -> RoutingData:
-    """Return what the kernels read of a layer; the arrays are views."""
+    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views."""
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
     return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
 
@@ -204,7 +207,8 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
     """Close the chains that start and goal split (flag 2), or open them again (flag 0).
 
-    Chains closed on request (bit 0) stay closed. An end at a node splits none.
+    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph,
+    with its cells.
 
     Parameters
     ----------
@@ -243,6 +247,8 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
 def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
     """Set the ends and the lengths of the query's five arcs (see astar.py).
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     query : `joint` and `cost` are written (squares; infinite for arcs that there are not), `closed_steps` is read.
@@ -277,6 +283,8 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
 def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
     """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     closed_steps : (b, 2) chain and position of steps that may not be taken, each to the next position.
@@ -299,7 +307,7 @@ def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) ->
     Parameters
     ----------
     joint, cost : (4,) and (5,) the nodes and the lengths of the query's arcs.
-    sight : (n, landmarks) the nodes' distances from the landmarks, in squares.
+    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
     out : (2, landmarks) written: the goal's (row 0) and the start's (row 1); infinite where no arc leads to a node.
     """
     for k in range(sight.shape[1]):
@@ -316,6 +324,8 @@ def write_stretches(
     ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints
 ) -> int:
     """Write the chains that a path follows and the positions between which, and return their number.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
@@ -355,6 +365,8 @@ def write_stretches(
 def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
     """Return whether a path follows the same chains, in the same order, as one of the routes written.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     bounds, chains : of the answers: which chains the routes follow.
@@ -377,6 +389,9 @@ def lowest_square_on(
     starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int
 ) -> int:
     """Return the least squared clearance on a path, at most `lowest`, in squared half squares.
+
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
+    with its cells.
 
     Parameters
     ----------
@@ -413,7 +428,8 @@ def write_word(
 ) -> int:
     """Write the reduced word of a path from start to goal, and return its size.
 
-    A size equal to the length of `word` says that there was not enough room.
+    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph, with
+    its cells.
 
     Parameters
     ----------
@@ -450,11 +466,13 @@ def write_route(
 ) -> bool:
     """Pull a word tight and write it as the k-th route; return False when there is no room.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
-    strips : the strips of the free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     body : True for a body, which keeps to the lines between centres of squares; False for a point.
-    word, size : signed portals from start to goal, and their number.
+    word, size : signed portals (index plus 1, negative when crossed southwards) from start to goal, and their number.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     funnel : scratch.
     stretch, steps : the chains that the path follows, in column 0, and their number.

@@ -15,9 +15,11 @@ from geometry.routes.route import Route
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:
     """Return the tight route of a reduced word: the shortest of its class.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
-    layer : the free space of a body.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     word : signed portals from the start's strip to the goal's, negative when crossed southwards.
     clearance, chains : what the route says of its path over the skeleton: the least clearance in squares (nan when not
@@ -39,7 +41,7 @@ def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> I
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in free
         squares.
     crossings : signed crossing numbers, in order; empty for the class without any.
@@ -73,7 +75,8 @@ def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> I
 def build_forest(strips: Strips) -> Ints:
     """Return for each strip the signed portal towards the first strip of its component, (n,) int32; 0 at that strip.
 
-    Only portals without a crossing number are used: in each component of the `strips` they form a tree.
+    Only portals without a crossing number are used: in each component of the `strips` they form a tree. A signed portal
+    is a portal's index plus 1, negative when it is crossed southwards.
     """
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(strips.low))]
     for portal in np.flatnonzero(strips.crossing == 0).tolist():
@@ -96,11 +99,12 @@ def build_forest(strips: Strips) -> Ints:
 def word_in_forest(strips: Strips, forest: Ints, strip: int, goal: int) -> Ints | None:
     """Return the reduced word from one strip to another over the forest; None when they are not connected.
 
-    The word is (n,) int32 of signed portals, empty from a strip to itself.
+    The word is (n,) int32 of signed portals (index plus 1, negative when crossed southwards), empty from a strip to
+    itself.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     forest : (strips,) for each strip the signed portal towards the first strip of its component, as of `build_forest`.
     strip, goal : numbers of the strips.
     """
@@ -114,11 +118,11 @@ def word_in_forest(strips: Strips, forest: Ints, strip: int, goal: int) -> Ints 
 def word_to_root(strips: Strips, forest: Ints, strip: int) -> tuple[list[int], int]:
     """Return the word from a strip to the first strip of its component, and that strip.
 
-    The word is a list of signed portals, empty for that strip itself.
+    The word is a list of signed portals (index plus 1, negative when crossed southwards), empty for that strip itself.
 
     Parameters
     ----------
-    strips : the strips of free space.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     forest : (strips,) for each strip the signed portal towards the first strip of its component, as of `build_forest`.
     strip : the number of the strip.
     """
