@@ -170,7 +170,7 @@ def costs(
 
 
 def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
-    """Return the raster of a framed ground.
+    """Return the squares of a framed ground that are drawn (sampled), with their neighbours and fields, as arrays.
 
     A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
@@ -321,7 +321,7 @@ def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, i
         neighbour n of NEIGHBOUR_STEPS).
     counts : (fields,) int32, the count of occupied squares under each field, by weight; kept up to date.
     flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
-    inverse_temperatures : (sweeps,) float32.
+    inverse_temperatures : (sweeps,) float32, one for each sweep over all drawn squares.
     random : the first random number, from 1 to LEHMER_MODULUS - 1.
     """
     squares, rank, shown_corners, around, ends, field, share, where, used, limits = raster
@@ -383,7 +383,8 @@ def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbo
 
     Parameters
     ----------
-    squares, shown_corners, around : attributes of `_Raster`.
+    squares, shown_corners, around : attributes of `_Raster`: flat indices of the drawn squares; the corners of each
+        about which all was seen, as bits; flat steps to the eight neighbours.
     flip_costs : (8192,) float32, as of `_flip_costs`.
     image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits (bit n for
         neighbour n of NEIGHBOUR_STEPS).
@@ -445,7 +446,8 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type
 
     Parameters
     ----------
-    squares, rank, around : attributes of `_Raster`.
+    squares, rank, around : attributes of `_Raster`: flat indices of the drawn squares; the number of each drawn square,
+        by flat index; flat steps to the eight neighbours.
     image : (size,) the flat framed raster, 1 where occupied.
     k : the number of the square, among those that are drawn (sampled).
     random : a random number; its lowest 11 bits are used.
@@ -486,7 +488,8 @@ def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-de
     Parameters
     ----------
     square : its flat index in the framed raster.
-    rank, around : attributes of `_Raster`.
+    rank, around : attributes of `_Raster`: the number of each drawn square, by flat index; flat steps to the eight
+        neighbours.
     image : (size,) the flat framed raster, 1 where occupied; changed at the square.
     neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS);
         changed for drawn squares about it.
@@ -509,7 +512,8 @@ def count_error_change(k, more, ends, field, share, limits, counts):  # type: ig
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share, limits : attributes of `_Raster`.
+    ends, field, share, limits : attributes of `_Raster`: the fields of each drawn square and how often each counts it,
+        and the least and greatest count of each field.
     counts : (fields,) the count of occupied squares under each field; not changed.
     """
     worse = 0
@@ -532,7 +536,7 @@ def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyp
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : attributes of `_Raster`.
+    ends, field, share : attributes of `_Raster`: the fields of each drawn square, and how often each counts it.
     counts : (fields,) the count of occupied squares under each field; changed.
     """
     for i in range(ends[k], ends[k + 1]):

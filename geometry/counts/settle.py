@@ -156,8 +156,10 @@ def _settle_by_single_fields(
 
     Parameters
     ----------
-    state, settled_by : (squares,) changed where squares are settled.
-    where, weight, low, high : the n fields (see the module's description).
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
+    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
     verdicts : (n * m,) int8, scratch.
     newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
     impression : the number of the present impression, written to `settled_by`.
@@ -214,8 +216,10 @@ def _settle_by_pairs(
 
     Parameters
     ----------
-    state, settled_by : (squares,) changed where squares are settled.
-    where, weight, low, high : the n fields (see the module's description).
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
+    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
     fresh : (n,) bool, the fields not compared yet; all False afterwards.
     newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
     impression : the number of the present impression, written to `settled_by`.

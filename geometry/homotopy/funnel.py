@@ -37,7 +37,10 @@ class Funnel(NamedTuple):
 
 
 def new_funnel(portals: int) -> Funnel:
-    """Return scratch, not initialised, for words of at most that many portals."""
+    """Return scratch, not initialised, for words of at most `portals` signed portals.
+
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    """
     size = 4 * portals + 8
     return Funnel(
         np.empty(size),

@@ -106,7 +106,8 @@ def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints
     Parameters
     ----------
     start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
-    row, up, left : attributes of the strips.
+    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
+        first column of each portal.
     width : columns of the padded screen.
     symbol : (cells,) written, but for the last cell of each chain.
     """
@@ -172,7 +173,8 @@ def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, st
     leave : (n, 4) the chain that leaves a node to the east, north, west, south; -1 for none.
     ends : (m, 2) the first and last node of each chain.
     length : (m,) of the chains, in squares.
-    head, arc, step : (n, 4) written where there is an arc: the node it leads to, its code, its length in squares.
+    head, arc, step : (n, 4) written where there is an arc: the node it leads to, its code (2 chain, plus 1 when walked
+        backwards), its length in squares.
     """
     for node in range(leave.shape[0]):
         for slot in range(4):
@@ -247,7 +249,8 @@ def ascend(
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) the skeleton's states, 0 off the skeleton.
     width : columns of the padded screen.
-    row, up, left : attributes of the strips.
+    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
+        first column of each portal.
     word : written from index 0 on: the reduced word of signed portals (index plus 1, negative when crossed southwards)
         from the cell to the skeleton.
 
@@ -276,7 +279,8 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
     cell : index, in the flat padded screen, (row + 1) * width + column + 1, of a cell of the skeleton.
     states : (cells,) the skeleton's states, flat: links to the neighbours, and flags (see skeleton.py).
     width : columns of the padded screen.
-    node, leave, start, cells : the attributes of `Chains` of these names.
+    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
+        cells of each chain begin, and these cells.
     """
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
@@ -303,7 +307,8 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
     Parameters
     ----------
     cell : index of the node's cell in the flat padded screen, (row + 1) * width + column + 1.
-    node, leave, start, cells : the attributes of `Chains` of these names.
+    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
+        cells of each chain begin, and these cells.
     """
     number, found, position = find(node, cell), -1, 0
     for direction in range(4):

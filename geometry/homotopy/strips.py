@@ -257,7 +257,8 @@ def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 
     Parameters
     ----------
-    rows, lows : the attributes `row` and `low` of `Strips`.
+    rows, lows : the attributes `row` and `low` of `Strips`: the first strip of each row, and the first column of each
+        strip.
     row, column : those of the square, without padding, from the south-west.
     """
     low, high = 0 + rows[row], rows[row + 1] - 1
@@ -279,7 +280,8 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
 
     Parameters
     ----------
-    rows, up, left : the attributes `row`, `up` and `left` of `Strips`.
+    rows, up, left : the attributes `row`, `up` and `left` of `Strips`: the first strip of each row, the first portal of
+        each strip upwards, the first column of each portal.
     cell, other : indices of the cells in the flat padded screen, (row + 1) * width + column + 1.
     width : columns of the padded screen.
     """

@@ -46,7 +46,10 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
 
 def _edge_keys(mouth: Segment) -> list[tuple[int, ...]]:
-    """Return a mouth as the corners of an edge, in both directions: two tuples x, y, x, y of whole squares."""
+    """Return a mouth as the corners of an edge, in both directions: two tuples x, y, x, y of whole numbers.
+
+    The unit and the frame are those of the mouth: squares from the screen's south-west corner.
+    """
     (a, b), (c, d) = mouth
     return [(int(a), int(b), int(c), int(d)), (int(c), int(d), int(a), int(b))]
 

@@ -77,7 +77,7 @@ def points_of_path(
     ----------
     came_from : by square (column, row), the square before it on its path; the first square is missing.
     square : the last square.
-    start, goal : (x, y) in squares.
+    start, goal : (x, y) in squares from the screen's south-west corner.
     """
     squares = [square]
     while square in came_from:

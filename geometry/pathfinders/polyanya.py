@@ -210,10 +210,12 @@ def add_start_nodes(
 
     Parameters
     ----------
-    up, down, left, right, line : attributes of the strips.
-    ends : x and y of the start, x and y of the goal, in squares.
+    up, down, left, right, line : attributes of `Strips`: the first portal of each strip upwards and downwards; first
+        and last column and lower row of each portal.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     strip : the number of the start's strip.
-    span, link, counters : attributes of `Nodes`; extended.
+    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
+        of nodes; extended.
     """
     for portal in range(up[strip], up[strip + 1]):
         add_node(span, link, counters, 1.0 * left[portal], right[portal] + 1.0, 0.0, portal + 1, -1, -1)
@@ -253,10 +255,13 @@ def add_successors(
 
     Parameters
     ----------
-    up, down, left, right, line, lower, upper, exits : attributes of the strips (`exits` is `exit`).
+    up, down, left, right, line, lower, upper, exits : attributes of `Strips`: the first portal of each strip upwards
+        and downwards; first and last column, lower row, lower and upper strip of each portal; the way out of each dead
+        end (`exit`).
     enter : (strips,) the stamp on dead ends that may be entered.
-    ends : x and y of the start, x and y of the goal, in squares.
-    span, link, best, seen, counters : attributes of `Nodes`; extended and changed.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    span, link, best, seen, counters : attributes of `Nodes`: interval and length of each node, its portal, root and
+        parent, the shortest path to each corner, numbers of nodes; extended and changed.
     node : the number of the node.
     strip : the number of the strip that it enters.
     """
@@ -347,7 +352,8 @@ def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float
 
     Parameters
     ----------
-    best, seen : attributes of `Nodes`, by corner; changed.
+    best, seen : attributes of `Nodes`: by corner, the length of the shortest path and the search that found it;
+        changed.
     stamp : the number of the present search.
     corner : 2 portal for a portal's west end, 2 portal + 1 for its east end.
     length : in squares.
@@ -371,7 +377,8 @@ def add_node(
 
     Parameters
     ----------
-    span, link, counters : attributes of `Nodes`; written, and the number of nodes raised by one.
+    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
+        of nodes; written, and the number of nodes raised by one.
     west, east : the interval, x in squares; east < west for the goal.
     done : the length of the path to the root (for the goal: of the whole path), in squares.
     symbol : the signed portal entered, 0 for a bend or the goal.
@@ -408,11 +415,12 @@ def enqueue(
 
     Parameters
     ----------
-    left, right, line : attributes of the strips.
-    ends : x and y of the start, x and y of the goal, in squares.
+    left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     limit : in squares.
-    span, link : attributes of `Nodes`; read.
-    key, heap, best, seen, counters : attributes of `Nodes`; changed.
+    span, link : attributes of `Nodes`: interval and length of each node, and its portal, root and parent; read.
+    key, heap, best, seen, counters : attributes of `Nodes`: the heap, the shortest path to each corner, numbers of
+        nodes; changed.
     first : the number of the first node to put there; the last is the last that was made.
     """
     size, stamp, next_node, least = counters[HEAP_SIZE], counters[STAMP_INDEX], NO_PATH, np.inf
@@ -459,9 +467,10 @@ def add_goal_node(
 
     Parameters
     ----------
-    left, right, line : attributes of the strips.
-    ends : x and y of the start, x and y of the goal, in squares.
-    span, link, counters : attributes of `Nodes`; extended when the goal is reached, else as they were.
+    left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    span, link, counters : attributes of `Nodes`: interval and length of each node, its portal, root and parent, numbers
+        of nodes; extended when the goal is reached, else as they were.
     node : the number of the node.
     """
     portal, root = abs(link[node, LINK_PORTAL]) - 1, link[node, LINK_ROOT]

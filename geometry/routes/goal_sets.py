@@ -62,7 +62,8 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
 
     Parameters
     ----------
-    goal : (x, y) in squares, or (rows, columns) array of bool, row 0 in the south, or set of squares (column, row).
+    goal : (x, y) in squares from the screen's south-west corner, or (rows, columns) array of bool, row 0 in the south,
+        or set of squares (column, row).
     shape : (rows, columns) of the screen.
 
     Raises

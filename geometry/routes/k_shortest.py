@@ -26,7 +26,7 @@ class PathStore(NamedTuple):
     ----------
     place : (room,) by path in that order, the row of `arcs`, `size` and `fork` in which it stands.
     cost : (room,) by path in that order, its cost: its length in squares, unless the query is biased.
-    arcs : (room, longest) arc codes, from start to goal (see astar.py).
+    arcs : (room, longest) arc codes, from start to goal (2 chain, plus 1 when walked backwards; see astar.py).
     size : (room,) number of arcs.
     fork : (room,) the index, from 0, of the arc at which it leaves the path that it deviates from; 0 for the first
         path.
@@ -160,7 +160,8 @@ def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, s
     ----------
     ends : (m, 2) the first and the last node of each chain.
     joint : (4,) the nodes of the query's arcs.
-    arcs, size : (room, longest) arc codes, and (room,) numbers of arcs, of the store.
+    arcs, size : (room, longest) arc codes (2 chain, plus 1 when walked backwards), and (room,) numbers of arcs, of the
+        store.
     row : the path's row in them.
     start : the number of the start's node.
     nodes : written from index 0 on, one entry for each arc.
@@ -175,9 +176,12 @@ def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, s
 def count_common_arcs(arcs: Ints, size: Ints, row: int, other: int) -> int:
     """Return how many first arcs two paths have in common, before they differ or one ends.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
-    arcs, size : (room, longest) arc codes, and (room,) numbers of arcs, of the store.
+    arcs, size : (room, longest) arc codes (2 chain, plus 1 when walked backwards), and (room,) numbers of arcs, of the
+        store.
     row, other : the paths' rows in them.
     """
     k = 0
@@ -256,7 +260,8 @@ def record_path(
     ends : (m, 2) the first and the last node of each chain.
     joint : (4,) the nodes of the query's arcs.
     arrival : (n + 2,) the code of the arc by which the path arrives at each node.
-    arcs, size : (room, longest) arc codes, and (room,) numbers of arcs, of the store; both written at `row`.
+    arcs, size : (room, longest) arc codes (2 chain, plus 1 when walked backwards), and (room,) numbers of arcs, of the
+        store; both written at `row`.
     row : the path's row in them.
     fork : how many arcs stand there already.
     origin : the number of the node behind these arcs, from which the search began.
@@ -285,7 +290,8 @@ def arc_tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
     joint : (4,) the nodes of the query's arcs.
     first : the least code of an arc that the query adds, 2m.
     goal : the number of the goal's node; the start's is one less.
-    code : the code of the arc (see astar.py).
+    code : the code of the arc: 2 chain, plus 1 when walked backwards; 2m and more for those of the query (see
+        astar.py).
     """
     if code < first:
         return int(ends[code >> 1, code & 1])

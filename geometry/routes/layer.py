@@ -64,6 +64,9 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
 def find_pathgraph(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
     """Return the pathgraph of the cells whose squared clearance is at least `level`; fill `state`.
 
+    The pathgraph has the junctions and ends of the skeleton as nodes, and the chains of cells between them, which never
+    branch, as edges. A chain is such an edge. Without a cell at that level there are none.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.

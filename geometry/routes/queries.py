@@ -96,7 +96,7 @@ class LayerQueries:
     def admits(self, point: XY) -> bool:
         """Return whether the body may be at a point, at the centre of its square, and on the line between them.
 
-        The point is (x, y) in squares and must lie on the screen.
+        The point is (x, y) in squares from the screen's south-west corner and must lie on the screen.
         """
         if self.layer.square.item(int(point[1]) + 1, int(point[0]) + 1) < self.level:
             return False
@@ -107,7 +107,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start, goal : (x, y) in squares, where `admits` holds.
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         k : how many routes at most.
         avoid : passages through which no route may lead.
         """
@@ -135,7 +135,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        ends : x and y of the start, x and y of the goal, in squares.
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
         wanted : how many paths at most; for one, up to three routes are found, of which the shortest is meant.
         closed_steps : (b, 2) chain and position of steps that may not be taken.
         """
@@ -159,7 +159,7 @@ class LayerQueries:
         Parameters
         ----------
         routes : routes from start to goal, shortest first; at least one.
-        start, goal : (x, y) in squares.
+        start, goal : (x, y) in squares from the screen's south-west corner.
         k : how many routes at most.
         """
         first = routes[0].length - LENGTH_TOLERANCE
@@ -178,7 +178,7 @@ class LayerQueries:
         return Route(route.points, route.length, 0.5 * found.lowest**0.5, route.signature, found.chains)
 
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
-        """Return the floor cut along some passages.
+        """Return the floor cut along some passages, so that no route leads through them.
 
         The last barrier is kept, and returned again when `avoid`, the passages, is the same.
         """
@@ -193,7 +193,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start, goal : (x, y) in squares, where `admits` holds.
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         k : how many routes at most.
         barrier : the floor cut along the passages.
         """
@@ -229,7 +229,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start, goal : (x, y) in squares, where `admits` holds.
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
             goal's.
         """
@@ -246,7 +246,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start, goal : (x, y) in squares, in free squares.
+        start, goal : (x, y) in squares from the screen's south-west corner, in free squares.
         limit : in squares.
         """
         strips = self.layer.runs
@@ -261,8 +261,8 @@ class LayerQueries:
     def shortest(self, start: XY, goal: XY) -> Route | None:
         """Return the shortest route of all, at any angle; None when start and goal are not connected.
 
-        Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares, in
-        free squares. A chain is an edge of the pathgraph, with its cells.
+        Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares from
+        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph, with its cells.
         """
         length = self.shortest_length(start, goal)
         return None if length == inf else self._polyanya_route(length, None)
@@ -275,8 +275,8 @@ class LayerQueries:
         Parameters
         ----------
         length : of the route, in squares.
-        ends : x and y of the start, x and y of the goal, in squares; with None the clearance is nan and there are no
-            chains.
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; with None the
+            clearance is nan and there are no chains.
         """
         polyanya = cast(PolyanyaSearch, self._polyanya)
         size, corners = polyanya.sizes.tolist()
@@ -295,7 +295,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        ends : x and y of the start, x and y of the goal, in squares.
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
         word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
             goal's.
         """
@@ -309,7 +309,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start : (x, y) in squares, where every loop begins and ends.
+        start : (x, y) in squares from the screen's south-west corner, where every loop begins and ends.
         around : (rows, columns) bool, the blocked squares of one object, row 0 in the south.
         k : how many loops at most.
         """
@@ -328,7 +328,7 @@ class LayerQueries:
 
         Parameters
         ----------
-        start : (x, y) in squares, where the loop begins and ends.
+        start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
         rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
         path : the arcs of the closed path, in the order in which they are walked.
         """
@@ -358,7 +358,7 @@ class LayerQueries:
     def snap(self, point: XY) -> XY:
         """Return the point at which a tight path ends: for a body the centre of the point's square, else the point.
 
-        Both are (x, y) in squares.
+        Both are (x, y) in squares from the screen's south-west corner.
         """
         return (int(point[0]) + 0.5, int(point[1]) + 0.5) if self.layer.body else point
 
@@ -371,7 +371,7 @@ class LayerQueries:
         Parameters
         ----------
         route : a route between the centres of the ends' squares.
-        start, goal : the true ends, (x, y) in squares.
+        start, goal : the true ends, (x, y) in squares from the screen's south-west corner.
         """
         line = [(x, y) for x, y in route.points.tolist()]
         if len(line) == 1 and disc_stays_clear(self.layer.square, start, goal, self.radius):
@@ -387,8 +387,8 @@ class LayerQueries:
     def cell(self, point: XY) -> int:
         """Return the index, in the flat padded grid, of the cell of a point's square.
 
-        The point is (x, y) in squares and must lie on the screen: this is not checked. A cell's index is (row + 1) *
-        width + column + 1, with width = columns + 2.
+        The point is (x, y) in squares from the screen's south-west corner and must lie on the screen: this is not
+        checked. A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
         """
         return (int(point[1]) + 1) * self._width + int(point[0]) + 1
 

@@ -231,7 +231,8 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
 
     Parameters
     ----------
-    line : (4,) of the query, written: the start (x, y) in squares, and the scaled normal of the straight line.
+    line : (4,) of the query, written: the start (x, y) in squares from the screen's south-west corner, and the scaled
+        normal of the straight line.
     ends : x and y of the start, x and y of the goal, in squares.
     bias : 0 for none.
     """
@@ -331,7 +332,7 @@ def write_stretches(
     ----------
     ends : (m, 2) the first and the last node of each chain.
     starts : (m + 1,) where the cells of each chain begin.
-    arcs : (room, longest) arc codes of paths (see astar.py).
+    arcs : (room, longest) arc codes of paths (2 chain, plus 1 when walked backwards; see astar.py).
     row, size : the path's row there, and its number of arcs.
     start, goal : where the ends meet the pathgraph.
     out : (n, 3) written from row 0 on: chain, first and last position, in the order of the path; positions are indices
