@@ -38,7 +38,7 @@ class Bottleneck:
     Attributes
     ----------
     place : (x, y), its middle.
-    sides : the two points (x, y) of the obstacles that make it; the first is the one nearest to the place looked at.
+    sides : the two points (x, y) of the obstacles that make it, in no order that means anything.
     width : distance between them.
     """
 
@@ -73,7 +73,7 @@ def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats
 
 
 def _narrowest_index(clearance: Floats, candidates: Bools) -> int:
-    """Return the index, in `clearance`, of the pixel where a path is narrowest, starting from the pixels in `candidates`.
+    """Return the index of the pixel where a path is narrowest, starting from the pixels in `candidates`.
 
     From their narrowest it goes on along the path as long as the path grows narrower, then to the middle of a stretch
     of equal clearance: amid a neck of several pixels, not at its mouth.
@@ -238,7 +238,7 @@ def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) ->
 
 
 def _nearest_point(here: Floats, obstacles: Any) -> Floats | None:
-    """Return the point (2,) x, y of a shapely geometry that is nearest to the place `here` (2,); None if it is empty."""
+    """Return the point (2,) x, y of a shapely geometry that is nearest to the place `here` (2,); None if empty."""
     line = shapely.shortest_line(shapely.Point(here), obstacles)
     return None if line is None or line.is_empty else np.array(line.coords[1])
 
@@ -342,5 +342,5 @@ def _max_widening(bottleneck: Bottleneck, radius: float) -> float:
 
 
 def _window_radius(bottleneck: Bottleneck, radius: float) -> float:
-    """Return within how many squares of a bottleneck's middle its sides are moved, for a body of a radius in squares."""
+    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares."""
     return bottleneck.width + 2 * radius + _max_widening(bottleneck, radius)

@@ -178,7 +178,7 @@ def _note_change(tree: CellTree, cell: int) -> None:
 
 @bare
 def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
-    """Return the number of the leaf that holds the pose (x, y, angle) of the body's centre; -1 outside the root's square.
+    """Return the number of the leaf that holds the pose (x, y, angle) of the body's centre; -1 outside the root.
 
     x, y in squares, table frame; angle in radians, any number of turns.
     """
@@ -252,9 +252,9 @@ def _overlap(a: int, size_a: int, b: int, size_b: int) -> int:
 
 @bare
 def _angle_overlap(a: int, size_a: int, b: int, size_b: int) -> int:
-    """Return the overlap, in units of angle, of two intervals on the circle of ROOT_UNITS: 0 if they touch, else negative.
+    """Return the overlap of two intervals on the circle of angles: 0 if they touch, negative if they are apart.
 
-    `a`, `b` : their lower ends, `size_a`, `size_b` : their lengths.
+    `a`, `b` : their lower ends, `size_a`, `size_b` : their lengths, in units of angle, ROOT_UNITS to the whole turn.
     """
     best = _overlap(a, size_a, b, size_b)
     best = max(best, _overlap(a + ROOT_UNITS, size_a, b, size_b))

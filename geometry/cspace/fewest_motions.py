@@ -65,12 +65,12 @@ def longest_edge_tilt(shape: Any) -> float:
 
 
 def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
-    """Return poses on and near a path: (n, 3) x, y in squares, table frame, radians; the first its start, the last its end.
+    """Return poses on and near a path: (n, 3) x, y, radians; the first its start, the last its end.
 
     Parameters
     ----------
     body, nearby : the body among obstacles.
-    path : (m, 3) poses of the body's centre.
+    path : (m, 3) poses of the body's centre: x, y in squares, table frame, radians.
     edge : direction, in radians, body frame, of the edge to lay along an axis.
     """
     along = resample_evenly(path, body.radius, CANDIDATE_POSES)
@@ -121,9 +121,9 @@ def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> No
 
 @compiled
 def _cheapest_order(context: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
-    """Return the indices of the poses on the cheapest path from the first to the last, in order; empty if there is none.
+    """Return the indices of the poses on the cheapest path from the first to the last; empty if there is none.
 
-    (k,) int64. A hop costs the number of its motions, plus a little by their size.
+    (k,) int64, in order. A hop costs the number of its motions, plus a little by their size.
 
     Parameters
     ----------

@@ -35,7 +35,13 @@ class HopContext(NamedTuple):
 
 
 def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
-    """Return a context with scratch memory of its own."""
+    """Return a context with scratch memory of its own.
+
+    Parameters
+    ----------
+    body, nearby, surface : as in HopContext: the body, the obstacle edges by place, the boundary that it must not
+        cross.
+    """
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 
 
@@ -106,7 +112,7 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
 
 @bare
 def shorter_turn(turn: float) -> float:
-    """Return the angle equal to `turn` radians that is from -pi to pi."""
+    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to pi."""
     return turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
 
 

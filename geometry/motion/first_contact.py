@@ -307,7 +307,7 @@ def _chunks(edges: Floats) -> Floats:
 
 
 def _next_on_ring(edges: Floats) -> npt.NDArray[np.intp]:
-    """Return for every row of `edges` (n, 7) the index of the next edge on its ring: (n,). Rings lie one after another."""
+    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another."""
     next_edge = np.arange(1, len(edges) + 1)
     start = 0
     for i in range(len(edges)):

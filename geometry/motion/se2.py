@@ -117,7 +117,7 @@ class Rotate(NamedTuple):
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
-        """Return the pose, after the motion, of what was at `pose` before it; degrees are added, not reduced to one turn."""
+        """Return the pose, after the motion, of what was at `pose` before it; degrees add up, beyond a whole turn."""
         x, y = self.points(np.array([[pose.x, pose.y]]))[0]
         return Pose(float(x), float(y), pose.degrees + self.degrees)
 
