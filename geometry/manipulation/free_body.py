@@ -43,7 +43,7 @@ def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
 
     def corner_box(across: float, up: float) -> Any:
-        """Return the box from the corner `across` squares along x and `up` squares along y into the floor, table frame."""
+        """Return the box from the corner `across` squares along x and `up` squares along y into the floor."""
         x0, x1 = sorted([goal.x, goal.x - goal.sx * across])
         y0, y1 = sorted([goal.y, goal.y - goal.sy * up])
         return shapely.box(x0, y0, x1, y1)

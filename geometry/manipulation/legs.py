@@ -33,7 +33,7 @@ class Leg:
     place : (x, y) in squares, table frame, where the robot stands to grasp the body: the centre of a square, or the
         robot's own place when it holds the body already.
     direction_square : (columns, rows) from the robot's own square to the square of the body that it grasps, each -1, 0,
-        1; columns count to the east, rows to the north. (0, 0) when `taken` and none of the eight is covered.
+        1; columns count to the east, rows to the north. It may be (0, 0) when `taken`, for then nothing is grasped.
     motions : Translate (push) and Rotate (turn about the robot's place at that time), in order, table frame, each free
         by exact first contact.
     hold : (x, y) in squares, the offset of the grasp: the robot's place relative to the body's centroid, in the frame

@@ -93,7 +93,7 @@ class CarryingPlan:
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """Return the neck that is too narrow for the body; None unless the plan is impossible because of one.
+        """Return the bottleneck that is too narrow for the body; None unless the plan is impossible because of one.
 
         Computed on first access.
         """

@@ -53,7 +53,10 @@ class ManipulationQuery:
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
 
     def grasp_offset(self, place: XY) -> XY:
-        """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares: see `Leg.hold`."""
+        """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares.
+
+        It is an offset as in `Leg.hold`.
+        """
         return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
 
     def is_avoided(self, x: float, y: float) -> bool:

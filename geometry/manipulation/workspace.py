@@ -65,7 +65,7 @@ class Workspace:
         return self.is_free(ContactBody(shape, [utak]), motion)
 
     def is_free(self, body: ContactBody, motion: Motion) -> bool:
-        """Return whether a body can make a motion (Translate or Rotate, table frame) to its end; touching is allowed."""
+        """Return whether a body can make a motion (Translate or Rotate, table frame) to its end; it may touch walls."""
         return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
 
     def far(self, body: ContactBody, vectors: Floats) -> Bools:
