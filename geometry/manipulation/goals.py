@@ -132,7 +132,8 @@ class Roomy:
 
     Attributes
     ----------
-    near : (x, y) in squares, the wished place of the shape's centroid: the nearer, the cheaper; None for anywhere.
+    near : (x, y) in squares, table frame, the wished place of the shape's centroid: the nearer, the cheaper; None for
+        anywhere.
     """
 
     near: tuple[float, float] | None = None

@@ -106,7 +106,10 @@ def _nudges(query: ManipulationQuery) -> list[Translate]:
 
 
 def _may_begin(query: ManipulationQuery, leg: Leg) -> bool:
-    """Return whether the robot, holding the shape, can and may make the first motion of a leg; True if it has none."""
+    """Return whether the robot, holding the shape, can and may make the first motion of a leg.
+
+    For a leg without motions: whether it may pull.
+    """
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
     pushes = query.pull or only_pushes(query.shape, query.utak, [motion])
     return pushes and query.workspace.lets(query.shape, query.utak, motion)

@@ -88,8 +88,8 @@ def _whole_rectangles(
 ) -> tuple[Floats, float]:
     """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong.
 
-    All four directions are tried. The numbers of the shape are as in misfit; zeros and infinity if none gets fewer than
-    `limit` squares wrong.
+    All four directions are tried. The numbers of the shape are as in misfit. If none gets fewer than `limit` squares
+    wrong: zeros, and infinity or, for an L, `limit`.
 
     Parameters
     ----------

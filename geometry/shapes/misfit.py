@@ -116,7 +116,10 @@ def stem_of(shape: Floats) -> float:
 
 @compiled
 def _smallest_height(shape: Floats) -> float:
-    """Return the least of a triangle's three heights, in squares. `shape` : numbers of a triangle: three corners x, y."""
+    """Return the least of a triangle's three heights, in squares.
+
+    `shape` : numbers of a triangle: three corners x, y.
+    """
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
     longest = 1e-9
     for k in range(3):

@@ -109,7 +109,10 @@ class Grid(NamedTuple):
         return number % self.stride - self.pad, number // self.stride - self.pad
 
     def padded(self, squares: Bools, value: bool) -> Bools:
-        """Return a copy of a (rows, columns) bool array as (squares,) by number of square, with `value` in the padding."""
+        """Return a (rows, columns) bool array as (squares,) by number of square, with `value` in the padding.
+
+        A copy; row 0 of the array is row 0 of the table.
+        """
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
     def offsets(self, offsets: Longs) -> Longs:
