@@ -108,7 +108,11 @@ def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: fl
 
 @bare
 def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
-    """Return whether a cell is larger than the resolution and there is memory for its children and their links."""
+    """Return whether a cell is larger than the resolution and there is memory for its children and their links.
+
+    It is larger when some point of the body may move further than the resolution (squares) from where it is in the
+    middle of the cell.
+    """
     depth = tree.box[cell, 3]
     if depth + 1 >= len(tree.sizes) or tree.used[0] + 4 > len(tree.child) or tree.links[0] > len(tree.link) // 2:
         return False

@@ -238,7 +238,7 @@ def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, leng
 
 @bare
 def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
-    """Split leaf number `cell`, or give it up if it is too small. Return 1: it was changed, now or before."""
+    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == CELL_GIVEN_UP:
         return 1
     if is_splittable(tree, cell, context.body):

@@ -63,7 +63,7 @@ class MotionSolver:
     field : the obstacles.
     start, goal : poses of the reference point, table frame; the goal may be a region.
     resolution : cells smaller than this times the field's side are not split.
-    cells : number of cells for which there is memory.
+    cells : number of cells (boxes of places and angles) for which there is memory.
 
     Attributes
     ----------
@@ -77,7 +77,8 @@ class MotionSolver:
         found.
     goals : (rows, columns) bool: pixels of the field's raster, row 0 in the south, that are the goal.
     goal_region : the shapely Polygon or MultiPolygon of a region as goal, squares, table frame; else None.
-    nearby : the obstacle edges by place. region : the same for the complement of the goal region, or `nearby`.
+    nearby : the obstacle edges by place.
+    region : the same for the complement of the goal region; `nearby` for a goal pose.
     tree : the cells.
 
     Raises
@@ -211,7 +212,7 @@ class MotionSolver:
         return None if any(hop(context, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
 
     def _hop_context(self) -> HopContext:
-        """Return the body among the obstacles, for exact first contact."""
+        """Return the body among the obstacles, for exact first contact, with scratch memory of its own."""
         return new_hop_context(self.body, self.nearby, self.field.surface)
 
     def _disc_centre_at(self, pose: Floats) -> tuple[float, float]:

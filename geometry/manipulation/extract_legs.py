@@ -61,7 +61,10 @@ class LegExtraction:
         return [self._leg(group, group is groups[0], group is groups[-1]) for group in groups]
 
     def _robot_place(self, step: Step) -> XY:
-        """Return the centre of the robot's square at a step, (x, y) in squares, table frame."""
+        """Return the centre of the robot's square at a step, (x, y) in squares, table frame.
+
+        `step` : (index of the grasp, quarter turn, direction, number of the square of the body's centroid).
+        """
         x, y = self.holds[step[1]][step[0]].tolist()
         column, row = self.grid.square(step[3])
         return column + x + 0.5, row + y + 0.5
@@ -96,7 +99,7 @@ class LegExtraction:
         return Leg(place, square or (0, 0), with_pivots_at_robot(place, motions), hold, walk, taken)
 
     def _square(self, step: Step) -> tuple[int, int]:
-        """Return (column, row) of the robot's square at a step."""
+        """Return (column, row) of the robot's square at a step, in the table."""
         x, y = self._robot_place(step)
         return math.floor(x), math.floor(y)
 

@@ -16,8 +16,8 @@ MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
     """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too.
 
-    Its poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "limit" for a
-    goal of another kind than At, InCorner, Between and Inside.
+    Its poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
+    "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
     """
     middle = query.shape.centroid
     centred = shapely.transform(query.shape, lambda p: p - np.array([middle.x, middle.y]))

@@ -66,7 +66,10 @@ def _is_motion(motion: Motion) -> bool:
 
 
 def _last_leg_may_push(query: ManipulationQuery, legs: Sequence[Leg]) -> bool:
-    """Return whether no motion of the last leg pulls, where pulling is forbidden; True where it is allowed."""
+    """Return whether no motion of the last leg pulls, where pulling is forbidden; True where it is allowed.
+
+    `legs` : all legs from the shape of the query on, at least one.
+    """
     if query.pull:
         return True
     shape = query.shape

@@ -126,6 +126,6 @@ def _free_rectangles(free: Bools) -> Any:
 
 
 def _row_runs(line: Bools) -> set[tuple[int, int]]:
-    """Return the runs of True in a row as (first column, column after the last)."""
+    """Return the runs of True in a row, (columns,) bool, as a set of (first column, column after the last)."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
     return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}

@@ -257,7 +257,10 @@ def _ring_edges(points: Floats) -> Floats:
 
 
 def _spaced(points: Floats) -> Floats:
-    """Return the points (m, 2) of an open ring (n, 2) without those within MIN_EDGE_LENGTH of the last one kept."""
+    """Return the points (m, 2) of an open ring (n, 2) without those within MIN_EDGE_LENGTH of the last one kept.
+
+    The first point stays; points before the end that are as near to it are left out, too. n at least 1.
+    """
     line = points.tolist()
     kept = line[:1]
     for point in line[1:]:

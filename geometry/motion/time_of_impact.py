@@ -233,8 +233,8 @@ def _nearest_ahead(
 ) -> int:
     """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does.
 
-    An edge of `edges` (n, 7) faces the velocity (dx, dy), or is parallel to it and faces the centripetal direction.
-    Squares, one frame.
+    An edge of `edges` (n, 7) faces the velocity (dx, dy), or is parallel to it and faces the centripetal direction
+    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Squares, one frame.
     """
     best, at = math.inf, 0
     for k in range(len(edges)):

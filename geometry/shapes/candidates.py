@@ -183,7 +183,15 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
     """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong.
 
-    (PARAMETER_COUNT,) numbers as in misfit, and a count, one more for a shape that is no proper one of its class.
+    Parameters
+    ----------
+    kind : one of the classes of misfit.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south; a square must be occupied.
+
+    Returns
+    -------
+    (PARAMETER_COUNT,) numbers as in misfit, and a count of squares, one more for a shape that is no proper one of its
+    class.
     """
     free, starts = initial_steps(kind), _starts(kind, image)
     at, best = _best_descended(kind, starts, free, image)
@@ -280,7 +288,10 @@ def initial_steps(kind: int) -> Floats:
 
 @compiled
 def _starts(kind: int, image: Image) -> Floats:
-    """Return the shapes from which descents may begin, (n, PARAMETER_COUNT), numbers as in misfit."""
+    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), numbers as in misfit.
+
+    One for each of some angles and thicknesses; a single one for discs. `kind` : one of the classes of misfit.
+    """
     if kind == DISC_CLASS:
         return _start_disc(image)
     thickness_count = 3 if kind >= ELL_CLASS and kind <= HORSESHOE_CLASS else 1

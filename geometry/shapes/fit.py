@@ -141,6 +141,11 @@ def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_C
 
     A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class. A disc comes first
     where the first whole shape is an L with a slight notch and no square is unknown.
+
+    Parameters
+    ----------
+    ties : the shapes, of different classes, all with the same number of wrong squares.
+    image : the image that they are fitted to.
     """
     whole = [one for one in ties if one.whole]
     others = [one for one in ties if not one.whole]
