@@ -110,7 +110,7 @@ class ObstacleField:
         return self._complements[key]
 
     def _prepare(self, radius: float) -> NearbyEdges:
-        """Return the obstacle edges looked up by place (by block of pixels) for a body whose radius is given in squares."""
+        """Return the obstacle edges looked up by place, by block of pixels, for a body of a radius in squares."""
         rows, columns = self.raster.shape
         down, across = math.ceil(rows / BLOCK_PIXELS), math.ceil(columns / BLOCK_PIXELS)
         block_start, block_edges = _list_block_edges(self.surface.hull, self.frame, down, across, 2 * radius)
