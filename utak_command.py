@@ -82,16 +82,17 @@ def main() -> int:
     return run()
 
 
-def run_module(places: str, module: str, *arguments: str) -> None:
+def run_module(places: str, module: str, *arguments: str, dependencies: "Sequence[str]" = DEPENDENCIES) -> None:
     """Run one of our modules as a program.
 
-    places : folders to search for dependencies that are not found otherwise, joined by os.pathsep.
+    places : folders to search for dependencies that are not found otherwise, joined by os.pathsep. dependencies : the
+    packages that the module needs.
     """
     from importlib.machinery import PathFinder
     from runpy import run_module as run
 
     install_package_finder()
-    if any(PathFinder.find_spec(name) is None for name in DEPENDENCIES):  # as with `pip install --user`
+    if any(PathFinder.find_spec(name) is None for name in dependencies):  # as with `pip install --user`
         sys.path += [place for place in places.split(os.pathsep) if place and place not in sys.path]
     sys.argv = [module, *arguments]
     run(module, run_name="__main__", alter_sys=True)

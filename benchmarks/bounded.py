@@ -14,7 +14,7 @@ import multiprocessing
 import resource
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import product
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -56,6 +56,10 @@ class Run(NamedTuple):
     seed: int
     max_steps: int
     judged: bool
+
+
+RunMaker = Callable[[Run, Callable[[Any], None]], None]
+"""Makes a run; calls its second argument with what came of each command, and with the result."""
 
 
 class BoundedRow(NamedTuple):
@@ -131,6 +135,35 @@ def _worlds(given: argparse.Namespace, scratch: Path) -> Iterator[Path]:
         yield write(world, scratch / world.name)
 
 
+def run_here(run: Run, tell: Callable[[Any], None]) -> None:
+    """Make a run in this process. tell : called with (seconds, action) after each command, and with the result."""
+    robots: list[TimedRobot] = []
+
+    def make(body: Body, task: Task, settings: Settings) -> TimedRobot:
+        timed = TimedBody(body)
+        robots.append(TimedRobot(make_robot(timed, task, settings), timed))
+        return robots[0]
+
+    with tempfile.TemporaryDirectory(prefix="utak-run-") as place:
+        episode = Path(place) / "episode.jsonl"
+        settings = Settings(run.seed, run.noise, "skeleton", run.max_steps)
+        with EpisodeLog(episode) as log:
+            session = Session(read_scenario(run.folder), settings, make, log)
+            result = session.run(lambda at: tell((robots[0].cycles[-1].processor, at.line.get("action"))))
+        wanted = should_fail(session.scenario.expectations or ())
+        false = (result.believed and result.achieved is False) or (result.verdict == "impossible" and not wanted)
+        judged = findings(run.folder, episode) if run.judged and not run.noise else None
+    tell(
+        {
+            "verdict": result.verdict,
+            "achieved": result.achieved,
+            "false": false,
+            "reason": result.reason,
+            "judged": judged,
+        }
+    )
+
+
 def warm() -> None:
     """Compile or load the kernels; the processes of the runs are forked from this one and find them."""
     warm_all()
@@ -138,11 +171,14 @@ def warm() -> None:
         run_here(Run(EXAMPLES_FOLDER / name, noise, 1, 20, False), lambda _: None)
 
 
-def bounded(run: Run, seconds: int) -> BoundedRow:
-    """Make a run in a process of its own, which ends after `seconds` processor seconds."""
+def bounded(run: Run, seconds: int, make_run: RunMaker = run_here) -> BoundedRow:
+    """Make a run in a process of its own, which ends after `seconds` processor seconds.
+
+    make_run : makes it there, as `run_here` does.
+    """
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=_child, args=(run, seconds, theirs))
+    process = context.Process(target=_child, args=(run, seconds, theirs, make_run))
     process.start()
     theirs.close()
     told = list(_received(ours))
@@ -172,41 +208,12 @@ def _received(pipe: Connection) -> Iterator[Any]:
             return
 
 
-def _child(run: Run, seconds: int, pipe: Connection) -> None:
+def _child(run: Run, seconds: int, pipe: Connection, make_run: RunMaker) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     try:
-        run_here(run, pipe.send)
+        make_run(run, pipe.send)
     except Exception as error:  # a crash is a result, too
         pipe.send({"verdict": "crash", "reason": f"{type(error).__name__}: {error}"})
-
-
-def run_here(run: Run, tell: Any) -> None:
-    """Make a run in this process. tell : called with (seconds, action) after each command, and with the result."""
-    robots: list[TimedRobot] = []
-
-    def make(body: Body, task: Task, settings: Settings) -> TimedRobot:
-        timed = TimedBody(body)
-        robots.append(TimedRobot(make_robot(timed, task, settings), timed))
-        return robots[0]
-
-    with tempfile.TemporaryDirectory(prefix="utak-run-") as place:
-        episode = Path(place) / "episode.jsonl"
-        settings = Settings(run.seed, run.noise, "skeleton", run.max_steps)
-        with EpisodeLog(episode) as log:
-            session = Session(read_scenario(run.folder), settings, make, log)
-            result = session.run(lambda at: tell((robots[0].cycles[-1].processor, at.line.get("action"))))
-        wanted = should_fail(session.scenario.expectations or ())
-        false = (result.believed and result.achieved is False) or (result.verdict == "impossible" and not wanted)
-        judged = findings(run.folder, episode) if run.judged and not run.noise else None
-    tell(
-        {
-            "verdict": result.verdict,
-            "achieved": result.achieved,
-            "false": false,
-            "reason": result.reason,
-            "judged": judged,
-        }
-    )
 
 
 def _told(rows: Iterable[BoundedRow], output: Path | None) -> Iterator[BoundedRow]:

@@ -14,7 +14,7 @@ import multiprocessing
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from functools import partial
@@ -34,9 +34,14 @@ from benchmarks.worlds.makers import add_kinds, scenario, seeds
 from simulator.episode.output_files import is_json_lines, open_for_writing
 from simulator.run.session import Session
 
+TrialRunner = Callable[..., CampaignTrial]
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a campaign; return 0 when every world came out right, else 1."""
+
+def main(arguments: Sequence[str] | None = None, runner: TrialRunner = run_trial) -> int:
+    """Run a campaign; return 0 when every world came out right, else 1.
+
+    runner : runs the robot in a world, as `run_trial` does.
+    """
     given = _parser().parse_args(arguments)
     if judge_path() is None:
         print("campaign: NO JUDGE: set UTAK_JUDGE to judge.py; the episodes are not judged", file=sys.stderr)
@@ -51,15 +56,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     with ExitStack() as stack:
         folder = given.keep or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-campaign-")))
-        _warm_up(folder)
+        _warm_up(folder, runner)
         if given.only:
             task, seed = (int(part) for part in given.only.split(":"))
-            trials = [_watched(task, seed, conditions, folder)]
+            trials = [_watched(task, seed, conditions, folder, runner)]
         else:
             numbers = seeds(given.seed, given.count, given.unable)
             worlds = _unclean(given.again) if given.again else list(product(given.task, numbers))
             output = stack.enter_context(_results(given.output)) if given.output else None
-            trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs), len(worlds), output))
+            trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs, runner), len(worlds), output))
     print(table(trials), verdicts(trials), narrowness(trials), faults(trials), sep="\n", end="")
     return 0 if all(trial.clean for trial in trials) else 1
 
@@ -102,13 +107,15 @@ def _unclean(results: Path) -> list[tuple[int, int]]:
     return [(row["task"], row["seed"]) for row in rows if not row["clean"]]
 
 
-def _warm_up(folder: Path) -> None:
+def _warm_up(folder: Path, runner: TrialRunner) -> None:
     """Run one trial that does not count, so that kernels are compiled and cached before any clock runs."""
-    run_trial(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
+    runner(4, 0, Conditions(max_steps=30, seconds=0), folder / "warming-up")
 
 
-def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int) -> Iterator[CampaignTrial]:
-    run = partial(_one, conditions=conditions, folder=folder)
+def _run_all(
+    worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int, runner: TrialRunner
+) -> Iterator[CampaignTrial]:
+    run = partial(_one, conditions=conditions, folder=folder, runner=runner)
     if jobs <= 1:
         yield from map(run, worlds)
         return
@@ -117,8 +124,8 @@ def _run_all(worlds: list[tuple[int, int]], conditions: Conditions, folder: Path
         yield from pool.map(run, worlds)
 
 
-def _one(world: tuple[int, int], conditions: Conditions, folder: Path) -> CampaignTrial:
-    return run_trial(*world, conditions, folder)
+def _one(world: tuple[int, int], conditions: Conditions, folder: Path, runner: TrialRunner) -> CampaignTrial:
+    return runner(*world, conditions, folder)
 
 
 def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None) -> Iterator[CampaignTrial]:
@@ -133,7 +140,7 @@ def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None
         yield trial
 
 
-def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> CampaignTrial:
+def _watched(task: int, seed: int, conditions: Conditions, folder: Path, runner: TrialRunner) -> CampaignTrial:
     """Run one world and draw it on stderr at each step."""
     world = scenario(task, seed, conditions.kind)
     print(f"{world.name}, heading {world.heading}: {world.texts.goal}{world.texts.expect}", file=sys.stderr)
@@ -148,7 +155,7 @@ def _watched(task: int, seed: int, conditions: Conditions, folder: Path) -> Camp
             f"step {line['step']}: {line['action']} why: {line['why']}; slipped by {drift}\n{picture}", file=sys.stderr
         )
 
-    trial = run_trial(task, seed, conditions, folder, draw)
+    trial = runner(task, seed, conditions, folder, draw)
     crash = folder / world.name / "crash.txt"
     if trial.crash and crash.exists():
         print(crash.read_text(), file=sys.stderr)

@@ -27,7 +27,7 @@ from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, Sou
 from kb.reasoning.query import QueryEngine, QueryLimitError
 from kb.reasoning.solver import KB_ENCODINGS, solve
 from kb.reasoning.user_rules import read_tested_rules
-from simulator.scenario.scenario import read_scenario
+from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.world.physics import Tabletop
 
 HANG_SECONDS = 20.0  # seconds until a file counts as hung
@@ -200,21 +200,24 @@ def _hung(number: int, frame: FrameType | None) -> None:
     raise _HungError
 
 
-def outcome(folder: Path) -> str:
-    """Return the outcome of reading a scenario, as `came_out` does."""
-    return came_out(lambda: _simulated(folder))
+def outcome(folder: Path, read: Callable[[Path], Scenario] = read_scenario, seconds: float = HANG_SECONDS) -> str:
+    """Return the outcome of reading a scenario, as `came_out` does.
+
+    read : the reader of the folder. seconds : of wall-clock time after which it hangs.
+    """
+    return came_out(lambda: _simulated(read(folder)), seconds)
 
 
-def _simulated(folder: Path) -> None:
-    table = Tabletop(read_scenario(folder).world)
+def _simulated(scenario: Scenario) -> None:
+    table = Tabletop(scenario.world)
     table.look()
     table.move(3.0, -40.0)
 
 
-def came_out(read: Callable[[], object]) -> str:
+def came_out(read: Callable[[], object], seconds: float = HANG_SECONDS) -> str:
     """Return `accepted`, `refused`, `given up`, `cannot open`, or a fault that begins with an exclamation mark."""
     signal.signal(signal.SIGALRM, _hung)
-    signal.setitimer(signal.ITIMER_REAL, HANG_SECONDS)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
         read()
     except BadInputError as bad:
@@ -278,15 +281,15 @@ def rules(count: int, seed: int, keep: Path) -> Counter[str]:
     return outcomes
 
 
-def maps(count: int, seed: int) -> Counter[str]:
-    """Count the outcomes of `count` malformed maps."""
+def maps(count: int, seed: int, parse: Callable[[bytes], object] = parse_map) -> Counter[str]:
+    """Count the outcomes of `count` malformed maps. parse : the reader of their text."""
     outcomes: Counter[str] = Counter()
     for number in range(count):
         raw = spoil(random.Random(f"{seed}-{number}"), MAP)
 
         def read(raw: bytes = raw) -> None:
             try:
-                parse_map(raw)
+                parse(raw)
             except MapError as error:
                 span = SourceSpan(error.line, error.column, error.end)
                 raise BadInputError([Problem("map", span, error.what)]) from None

@@ -11,6 +11,7 @@ of the steps and `reason` of the result, which are sentences for people. It exit
 import argparse
 import json
 import multiprocessing
+import os
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -87,6 +88,7 @@ def write(given: argparse.Namespace) -> int:
     """Run all jobs in parallel processes."""
     given.folder.mkdir(parents=True, exist_ok=True)
     todo = list(jobs_of(given.count, given.seed, given.folder))
+    os.environ["PYTHONSAFEPATH"] = "1"  # the pool's processes get this one's path, and no other folder on it
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
         for number, name in enumerate(pool.imap(run, todo), 1):
             print(f"{number} of {len(todo)}: {name}", file=sys.stderr)

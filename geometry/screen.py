@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.homotopy.portals import word_of_line
-from geometry.incremental.update import change_squares
+from geometry.incremental.update import MAX_AFFECTED_SHARE, change_squares
 from geometry.kernels.arrays import Bools, Ints, Labels
 from geometry.passages.narrow_stretches import narrow_squares
 from geometry.passages.necks import DOOR_RATIO, Passage, find_passages
@@ -78,6 +78,7 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
+        self._max_affected_share = MAX_AFFECTED_SHARE  # a change that may alter more is computed anew
         self._rent(smallest_distance_type(grid))
         self._skeletons: dict[int, tuple[States, Words, SkeletonGraph]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
@@ -122,7 +123,7 @@ class Screen:
         """
         where = checked_squares(rows, columns, values, self.shape)
         state, words, old = self._skeletons[1]
-        bones = change_squares(self._square, state, old, *where)
+        bones = change_squares(self._square, state, old, *where, self._max_affected_share)
         self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
         self._chains, self._layers, self._questions = {}, {}, {}
         for name in ("clearance", "skeleton", "pathgraph", "pathgraph_arrays", "_walls"):

@@ -10,11 +10,13 @@ import sys
 import tokenize
 from collections import defaultdict
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 HOUSE = ("geometry", "kb", "planner", "simulator")
 MEASURED = (*HOUSE, "benchmarks")
+PATCHED_PACKAGES = (*MEASURED, "utak_command")  # in which tests patch nothing
 MAY_IMPORT = {
     "geometry": set[str](),
     "kb": {"geometry"},
@@ -302,27 +304,91 @@ def encodings_that_include(root: Path) -> Iterator[str]:
 
 
 def patched_globals(root: Path) -> Iterator[str]:
-    """Tests give another part at a seam; they put nothing in the place of a module's own functions."""
+    """Tests give another part at a seam; they put nothing in the place of what a module or a class of ours defines.
+
+    Programs in the strings of tests, which run in processes of their own, are tests, too. Not meant is the robot of
+    tests/simulator/scripted_robot.py: it takes the place of a whole module in `sys.modules`.
+    """
     for path in sorted((root / "tests").rglob("*.py")):
-        named = {
-            alias.asname or alias.name
-            for node in ast.walk(tree_of(path))
-            if isinstance(node, ast.Import | ast.ImportFrom)
-            for alias in node.names
-            if _is_module(root, node, alias.name)
-        }
-        for node in ast.walk(tree_of(path)):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) == "monkeypatch.setattr" and node.args:
-                target = node.args[0]
-                text = target.value if isinstance(target, ast.Constant) else ast.unparse(target)
-                if text in named or (isinstance(target, ast.Constant) and str(text).split(".")[0] in HOUSE):
-                    yield f"{short(path, root)}:{node.lineno} patches {text}"
+        for line, program in [(0, tree_of(path)), *_programs_in(tree_of(path))]:
+            named = _bound_names(program)
+            for node in ast.walk(program):
+                for target in _patched(node):
+                    text = target.value if isinstance(target, ast.Constant) else ast.unparse(target)
+                    if _is_ours(root, target, named):
+                        yield f"{short(path, root)}:{line or node.lineno} patches {text}"
 
 
-def _is_module(root: Path, node: ast.Import | ast.ImportFrom, name: str) -> bool:
-    """Return whether an imported name is a module of the house."""
-    whole = f"{node.module}.{name}" if isinstance(node, ast.ImportFrom) else name
-    return whole.split(".")[0] in HOUSE and (root / whole.replace(".", "/")).with_suffix(".py").exists()
+# The calls of Python, of pytest's MonkeyPatch under whatever name, and of unittest.mock that put in or take away.
+PATCHING = re.compile(
+    r"(.*\.)?(set|del)(attr|item)|(unittest\.)?(mock\.|mocker\.)?patch(\.(object|multiple|dict))?", re.DOTALL
+)
+PATCHED_ARGUMENTS = ("target", "dic", "in_dict")  # the names of their first arguments
+
+
+def _programs_in(tree: ast.Module) -> Iterator[tuple[int, ast.Module]]:
+    """Yield (line, tree) of each string of a module that is a program with an import."""
+    for node in ast.walk(tree):
+        parts = node.values if isinstance(node, ast.JoinedStr) else [node]
+        text = "".join(str(part.value) if isinstance(part, ast.Constant) else "_" for part in parts)
+        if "import " in text and isinstance(node, ast.JoinedStr | ast.Constant):
+            with suppress(SyntaxError):
+                yield node.lineno, ast.parse(text)
+
+
+def _patched(node: ast.AST) -> Iterator[ast.expr]:
+    """Yield the expressions for that in which a statement or a call puts something else."""
+    if isinstance(node, ast.Call) and PATCHING.fullmatch(ast.unparse(node.func)):
+        yield from node.args[:1]
+        yield from (word.value for word in node.keywords if word.arg in PATCHED_ARGUMENTS)
+    elif isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store | ast.Del):
+        yield node.value
+
+
+def _bound_names(tree: ast.Module) -> dict[str, str]:
+    """Return the dotted names of ours that a program, at whatever depth, binds to names."""
+    named = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                whole = alias.name if alias.asname else alias.name.split(".")[0]
+                named[alias.asname or whole] = whole
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            named |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            value = node.value
+            if isinstance(value, ast.Call) and ast.unparse(value.func).endswith("import_module") and value.args:
+                named.setdefault(node.targets[0].id, str(getattr(value.args[0], "value", "")))
+            elif isinstance(value, ast.Name | ast.Attribute):
+                first, dot, rest = ast.unparse(value).partition(".")
+                named.setdefault(node.targets[0].id, named.get(first, "") + dot + rest)
+    return {name: whole for name, whole in named.items() if whole.split(".")[0] in PATCHED_PACKAGES}
+
+
+def _is_ours(root: Path, target: ast.expr, named: dict[str, str]) -> bool:
+    """Return whether an expression is a module or class of ours or its `__dict__`, or a string names a part of one."""
+    if isinstance(target, ast.Constant):
+        return _is_module_or_class(root, str(target.value).rpartition(".")[0])
+    if isinstance(target, ast.Subscript) and ast.unparse(target.value) == "sys.modules":
+        return isinstance(target.slice, ast.Constant) and _is_module_or_class(root, str(target.slice.value))
+    if isinstance(target, ast.Call) and ast.unparse(target.func) == "vars" and target.args:
+        return _is_ours(root, target.args[0], named)
+    first, dot, rest = ast.unparse(target).removesuffix(".__dict__").partition(".")
+    return first in named and _is_module_or_class(root, named[first] + dot + rest)
+
+
+def _is_module_or_class(root: Path, dotted: str) -> bool:
+    """Return whether a dotted name is that of a module or package of ours, or of a class in one."""
+    module, _, last = dotted.rpartition(".")
+    written_as_class = re.fullmatch(r"[A-Z]\w*[a-z]\w*", last)
+    return _is_module(root, dotted) or (written_as_class is not None and _is_module(root, module))
+
+
+def _is_module(root: Path, dotted: str) -> bool:
+    """Return whether a dotted name is that of a module or package of ours."""
+    place = root / dotted.replace(".", "/")
+    return dotted.split(".")[0] in PATCHED_PACKAGES and (place.is_dir() or place.with_suffix(".py").exists())
 
 
 LAWS = (

@@ -43,6 +43,48 @@ PLANTED: dict[str, tuple[dict[str, str], str]] = {
     ),
 }
 
+LAUNCHER = "utak_command"  # not written out below, since this module, too, is searched for programs that patch
+# Ways to put something in the place of what a module of a small house defines, and what the law must name.
+PATCHES = {
+    "from kb import a\ndef test(monkeypatch):\n    monkeypatch.setattr(a, 'f', 1)\n": "a",
+    "import kb.a\ndef test(monkeypatch):\n    monkeypatch.setattr(kb.a, 'f', 1)\n": "kb.a",
+    "import kb.a as part\nmonkeypatch.delattr(part, 'f')\n": "part",
+    "from kb.task import room\nwith pytest.MonkeyPatch.context() as mp:\n    mp.setattr(room, 'f', 1)\n": "room",
+    "import benchmarks.run as run\nmonkeypatch.setattr(run, 'f', 1)\n": "run",
+    f"import {LAUNCHER}\nmonkeypatch.setattr({LAUNCHER}, 'f', 1)\n": LAUNCHER,
+    "monkeypatch.setattr('kb.a.f', 1)\n": "kb.a.f",
+    "from kb import a\nmonkeypatch.setattr(target=a, name='f', value=1)\n": "a",
+    "from kb import a\npart = a\npart.f = 1\n": "part",
+    "import importlib\npart = importlib.import_module('kb.a')\npart.f = 1\n": "part",
+    "from kb import a\nsetattr(a, 'f', 1)\n": "a",
+    "from kb import a\na.f = 1\n": "a",
+    "from kb import a\nx, a.f = 1, 2\n": "a",
+    "from kb import a\na.f += 1\n": "a",
+    "from kb import a\ndel a.f\n": "a",
+    "from kb import a\na.__dict__['f'] = 1\n": "a.__dict__",
+    "from kb import a\nvars(a)['f'] = 1\n": "vars(a)",
+    "from kb import a\nmonkeypatch.setitem(a.__dict__, 'f', 1)\n": "a.__dict__",
+    "from kb.a import Thing\nmonkeypatch.setattr(Thing, 'f', 1)\n": "Thing",
+    "from kb import a\na.Thing.f = 1\n": "a.Thing",
+    "import sys\nsys.modules['kb.a'].f = 1\n": "sys.modules['kb.a']",
+    "from unittest import mock\nwith mock.patch('kb.a.f'):\n    pass\n": "kb.a.f",
+    "from unittest.mock import patch\n@patch('kb.a.f')\ndef test(f):\n    pass\n": "kb.a.f",
+    "from kb import a\nfrom unittest.mock import patch\n@patch.object(a, 'f')\ndef test(f):\n    pass\n": "a",
+    "from kb import a\nimport unittest.mock\nunittest.mock.patch.multiple(a, f=1)\n": "a",
+    "CODE = 'from kb import a; a.f = 1'\n": "a",
+    "CODE = f'from kb import a; a.f = {1}'\n": "a",
+    "def test(mocker):\n    mocker.patch('kb.a.f')\n": "kb.a.f",
+}
+# Seams: attributes of objects, of modules of others, and of the tests' own classes.
+SEAMS = (
+    "from kb.a import LIMITS\nLIMITS.seconds = 1\n",
+    "from kb import a\nthing = a.Thing()\nthing.f = 1\nmonkeypatch.setattr(thing, 'f', 1)\n",
+    "from kb import a\na.TABLE.entries['f'] = 1\na.Thing().f = 1\n",
+    "import sys\nmonkeypatch.setattr(sys, 'platform', 'darwin')\nmonkeypatch.setattr('sys.stdin', None)\n",
+    "from tests.stand_in import Robot\nmonkeypatch.setattr(Robot, 'f', 1)\n",
+    "monkeypatch.setenv('kb.a', '1')\n",
+)
+
 
 @pytest.mark.parametrize("law", laws.LAWS, ids=lambda law: law.__name__)
 def test_the_law_holds(law: Law) -> None:
@@ -61,6 +103,25 @@ def test_the_law_fires_when_it_is_broken(law: Law, tmp_path: Path) -> None:
     found = list(law(tmp_path))
     assert found
     assert named in "\n".join(found)
+
+
+def planted_tests(root: Path, program: str) -> list[str]:
+    """Return what patches globals in a small house whose only test is a program."""
+    for name in ("kb/a.py", "kb/task/room.py", "benchmarks/run.py", "utak_command.py", "tests/test_a.py"):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(program if name.startswith("tests/") else "")
+    return list(laws.patched_globals(root))
+
+
+@pytest.mark.parametrize("program", PATCHES)
+def test_each_way_to_patch_a_global_is_seen(program: str, tmp_path: Path) -> None:
+    (found,) = planted_tests(tmp_path, program)
+    assert found.endswith(f" patches {PATCHES[program]}")
+
+
+@pytest.mark.parametrize("program", SEAMS)
+def test_seams_may_be_given_other_parts(program: str, tmp_path: Path) -> None:
+    assert planted_tests(tmp_path, program) == []
 
 
 def test_the_laws_look_at_a_house_that_is_there() -> None:

@@ -188,8 +188,7 @@ def test_an_isolated_process_finds_packages_installed_for_one_user(
     monkeypatch.setattr(sys, "argv", list(sys.argv))
     utak_command.run_module(str(tmp_path), "kb.language.terms")
     assert str(tmp_path) not in sys.path
-    monkeypatch.setattr(utak_command, "DEPENDENCIES", ("of_the_user",))
-    utak_command.run_module(str(tmp_path), "kb.language.terms")
+    utak_command.run_module(str(tmp_path), "kb.language.terms", dependencies=("of_the_user",))
     assert find_spec("of_the_user") is not None
     assert str(ROOT) not in isolated_command("kb.reasoning.query_worker")[3].split(os.pathsep)
 

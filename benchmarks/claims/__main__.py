@@ -12,7 +12,7 @@ is 0 when no claim was false, nothing broke and the judge found nothing. docs/re
 import argparse
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
@@ -26,8 +26,23 @@ from benchmarks.harness.judging import judge_path
 from benchmarks.worlds.odd.kinds import ODD_KINDS
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a campaign; 0 when nothing was wrong, 1 otherwise."""
+def run_all(asked: list[Asked], limits: Limits, folder: Path, keep: Path | None, jobs: int) -> Iterator[ClaimRow]:
+    """Yield the rows of worlds, which are run in `jobs` child processes at a time. keep : see `run_world`."""
+    if not asked:
+        return
+    warm_up(folder)
+    with ThreadPoolExecutor(jobs) as pool:
+        yield from pool.map(lambda world: run_world(world, limits, folder, keep), asked)
+
+
+WorldsRunner = Callable[[list[Asked], Limits, Path, Path | None, int], Iterator[ClaimRow]]
+
+
+def main(arguments: Sequence[str] | None = None, run_worlds: WorldsRunner = run_all) -> int:
+    """Run a campaign; 0 when nothing was wrong, 1 otherwise.
+
+    run_worlds : runs the worlds that the results do not have yet, as `run_all` does.
+    """
     given = _parser().parse_args(arguments)
     if judge_path() is None:
         print("claims: no judge: set UTAK_JUDGE; neither judged nor searched for ways", file=sys.stderr)
@@ -38,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="utak-claims-")))
         output = stack.enter_context(given.output.open("a")) if given.output else None
-        for number, row in enumerate(_run_all(asked, limits, folder, given.keep, given.jobs), 1):
+        for number, row in enumerate(run_worlds(asked, limits, folder, given.keep, given.jobs), 1):
             rows[row.asked, row.noise] = row
             if output is not None:
                 output.write(row.line() + "\n")
@@ -85,14 +100,6 @@ def _asked(given: argparse.Namespace) -> list[Asked]:
         return [given.only]
     own = worlds_of([OWN_PREFIX + kind for kind in OWN_ASKED], given.seed, given.own)
     return worlds_of(given.kind, given.seed, given.count) + own
-
-
-def _run_all(asked: list[Asked], limits: Limits, folder: Path, keep: Path | None, jobs: int) -> Iterator[ClaimRow]:
-    if not asked:
-        return
-    warm_up(folder)
-    with ThreadPoolExecutor(jobs) as pool:
-        yield from pool.map(lambda world: run_world(world, limits, folder, keep), asked)
 
 
 def _told(row: ClaimRow) -> str:

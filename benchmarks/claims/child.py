@@ -8,6 +8,10 @@ import argparse
 import json
 import resource
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from simulator.run.session import RobotMaker
 
 EPISODE_FILE, CYCLES_FILE, RESULT_FILE = "episode.jsonl", "cycles.txt", "result.json"
 
@@ -26,25 +30,29 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (given.seconds, given.seconds + 5))
     if given.megabytes:
         resource.setrlimit(resource.RLIMIT_AS, (given.megabytes << 20,) * 2)
-    run(given.folder, given.noise, given.noise_seed, given.max_steps)
+    from simulator.run.robots import make_robot  # imported within the limits
+
+    run(given.folder, given.noise, given.noise_seed, given.max_steps, make_robot)
 
 
-def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
-    """Run the robot in the scenario of a folder and write the three files."""
+def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "RobotMaker") -> None:
+    """Run a robot in the scenario of a folder and write the three files.
+
+    make : makes the robot, as `simulator.run.robots.make_robot` does.
+    """
     from benchmarks.harness.stopwatch import TimedBody, TimedRobot
     from kb.body import Body
     from kb.task.task import Task
     from simulator.episode.episode import EpisodeLog
-    from simulator.run.robots import make_robot
     from simulator.run.session import Session
     from simulator.scenario.scenario import read_scenario
     from simulator.scenario.settings import Settings
 
     robots: list[TimedRobot] = []
 
-    def make(body: Body, told: Task, settings: Settings) -> TimedRobot:
+    def make_timed(body: Body, told: Task, settings: Settings) -> TimedRobot:
         timed = TimedBody(body)
-        robots.append(TimedRobot(make_robot(timed, told, settings), timed))
+        robots.append(TimedRobot(make(timed, told, settings), timed))
         return robots[0]
 
     settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps)
@@ -54,7 +62,7 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int) -> None:
             cycles.write(f"{robots[0].cycles[-1].processor:.3f}\n")
             cycles.flush()
 
-        result = Session(read_scenario(folder), settings, make, log).run(noted)
+        result = Session(read_scenario(folder), settings, make_timed, log).run(noted)
     names = ("believed", "achieved", "verdict", "reason", "steps", "unmet")
     told = {name: getattr(result, name) for name in names}
     (folder / RESULT_FILE).write_text(json.dumps(told) + "\n")

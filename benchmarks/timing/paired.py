@@ -37,8 +37,20 @@ def scenarios(count: int, seed: int, folder: Path) -> Iterator[Path]:
 def processor_seconds(checkout: Path, folder: Path, noise: float) -> float:
     """Return the processor seconds of one run in a checkout, with those of the processes that it starts."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    command = [sys.executable, "-c", START, str(checkout), "run", str(folder), "--noise", str(noise), "--seed", "1"]
-    given = os.environ | {"PYTHONHASHSEED": "0"}
+    command = [
+        sys.executable,
+        "-P",
+        "-c",
+        START,
+        str(checkout),
+        "run",
+        str(folder),
+        "--noise",
+        str(noise),
+        "--seed",
+        "1",
+    ]
+    given = os.environ | {"PYTHONHASHSEED": "0"}  # which -P, unlike -I, heeds
     subprocess.run(command, cwd=folder, env=given, capture_output=True, check=False)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -25,7 +25,13 @@ MAX_AFFECTED_SHARE = 0.5  # of the screen's cells: when a change may alter more,
 
 
 def change_squares(
-    square: SquaredDistances, state: States, bones: SkeletonGraph, rows: Ints, columns: Ints, free: Bools
+    square: SquaredDistances,
+    state: States,
+    bones: SkeletonGraph,
+    rows: Ints,
+    columns: Ints,
+    free: Bools,
+    max_affected_share: float = MAX_AFFECTED_SHARE,
 ) -> SkeletonGraph | None:
     """Set squares free or blocked in the clearances and the skeleton of a screen, and return the changed graph.
 
@@ -42,13 +48,15 @@ def change_squares(
         The squares, without the padding; none twice.
     free : (n,) bool
         True where a square becomes free, False where it becomes blocked. Squares that are so already stay as they are.
+    max_affected_share : float
+        The largest share of the screen's cells that the change may alter.
 
     Returns
     -------
     SkeletonGraph or None
-        Equal to that of a new screen; ``bones`` itself when no square changes. None when the change may alter much of
-        the screen (more than half of its cells), or ``square`` is of a type too small for it. Nothing is changed then,
-        and all has to be computed anew.
+        Equal to that of a new screen; ``bones`` itself when no square changes. None when the change may alter more of
+        the screen, or ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed
+        anew.
 
     Raises
     ------
@@ -66,7 +74,7 @@ def change_squares(
     cells, old, free = cells[turned], old[turned], free[turned]
     bounds = np.empty((square.shape[0], 3), np.int32)
     find_affected(square, boxes_of(cells, square.shape), bounds)
-    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > MAX_AFFECTED_SHARE * len(heights):
+    if np.maximum(bounds[:, 1] - bounds[:, 0] + 1, 0).sum() > max_affected_share * len(heights):
         return None
     low, high, west, _ = block = block_about(square, bounds)
     fresh = clearances_in(square, block, bounds, cells, free)

@@ -118,10 +118,10 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
     try:
         dispatcher = numba.njit(cache=True, **options)(function)
     except RuntimeError:  # no directory to keep the cache in: compile anew in each process
-        _progress.has_cache = False
+        PROGRESS.has_cache = False
         dispatcher = numba.njit(**options)(function)
     if hasattr(dispatcher, "overloads"):
-        _progress.dispatchers.append(dispatcher)
+        PROGRESS.dispatchers.append(dispatcher)
         _load_without_compiler(dispatcher)
         _widen_integers(dispatcher)
         _link_when_compiling(dispatcher, cast(FunctionType, function).__globals__)
@@ -196,14 +196,14 @@ def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> Non
 
     def compile_with_notice(*args: Any) -> Any:
         _link(module_globals)
-        notice = Timer(NOTICE_DELAY, announce_compiling)
+        notice = Timer(PROGRESS.notice_delay, announce_compiling)
         notice.daemon = True
         notice.start()
         try:
             return compile_now(*args)
         finally:
             notice.cancel()
-            _progress.step()
+            PROGRESS.step()
 
     compiler.compile = compile_with_notice
 
@@ -224,8 +224,8 @@ def _compile(dispatcher: Any, args: tuple[Any, ...]) -> None:
         dispatcher.compile(tuple(dispatcher.typeof_pyval(value) for value in args))
 
 
-class _Progress:
-    """The kernels that this process has compiled, reported on a terminal (standard error) at most every five seconds.
+class CompilingProgress:
+    """The kernels that this process has compiled, reported on a terminal (standard error) every few seconds.
 
     Attributes
     ----------
@@ -233,14 +233,27 @@ class _Progress:
     has_cache : whether there is a directory to keep compiled kernels in.
     compiled_count : how many times this process has compiled a kernel, not counting those read from the cache.
     started_at : time.monotonic(), in seconds, when reports began; None before, and nothing is reported then.
+    notice_delay : seconds of compiling one kernel after which the user is informed.
+    interval : seconds between two lines of progress.
     """
+
+    __slots__ = (
+        "_reported_at",
+        "compiled_count",
+        "dispatchers",
+        "has_cache",
+        "interval",
+        "notice_delay",
+        "started_at",
+    )
 
     def __init__(self) -> None:
         self.dispatchers: list[Any] = []
-        self.has_cache = True  # whether there is a directory to keep kernels in
+        self.has_cache = True
         self.compiled_count = 0
         self.started_at: float | None = None
         self._reported_at = 0.0
+        self.notice_delay, self.interval = NOTICE_DELAY, PROGRESS_INTERVAL
 
     def step(self) -> None:
         """Count one more compiled kernel; report progress when reports have begun and it is time for one.
@@ -251,7 +264,7 @@ class _Progress:
         now = time.monotonic()
         if (
             self.started_at is None
-            or now - self._reported_at < PROGRESS_INTERVAL
+            or now - self._reported_at < self.interval
             or not (sys.stderr and sys.stderr.isatty())
         ):
             return
@@ -267,7 +280,7 @@ class _Progress:
         self.started_at = self._reported_at = time.monotonic()
 
 
-_progress = _Progress()
+PROGRESS = CompilingProgress()
 
 
 def kernel_status() -> tuple[int, bool]:
@@ -276,14 +289,14 @@ def kernel_status() -> tuple[int, bool]:
     The second value is True when compiled kernels are kept for the next process, False when no directory can be
     written.
     """
-    return sum(bool(dispatcher.overloads) for dispatcher in _progress.dispatchers), _progress.has_cache
+    return sum(bool(dispatcher.overloads) for dispatcher in PROGRESS.dispatchers), PROGRESS.has_cache
 
 
 @cache
 def announce_compiling() -> None:
     """Print on standard error, once in a process, that kernels are being compiled; start the reports of progress."""
     once = "once per installation"
-    if not _progress.has_cache:
+    if not PROGRESS.has_cache:
         once = "they cannot be kept for the next run: set NUMBA_CACHE_DIR to a folder that can be written"
     print(f"utak: compiling geometry kernels ({once}) ...", file=sys.stderr, flush=True)
-    _progress.begin()
+    PROGRESS.begin()

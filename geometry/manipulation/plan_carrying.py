@@ -10,16 +10,16 @@ it cannot pass), and then any place and angle.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.cspace.bottleneck import Bottleneck
 from geometry.cspace.plan_motion import MotionPlan
-from geometry.kernels.arrays import XY, Bools
+from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.manipulation.align import plan_aligned
 from geometry.manipulation.free_body import plan_body_alone
 from geometry.manipulation.goals import At, Between, End, InCorner, Inside, Roomy, is_goal_met
@@ -174,25 +174,47 @@ def plan_carrying(
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
-    return replace(_first_plan(query), held=held)
+    return replace(first_plan(query), held=held)
 
 
-def _first_plan(query: ManipulationQuery) -> CarryingPlan:
-    """Return the plan of the first planner that finds one; else one without legs that says why none does."""
+class OffLatticePlanners(NamedTuple):
+    """The planners that are asked, in this order, when whole squares and quarter turns alone lead nowhere.
+
+    Each returns legs, or None when it finds none.
+
+    Attributes
+    ----------
+    aligned : first turns the body to the lattice.
+    with_one_grasp : carries the body along a track of the body alone, (n, 3) poses, with one grasp.
+    by_freeing : first brings the body to where there is more room.
+    """
+
+    aligned: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_aligned
+    with_one_grasp: Callable[[ManipulationQuery, Floats], Sequence[Leg] | None] = plan_with_one_grasp
+    by_freeing: Callable[[ManipulationQuery], Sequence[Leg] | None] = plan_by_freeing
+
+
+OFF_LATTICE_PLANNERS = OffLatticePlanners()
+
+
+def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners = OFF_LATTICE_PLANNERS) -> CarryingPlan:
+    """Return the plan of the first planner that finds one, or the reason why none does."""
     plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
         plan = _plan_of(query, plan_on_lattice(query))
-    plan = plan or _plan_of(query, plan_aligned(query))
+    plan = plan or _plan_of(query, off_lattice.aligned(query))
     if plan is not None:
         return plan
     body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)
     if body.status == "found":
-        plan = _plan_of(query, plan_with_one_grasp(query, body.track)) or _plan_of(query, plan_by_freeing(query))
+        plan = _plan_of(query, off_lattice.with_one_grasp(query, body.track))
+        plan = plan or _plan_of(query, off_lattice.by_freeing(query))
     else:  # it lies too tightly for an answer: first bring it out
-        plan = _plan_of(query, plan_by_freeing(query)) or _plan_of(query, plan_with_one_grasp(query, body.track))
+        plan = _plan_of(query, off_lattice.by_freeing(query))
+        plan = plan or _plan_of(query, off_lattice.with_one_grasp(query, body.track))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 

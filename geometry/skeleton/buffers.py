@@ -17,6 +17,9 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import SquaredDistances
 from geometry.skeleton.skeleton import States, Waiting, Words
 
+Adviser = Callable[[int, int, int], int]
+"""Takes address, length in bytes and the number of the advice; returns 0 when the system follows it."""
+
 PAGE_BYTES = 4096  # to which addresses are rounded down; the system's pages may be larger
 MIN_POPULATED_BYTES = 1 << 16  # less is not worth a system call (tuned by benchmarks.screens)
 MAX_POPULATED_BYTES = 1 << 22  # for arrays of so much and more numpy itself asks for large pages
@@ -91,7 +94,7 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
         share, eighth = -(-cells * np.dtype(kind).itemsize // 8), -(-cells // 8)
         del buffers
         whole = np.empty(share + eighth, np.uint64)  # one array: what numpy zeroes it touches page by page
-        populate(whole)
+        populate(whole, adviser())
         whole[-1] = 0
         square: Any = whole[:share].view(kind)[:cells].reshape(shape)
         buffers = Buffers(square, whole[share:])
@@ -122,13 +125,14 @@ def keep_scratch(scratch: Scratch) -> None:
     SPARE_SCRATCH[len(scratch.mark)] = scratch
 
 
-def populate(array: NDArray[Any]) -> None:
+def populate(array: NDArray[Any], advise: Adviser | None) -> None:
     """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written.
 
     Only advice, nothing is written: nothing happens where the system does not know it, or for arrays of less than 64
     KiB or of 4 MiB and more.
+
+    advise : the system's madvise; None where there is none.
     """
-    advise = adviser()
     if advise is not None and MIN_POPULATED_BYTES <= array.nbytes < MAX_POPULATED_BYTES:
         begin = array.ctypes.data
         first = begin - begin % PAGE_BYTES
@@ -136,12 +140,14 @@ def populate(array: NDArray[Any]) -> None:
 
 
 @cache
-def adviser() -> Callable[[int, int, int], int] | None:
+def adviser(platform: str = sys.platform) -> Adviser | None:
     """Return Linux's madvise, or None on other systems and where it is not found.
 
     It takes an address, a number of bytes and the number of an advice, and returns 0 or, for an error, -1.
+
+    platform : the name of the system, as in sys.platform.
     """
-    if not sys.platform.startswith("linux"):
+    if not platform.startswith("linux"):
         return None
     import ctypes
 

@@ -15,7 +15,7 @@ import numpy as np
 from geometry.kernels.arrays import Ints, SquaredDistances
 from geometry.kernels.jit import bare
 from geometry.skeleton.bit_parallel import Eights, count_nodes, list_nodes, node_number
-from geometry.skeleton.lowest_cells import Notes, find_lowest, lowest_of, new_notes
+from geometry.skeleton.lowest_cells import MIN_NOTES, Notes, find_lowest, lowest_of, new_notes
 from geometry.skeleton.skeleton import HALT, LINKS, SADDLE, Flags, Heights, States, Words, above, stride
 
 NOTES_CHECK_STEPS = 4  # steps of a walk between two checks that there is room for as many notes more (a convention)
@@ -47,7 +47,7 @@ class SkeletonGraph(NamedTuple):
     steps: Ints
 
 
-def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonGraph:
+def contract(square: SquaredDistances, state: States, words: Words, min_notes: int = MIN_NOTES) -> SkeletonGraph:
     """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``.
 
     Parameters
@@ -60,6 +60,8 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
         the first cell (least index) of a ring without a junction is set.
     words : (n,) uint64
         The memory of ``state`` by eights.
+    min_notes : int
+        The least room for notes of lowest cells (see lowest_cells.py).
 
     Returns
     -------
@@ -67,7 +69,7 @@ def contract(square: SquaredDistances, state: States, words: Words) -> SkeletonG
         With no node when the skeleton is empty. A summit without links is a node without chains.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
-    eights, size, notes = words.view(np.int64), len(words), new_notes(len(states))
+    eights, size, notes = words.view(np.int64), len(words), new_notes(len(states), min_notes)
     base, since = np.empty((size + 15) // 16, np.int32), np.empty(size, np.uint8)
     nodes, ends, links = count_nodes(eights, base, since)
     node, port = np.empty(nodes + 1, np.int32), np.empty((ends // 2, 2), np.int32)

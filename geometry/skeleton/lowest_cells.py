@@ -17,13 +17,13 @@ Notes = Ints
 MIN_NOTES, MAX_NOTES = 32, 1024  # room on the smallest and the largest screens (tuned by benchmarks.screens)
 
 
-def new_notes(cells: int) -> Notes:
+def new_notes(cells: int, min_notes: int = MIN_NOTES) -> Notes:
     """Return scratch (2, size) int32, uninitialised: row 0 for notes, row 1 for their squared clearances.
 
     Notes are the cells that may be the lowest of their chain. The size is a 64th of `cells`, the number of cells of the
-    padded screen, but at least 32 and at most 1024.
+    padded screen, but at least `min_notes` and at most 1024.
     """
-    return np.empty((2, min(max(MIN_NOTES, cells >> 6), MAX_NOTES)), np.int32)
+    return np.empty((2, min(max(min_notes, cells >> 6), MAX_NOTES)), np.int32)
 
 
 @bare

@@ -16,7 +16,7 @@ from geometry.skeleton.skeleton import Flags, Heights, States, Waiting, Words, g
 BAND_CELLS = 1 << 16  # about so many cells in a band: of 3 to 5 bytes each, which fit into a core's own cache
 
 
-def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -> None:
+def survey(free: Bools, square: SquaredDistances, state: States, words: Words, band_cells: int = BAND_CELLS) -> None:
     """Measure the clearance of all free squares and find their skeleton.
 
     Parameters
@@ -32,13 +32,15 @@ def survey(free: Bools, square: SquaredDistances, state: States, words: Words) -
         ring.
     words : (n,) uint64
         The memory of ``state`` by eights, 0 beyond its last cell.
+    band_cells : int
+        About so many cells are in a band.
     """
     width, steps = square.shape[1], square.view(np.int16)
     count_steps_south(free, steps)
     square[0], square[-1], state[0], state[-1] = 0, 0, 0, 0
     flags, waiting = np.empty(width, np.uint8), np.empty(width, np.int32)
     flat = square.reshape(-1), state.reshape(-1), words
-    sweep(square, steps, *flat, max(1, BAND_CELLS // width), new_row_window(width), flags, waiting)
+    sweep(square, steps, *flat, max(1, band_cells // width), new_row_window(width), flags, waiting)
 
 
 def grow_all(square: SquaredDistances, level: int, state: States, words: Words) -> None:

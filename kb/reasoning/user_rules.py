@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import clingo
 
@@ -28,16 +28,33 @@ from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
 MAX_CONFLICTS = 100_000  # conflicts of clingo's search for the best answer; bounds it on every machine alike
+
+
+class RuleLimits(NamedTuple):
+    """The limits of the work with users' rules.
+
+    Attributes
+    ----------
+    seconds : of wall-clock time, to read rules, or to solve one encoding with them.
+    conflicts : of clingo's search for the best answer.
+    """
+
+    seconds: float = MAX_RULE_SECONDS
+    conflicts: int = MAX_CONFLICTS
+
+
+RULE_LIMITS = RuleLimits()
 # clingo's messages: line, first column, column after the last one, text.
 CLINGO_MESSAGE = re.compile(r"<\w+>:(\d+):(\d+)(?:-(?:\d+:)?(\d+))?: (?:error|info|warning): (.*)", re.DOTALL)
 
 
-def read_rules(paths: Sequence[Path | str]) -> Rulebook:
+def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
     """Return the rules of some files, parsed and checked against the vocabulary.
 
     Parameters
     ----------
     paths : the paths of the files, in order.
+    limits : of time and search.
 
     Returns
     -------
@@ -48,10 +65,10 @@ def read_rules(paths: Sequence[Path | str]) -> Rulebook:
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors; carries all of them.
     """
-    return _rulebook(tuple(read_source(path) for path in paths))
+    return _rulebook(tuple(read_source(path) for path in paths), limits.seconds)
 
 
-def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
+def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
     """Return the rules of some files after a test with every encoding that they reach.
 
     The test finds rules that contradict each other or never end whatever is given, and arithmetic without a result.
@@ -59,6 +76,7 @@ def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
     Parameters
     ----------
     paths : the paths of the files, in order.
+    limits : of time and search.
 
     Returns
     -------
@@ -69,28 +87,32 @@ def read_tested_rules(paths: Sequence[Path | str]) -> Rulebook:
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors, or the test fails.
     """
-    rules = read_rules(paths)
+    rules = read_rules(paths, limits)
     if rules.self_contained:
-        _solved_by_worker("", "", rules.self_contained)
+        _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
         if reaching := rules.rules_reaching(name):
-            _solved_by_worker(f"{name}.lp", (KB_ENCODINGS / f"{name}.lp").read_text(), reaching, search=False)
+            encoding = (KB_ENCODINGS / f"{name}.lp").read_text()
+            _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
     if rules.query_rules:
         asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
-        found = _worker().exchange(asked, MAX_RULE_SECONDS)
+        found = _worker().exchange(asked, limits.seconds)
         if "rule" in found:
             raise BadInputError([rules.query_rules[found["rule"]].problem(found["error"], hint=found["hint"])])
     return rules
 
 
 @lru_cache(maxsize=16)
-def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
-    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them."""
+def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
+    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them.
+
+    seconds : the limit of wall-clock time for each.
+    """
     problems: list[Problem] = []
     statements: list[Statement] = []
     for source in sources:
         try:
-            statements += _statements(source)
+            statements += _statements(source, seconds)
         except BadInputError as bad:
             problems += bad.problems
     if problems:
@@ -98,15 +120,17 @@ def _rulebook(sources: tuple[Source, ...]) -> Rulebook:
     return Rulebook(statements)
 
 
-def _statements(source: Source) -> list[Statement]:
+def _statements(source: Source, seconds: float) -> list[Statement]:
     """Return the statements of one source, in order.
 
     Raises BadInputError when it is no file of rules, has no rule, or takes too much time or memory.
+
+    seconds : the limit of wall-clock time.
     """
     problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
     if problems:
         raise BadInputError(problems)
-    found = _worker().exchange({"read": source.text}, MAX_RULE_SECONDS)
+    found = _worker().exchange({"read": source.text}, seconds)
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
@@ -134,7 +158,7 @@ def _not_allowed(source: Source) -> Iterator[Problem]:
 
 
 def solve_with_user_rules(
-    ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str]
+    ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str], limits: RuleLimits = RULE_LIMITS
 ) -> list[clingo.Symbol] | None:
     """Return the shown atoms of the best answer set of an encoding with users' rules.
 
@@ -143,6 +167,7 @@ def solve_with_user_rules(
     ours : the path of the encoding; exactly one.
     users : the paths of the users' rules.
     facts : the facts of the encoding, without full stops.
+    limits : of time and search.
 
     Returns
     -------
@@ -153,13 +178,13 @@ def solve_with_user_rules(
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors, contradict the facts, derive invalid atoms, or take too much time or memory.
     """
-    rules = read_rules(users)
+    rules = read_rules(users, limits)
     (encoding,) = ours
     reaching = rules.rules_reaching(encoding.stem)
     if not reaching:
         return None
     program = "\n".join([encoding.read_text(), *(f"{fact}." for fact in facts)])
-    found = _solved_by_worker(encoding.name, program, reaching)
+    found = _solved_by_worker(encoding.name, program, reaching, limits)
     given: dict[Signature, list[Fact]] = {}
     for fact in facts_from_text("".join(f"{fact}.\n" for fact in facts)):
         given.setdefault(fact.signature, []).append(fact)
@@ -171,7 +196,7 @@ def solve_with_user_rules(
     return [clingo.parse_term(text) for text in found["atoms"]]
 
 
-def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], search: bool = True) -> dict[str, Any]:
+def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], limits: RuleLimits) -> dict[str, Any]:
     """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
 
     The response is {"atoms": texts, "derived": texts of atoms that heads of rules may have derived}, or {} without a
@@ -180,11 +205,11 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], se
     name : the name of the program in messages; '' for the rules alone.
     program : the text of the encoding and its facts; '' for the rules alone.
     reaching : the rules, at least one.
-    search : whether to search for the best answer; else the program is only grounded.
+    limits : of time and search; with 0 conflicts the program is only grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
-    found = _worker().exchange(request | {"conflicts": MAX_CONFLICTS if search else 0}, MAX_RULE_SECONDS)
+    found = _worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
     if "limit" in found:
         where = f", in {name}" if name else ""
         raise _error_at_first_rule(reaching, f"these rules were given up: {found['limit']}{where}")

@@ -19,60 +19,99 @@ from geometry.kernels.jit import announce_compiling
 from kb.language.operating_system import end_with_parent, read_lines_from_parent
 from utak_command import isolated_command
 
+Use = Callable[[], None]
 # The folders of our packages.
 PACKAGES = [Path(geometry.__file__).parent.with_name(name) for name in ("geometry", "kb", "planner", "simulator")]
 
 
-def warm(carrying: bool, paths: str = "skeleton") -> None:
+class KernelCompiler:
+    """The compiler of an installation: it finds the uses that are not compiled yet, and compiles them.
+
+    Attributes
+    ----------
+    packages : the folders of the packages whose bytecode is kept.
+    """
+
+    def __init__(self, packages: Sequence[Path] = PACKAGES) -> None:
+        self.packages = packages
+
+    def uncompiled(self, uses: Collection[Use]) -> list[Use]:
+        """Return those uses whose kernels are not in the cache of this installation."""
+        places = [place for place in _caches() if place.is_dir()]
+        return [
+            use for use in uses if not any(next(place.rglob(f"{LONGEST_KERNEL[use]}-*.nbi"), None) for place in places)
+        ]
+
+    def announce(self) -> None:
+        """Print, once in a process, that kernels are being compiled."""
+        announce_compiling()
+
+    def compile_for(self, uses: Sequence[Use]) -> None:
+        """Call each use once, which compiles its kernels."""
+        gc.disable()  # a compiler makes millions of lasting objects; garbage collection would take a tenth of the time
+        try:
+            for use in uses:
+                use()
+        finally:
+            gc.enable()
+
+    def second_process_command(self, uses: Sequence[Use]) -> list[str]:
+        """Return the command line of the process that compiles for some uses."""
+        return isolated_command("simulator.run.warming", *(use.__name__ for use in uses))
+
+    def compile_in_two_processes(self, mine: Sequence[Use], others: Sequence[Use]) -> None:
+        """Compile for some uses here, and for others in a second process, which ends when this one ends."""
+        if not others:
+            self.compile_for(mine)
+            return
+        command, quiet = self.second_process_command(others), subprocess.DEVNULL
+        with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet) as other:
+            try:
+                self.compile_for(mine)
+                if sys.dont_write_bytecode:
+                    self.compile_modules()
+                other.wait()
+            except BaseException:
+                other.kill()
+                raise
+
+    def compile_modules(self) -> None:
+        """Write the bytecode of our modules next to their sources.
+
+        With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes
+        a third of the time to the first command.
+        """
+        for package in self.packages:
+            compileall.compile_dir(package, quiet=2)
+
+
+THIS_INSTALLATION = KernelCompiler()
+
+
+def warm(carrying: bool, paths: str = "skeleton", compiler: KernelCompiler = THIS_INSTALLATION) -> None:
     """Compile the kernels that a robot needs, unless they are in the cache; announce it on the standard error.
 
     Parameters
     ----------
     carrying : whether the task moves objects.
     paths : the path-finder, as in `--paths`.
+    compiler : finds what is missing, announces it and compiles it.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
         return
-    missing = uncompiled([search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])])
+    needed = [search, *([carry] if carrying else []), *([sightlines] if paths == "visibility" else [])]
+    missing = compiler.uncompiled(needed)
     if not missing:
         return
-    announce_compiling()
+    compiler.announce()
     mine, others = PROCESS_SPLIT[carrying] if search in missing else ((), ())
-    _compile_in_two_processes([*mine, *(use for use in missing if use not in (*mine, *others))], others)
+    compiler.compile_in_two_processes([*mine, *(use for use in missing if use not in (*mine, *others))], others)
 
 
 def warm_all() -> None:
     """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
     mine, others = PROCESS_SPLIT[True]
-    _compile_in_two_processes((*mine, move), (*others, sightlines, change))
-
-
-def _compile_in_two_processes(mine: Sequence[Callable[[], None]], others: Sequence[Callable[[], None]]) -> None:
-    """Compile for some uses here, and for others in a second process, which ends when this one ends."""
-    if not others:
-        compile_for(mine)
-        return
-    command, quiet = second_process_command(others), subprocess.DEVNULL
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet) as other:
-        try:
-            compile_for(mine)
-            if sys.dont_write_bytecode:
-                compile_modules()
-            other.wait()
-        except BaseException:
-            other.kill()
-            raise
-
-
-def second_process_command(uses: Sequence[Callable[[], None]]) -> list[str]:
-    """Return the command line of the process that compiles for some uses."""
-    return isolated_command("simulator.run.warming", *(use.__name__ for use in uses))
-
-
-def uncompiled(uses: Collection[Callable[[], None]]) -> list[Callable[[], None]]:
-    """Return those uses whose kernels are not in the cache of this installation."""
-    places = [place for place in _caches() if place.is_dir()]
-    return [use for use in uses if not any(next(place.rglob(f"{LONGEST_KERNEL[use]}-*.nbi"), None) for place in places)]
+    THIS_INSTALLATION.compile_in_two_processes((*mine, move), (*others, sightlines, change))
 
 
 def count_cached_kernels() -> int:
@@ -92,26 +131,6 @@ def _caches() -> list[Path]:
     with suppress(RuntimeError):  # a user without a home
         users += [str(Path.home() / ".cache"), str(Path.home() / "Library" / "Caches")]
     return found + [Path(folder) / "numba" for folder in users if folder]
-
-
-def compile_modules() -> None:
-    """Write the bytecode of our modules next to their sources.
-
-    With PYTHONDONTWRITEBYTECODE, as in many containers, Python compiles a checkout again at every start. That takes a
-    third of the time to the first command.
-    """
-    for package in PACKAGES:
-        compileall.compile_dir(package, quiet=2)
-
-
-def compile_for(uses: Sequence[Callable[[], None]]) -> None:
-    """Call each use once, which compiles its kernels."""
-    gc.disable()  # a compiler makes millions of lasting objects; garbage collection would take a tenth of the time
-    try:
-        for use in uses:
-            use()
-    finally:
-        gc.enable()
 
 
 def search() -> None:
@@ -248,7 +267,7 @@ def carry() -> None:
 
 
 # Without and with carrying: the uses that this process compiles, and those that the second process compiles meanwhile.
-PROCESS_SPLIT: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
+PROCESS_SPLIT: dict[bool, tuple[tuple[Use, ...], ...]] = {
     False: ((search, walk), (see, survey, tell_shapes)),
     True: ((search, see), (survey, tell_shapes, walk, carry)),
 }
@@ -259,10 +278,10 @@ PROCESS_SPLIT: dict[bool, tuple[tuple[Callable[[], None], ...], ...]] = {
 LONGEST_KERNEL = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
 
 
-def main(names: Sequence[str]) -> None:
+def main(names: Sequence[str], compiler: KernelCompiler = THIS_INSTALLATION) -> None:
     """Compile for the uses with these names: the work of the second process."""
     uses = {use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, change)}
-    compile_for([uses[name] for name in names])
+    compiler.compile_for([uses[name] for name in names])
 
 
 if __name__ == "__main__":

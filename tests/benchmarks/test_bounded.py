@@ -17,14 +17,13 @@ def test_every_command_of_a_run_is_timed() -> None:
     assert not row.false
 
 
-def test_an_endless_run_is_ended_and_reported(monkeypatch) -> None:
+def test_an_endless_run_is_ended_and_reported() -> None:
     def endless(run: Run, tell) -> None:
         tell((0.25, {"do": "release"}))
         while True:
             pass
 
-    monkeypatch.setattr(bounded, "run_here", endless)
-    row = bounded.bounded(Run(EXAMPLE, 0.0, 1, 3, False), 1)
+    row = bounded.bounded(Run(EXAMPLE, 0.0, 1, 3, False), 1, endless)
     assert (row.verdict, row.seconds) == ("ended", [0.25, 0.75])
 
 

@@ -4,6 +4,7 @@ import json
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,12 +64,6 @@ class Scripted:
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:
     """Return a maker of such robots."""
     return lambda body, task, settings: Scripted(body, commands, verdict)
-
-
-@pytest.fixture(autouse=True)
-def cold(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the trial that warms up."""
-    monkeypatch.setattr(campaign, "_warm_up", lambda folder: None)
 
 
 DONE = Verdict(True, "done", "I am there")
@@ -190,14 +185,17 @@ def test_a_missing_judge_is_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     monkeypatch.setenv("UTAK_JUDGE", str(tmp_path / "nowhere.py"))
-    monkeypatch.setattr(campaign, "run_trial", lambda t, s, *_: CampaignTrial(t, s, True, True, True, "done"))
-    assert campaign.main(["--task", "1", "--count", "2", "-o", str(tmp_path / "r.jsonl")]) == 0
+
+    def done(task: int, seed: int, *_: object) -> CampaignTrial:
+        return CampaignTrial(task, seed, True, True, True, "done")
+
+    assert campaign.main(["--task", "1", "--count", "2", "-o", str(tmp_path / "r.jsonl")], done) == 0
     told = capsys.readouterr()
     assert "NO JUDGE" in told.err and "none!" in told.out
     assert len((tmp_path / "r.jsonl").read_text().splitlines()) == 2
 
 
-def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_worlds_that_went_wrong_are_run_again(tmp_path: Path) -> None:
     ran = []
 
     def record(task: int, seed: int, *_: object) -> CampaignTrial:
@@ -206,22 +204,18 @@ def test_worlds_that_went_wrong_are_run_again(monkeypatch: pytest.MonkeyPatch, t
             task, seed, True, True, seed != 1, "done", score=Score(0, 0, 0, 0, 9, int(seed == 2), 0, ())
         )
 
-    monkeypatch.setattr(campaign, "run_trial", record)
     results = tmp_path / "results.jsonl"
-    assert campaign.main(["--task", "1", "--count", "4", "-o", str(results)]) == 1
+    assert campaign.main(["--task", "1", "--count", "4", "-o", str(results)], record) == 1
     ran.clear()
-    campaign.main(["--again", str(results)])
-    assert ran == [(1, 1), (1, 2)]
+    campaign.main(["--again", str(results)], record)
+    warming_up, *again = ran
+    assert warming_up == (4, 0)
+    assert again == [(1, 1), (1, 2)]
 
 
-def test_one_world_is_drawn_at_each_step(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    def scripted(task: int, seed: int, conditions: Conditions, folder: Path, watch: Any) -> CampaignTrial:
-        return run_trial(task, seed, conditions, folder, watch, maker([HERE, HERE], GIVES_UP))
-
-    monkeypatch.setattr(campaign, "run_trial", scripted)
-    campaign.main(["--only", "3:2", "--keep", str(tmp_path)])
+def test_one_world_is_drawn_at_each_step(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    scripted = partial(run_trial, maker=maker([HERE, HERE], GIVES_UP))
+    campaign.main(["--only", "3:2", "--keep", str(tmp_path)], scripted)
     told = capsys.readouterr().err
     assert told.count("bbbbb\n") > 30 and "step 2: {'do': 'move'" in told
     assert (tmp_path / "task3-002" / "episode.jsonl").exists()

@@ -1,7 +1,7 @@
 """The campaign about claims finds a false done and a false impossible, and accepts true ones."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +20,6 @@ from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.tasks import NO, YES
 from kb.body import Body, Command, Impression
 from kb.task.task import Task
-from simulator.run import robots
 from simulator.scenario.settings import Settings
 
 LIMITS = Limits(search=5)
@@ -58,7 +57,7 @@ class Claimant:
 
 
 @pytest.fixture
-def claiming(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Asked, str], ClaimRow]:
+def claiming(tmp_path: Path) -> Callable[[Asked, str], ClaimRow]:
     """Return a function that runs a robot with a verdict in a world."""
 
     def ran(asked: Asked, verdict: str) -> ClaimRow:
@@ -66,10 +65,9 @@ def claiming(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[Asked
             return Claimant(body, Verdict(verdict == "done", verdict, "so it is"))
 
         def runner(place: Path, limits: Limits) -> str:
-            child.run(place, limits.noise, limits.noise_seed, limits.max_steps)
+            child.run(place, limits.noise, limits.noise_seed, limits.max_steps, make)
             return "error"
 
-        monkeypatch.setattr(robots, "make_robot", make)
         return run_world(asked, LIMITS, tmp_path, tmp_path / "kept", runner)
 
     return ran
@@ -150,9 +148,7 @@ def test_a_run_out_of_time_tells_how_long_its_last_command_took(tmp_path: Path) 
     assert (row.verdict, row.commands, row.cycles, row.faulty) == ("time", 1, [2.0, 97.0], True)
 
 
-def test_a_campaign_continues_earlier_results(
-    claiming: Callable[[Asked, str], ClaimRow], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_campaign_continues_earlier_results(claiming: Callable[[Asked, str], ClaimRow], tmp_path: Path) -> None:
     rows = [claiming(ABLE, "limit")]
     results = tmp_path / "results.jsonl"
     results.write_text(rows[0].line() + "\n" + '{"kind": "plu')
@@ -160,8 +156,12 @@ def test_a_campaign_continues_earlier_results(
     assert {"longest", "percentile_95"} <= set(json.loads(results.read_text().splitlines()[0]))
     results.write_text(rows[0].line() + "\n")
     asked: list[Asked] = []
-    monkeypatch.setattr(campaign, "_run_all", lambda worlds, *rest: asked.extend(worlds) or [])
-    assert campaign.main(["--kind", "plugged", "--count", "2", "-o", str(results)]) == 0
+
+    def run_all(worlds: list[Asked], *rest: object) -> Iterator[ClaimRow]:
+        asked.extend(worlds)
+        return iter(())
+
+    assert campaign.main(["--kind", "plugged", "--count", "2", "-o", str(results)], run_all) == 0
     assert asked == [Asked("plugged", 1)]
 
 

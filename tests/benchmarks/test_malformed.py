@@ -1,8 +1,7 @@
 """Malformed files are accepted, or refused with a place; the campaign finds other outcomes."""
 
 from pathlib import Path
-
-import pytest
+from typing import NoReturn
 
 from benchmarks import malformed
 
@@ -35,15 +34,14 @@ def test_malformed_maps() -> None:
     assert outcomes["refused"] > 500
 
 
-def test_the_campaign_sees_faults(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def forever(folder: Path) -> None:
+def test_the_campaign_sees_faults(tmp_path: Path) -> None:
+    def forever(folder: Path) -> NoReturn:
         while True:
             pass
 
-    monkeypatch.setattr(malformed, "HANG_SECONDS", 0.05)
-    monkeypatch.setattr(malformed, "read_scenario", forever)
-    assert malformed.outcome(tmp_path) == "! hung"
-    monkeypatch.setattr(malformed, "read_scenario", lambda folder: 1 // 0)
-    assert malformed.outcome(tmp_path).startswith("! ZeroDivisionError")
-    monkeypatch.setattr(malformed, "parse_map", lambda raw: 1 // 0)
-    assert list(malformed.maps(1, 0)) == ["! ZeroDivisionError: integer division or modulo by zero"]
+    def broken(source: object) -> NoReturn:
+        raise ZeroDivisionError("integer division or modulo by zero")
+
+    assert malformed.outcome(tmp_path, forever, seconds=0.05) == "! hung"
+    assert malformed.outcome(tmp_path, broken).startswith("! ZeroDivisionError")
+    assert list(malformed.maps(1, 0, broken)) == ["! ZeroDivisionError: integer division or modulo by zero"]

@@ -77,10 +77,10 @@ class Robot:
         return Report(command, impression, {"facts": facts}, f"{self.left} commands are left")
 
 
-def install() -> None:
-    """Let the command line make this robot."""
+def install(robot: type[Robot] = Robot) -> None:
+    """Let the command line make this robot, or another one of its kind."""
     module = types.ModuleType("planner.cycle")
-    module.Robot, module.Options = Robot, Options  # type: ignore[attr-defined]
+    module.Robot, module.Options = robot, Options  # type: ignore[attr-defined]
     sys.modules["planner.cycle"] = module
 
 

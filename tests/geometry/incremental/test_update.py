@@ -6,16 +6,22 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from geometry import Screen
-from geometry.incremental import affected_region, update
+from geometry.incremental import affected_region
 from tests.geometry import oracles
 from tests.geometry.measuring import measure
 
 
-@pytest.fixture(autouse=True, params=["always", "if little"])
-def in_place(request, monkeypatch):
-    """Make changes in place even where they affect much of a small screen, and as usual."""
-    if request.param == "always":
-        monkeypatch.setattr(update, "MAX_AFFECTED_SHARE", 1.0)
+@pytest.fixture(params=["always", "if little"])
+def screen_of(request):
+    """Return a maker of screens that change in place even where much of a small screen is affected, or as usual."""
+
+    def made(free):
+        screen = Screen(free)
+        if request.param == "always":
+            screen._max_affected_share = 1.0
+        return screen
+
+    return made
 
 
 def same(screen, other):
@@ -29,9 +35,9 @@ def same(screen, other):
 
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(oracles.screens(most=20), st.integers(0, 2**32 - 1), st.integers(1, 3))
-def test_changes_give_what_a_fresh_build_gives(free, seed, times):
+def test_changes_give_what_a_fresh_build_gives(screen_of, free, seed, times):
     rng = np.random.default_rng(seed)
-    screen = Screen(free.copy())
+    screen = screen_of(free.copy())
     for _ in range(times):
         n = int(rng.integers(1, 12))
         rows, columns = rng.integers(free.shape[0], size=n), rng.integers(free.shape[1], size=n)
@@ -64,13 +70,13 @@ def test_every_clearance_that_changes_lies_within_the_bounds(most):
 
 
 @pytest.mark.parametrize("texture", ["rooms", "noise", "open", "wide"])
-def test_many_changes_in_a_row_give_what_a_new_screen_gives(texture):
+def test_many_changes_in_a_row_give_what_a_new_screen_gives(screen_of, texture):
     rng = np.random.default_rng(7)
     share = {"rooms": 0.0, "noise": 0.3, "open": 0.003, "wide": 0.0}[texture]
     free = rng.random((150, 300) if texture == "wide" else (60, 70)) > share
     if texture == "rooms":
         free = np.kron(rng.random((20, 24)) > 0.4, np.ones((3, 3))).astype(bool)
-    screen = Screen(free)
+    screen = screen_of(free)
     for _ in range(60):
         i, j = (int(rng.integers(0, n - 8)) for n in free.shape)
         free = free.copy()
@@ -80,13 +86,13 @@ def test_many_changes_in_a_row_give_what_a_new_screen_gives(texture):
 
 
 @pytest.mark.parametrize("size", [210, 520])
-def test_clearances_may_outgrow_their_type(size):
+def test_clearances_may_outgrow_their_type(screen_of, size):
     free = np.ones((size, size), bool)
     free[::26] = free[:, ::26] = False
     free[1, 1::26] = free[2::26, 5] = True
     free[5:205, 5:205] = True
     free[96:112, 90:98] = False
-    screen = Screen(free.copy())
+    screen = screen_of(free.copy())
     assert screen._square.dtype == np.int16 and screen.clearance.max() < 90
     free[96:112, 90:98] = True
     rows, columns = np.mgrid[96:112, 90:98]
@@ -97,9 +103,9 @@ def test_clearances_may_outgrow_their_type(size):
     same(screen.changed(rows, columns, free[rows, columns]), Screen(free))
 
 
-def test_routes_follow_a_change():
+def test_routes_follow_a_change(screen_of):
     free = np.ones((5, 9), bool)
-    screen = Screen(free)
+    screen = screen_of(free)
     assert len(screen.routes((0.5, 2.5), (8.5, 2.5), k=3)) == 1
     screen.changed([2], [4], False)
     assert len(screen.routes((0.5, 2.5), (8.5, 2.5), k=3)) == 2
@@ -117,13 +123,13 @@ def test_routes_follow_a_change():
         (([0.5], [0], True), "whole numbers"),
     ],
 )
-def test_bad_changes_are_rejected_with_a_reason(change, message):
+def test_bad_changes_are_rejected_with_a_reason(screen_of, change, message):
     with pytest.raises(ValueError, match=message):
-        Screen(np.ones((5, 5), bool)).changed(*change)
+        screen_of(np.ones((5, 5), bool)).changed(*change)
 
 
-def test_an_empty_change_changes_nothing():
-    screen = Screen(np.ones((3, 4), bool))
+def test_an_empty_change_changes_nothing(screen_of):
+    screen = screen_of(np.ones((3, 4), bool))
     before = screen.clearance.copy()
     same(screen.changed([], [], []), Screen(np.ones((3, 4), bool)))
     assert (screen.clearance == before).all()

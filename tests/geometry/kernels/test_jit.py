@@ -76,7 +76,7 @@ def test_integers_of_all_widths_share_one_compiled_copy() -> None:
 
 def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
     code = (
-        "import numpy as np; from geometry.kernels import jit; jit.NOTICE_DELAY = 0.0; "
+        "import numpy as np; from geometry.kernels import jit; jit.PROGRESS.notice_delay = 0.0; "
         "from geometry.homotopy.funnel import measure_line; measure_line(np.zeros((2, 2)), 2)"
     )
     noticed = []

@@ -12,7 +12,19 @@ from shapely import affinity, box
 from benchmarks.errands import faults, free_squares, goal_of
 from benchmarks.worlds.makers import scenario
 from geometry.manipulation.goals import Roomy, is_goal_met, moved
-from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, Pose, plan_carrying
+from geometry.manipulation.plan_carrying import (
+    At,
+    Between,
+    CarryingPlan,
+    InCorner,
+    Inside,
+    OffLatticePlanners,
+    Pose,
+    first_plan,
+    plan_carrying,
+)
+from geometry.manipulation.query import ManipulationQuery
+from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Rotate, Translate
 from tests.geometry.replay import replay, walls_of
 
@@ -290,12 +302,11 @@ def test_a_body_at_an_angle_is_aligned_where_it_would_reach_too_far_from_a_corne
     assert goal.admits(end.bounds) and not goal.admits(at_an_angle.polygon.bounds)
 
 
-def test_a_body_that_no_lattice_plan_aligns_is_aligned_with_one_grasp(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_aligned", lambda _: None)
-    monkeypatch.setattr("geometry.manipulation.plan_carrying.plan_by_freeing", lambda _: None)
+def test_a_body_that_no_lattice_plan_aligns_is_aligned_with_one_grasp() -> None:
     free, square = two_rooms(3), affinity.rotate(box(8, 4, 12, 8), 33)
     goal = InCorner(24, 22, 1, 1, within=(4.5, 4.5))
-    plan = plan_carrying(square, free, (3.5, 3.5), goal)
+    query = ManipulationQuery(square, Workspace(free), (3.5, 3.5), goal, 0.0, True, (), free)
+    plan = first_plan(query, OffLatticePlanners(aligned=lambda _: None, by_freeing=lambda _: None))
     assert plan.status == "found" and len(plan.legs) == 1
     assert goal.admits(replay(plan, square, free, (3.5, 3.5)).bounds)
 

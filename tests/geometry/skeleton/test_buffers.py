@@ -53,13 +53,22 @@ def test_memory_for_small_clearances_is_not_used_for_large_ones():
 def test_populating_an_array_keeps_its_values():
     for length in (10, 70_000, 1_000_000):
         array = np.arange(length)
-        buffers.populate(array[1:-1])
+        buffers.populate(array[1:-1], buffers.adviser())
         assert (array == np.arange(length)).all()
 
 
-def test_populating_does_nothing_on_systems_without_madvise(monkeypatch):
-    monkeypatch.setattr(buffers, "adviser", lambda: None)
-    buffers.populate(np.zeros(100_000))
-    monkeypatch.undo()
-    monkeypatch.setattr(buffers.sys, "platform", "darwin")
-    assert buffers.adviser.__wrapped__() is None
+def test_populating_does_nothing_on_systems_without_madvise():
+    assert buffers.adviser("darwin") is None
+    array = np.arange(100_000)
+    buffers.populate(array, None)
+    assert (array == np.arange(100_000)).all()
+
+
+def test_populating_asks_for_whole_pages_of_arrays_that_are_worth_it():
+    asked = []
+    for length in (10, 100_000, 1_000_000):
+        buffers.populate(np.zeros(length), lambda *advice: asked.append(advice) or 0)
+    ((first, size, advice),) = asked
+    assert first % buffers.PAGE_BYTES == 0
+    assert 800_000 <= size < 800_000 + buffers.PAGE_BYTES
+    assert advice == buffers.MADV_POPULATE_WRITE

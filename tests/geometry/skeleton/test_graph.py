@@ -6,9 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry import Screen
+from geometry.routes.layer import new_state
 from geometry.skeleton import bit_parallel, lowest_cells
-from geometry.skeleton.graph import WORDS_AHEAD, is_node
+from geometry.skeleton.graph import WORDS_AHEAD, contract, is_node
 from geometry.skeleton.skeleton import HALT
+from geometry.skeleton.sweep import survey
 from tests.geometry import lookalikes, oracles
 
 
@@ -40,8 +42,8 @@ def plain_walk(cell, direction, ways, numbers, width):
         (direction,) = (d for d in ways[cells[-1]] if d != direction ^ 2)
 
 
-def assert_same(screen):
-    bones = screen._skeleton_at(1)[2]
+def assert_same(screen, bones=None):
+    bones = screen._skeleton_at(1)[2] if bones is None else bones
     nodes, chains = plain_walks(screen)
     assert bones.node.tolist() == nodes
     assert [*zip(*bones.port.T.tolist(), bones.neck.tolist(), bones.steps.tolist(), strict=True)] == chains
@@ -50,9 +52,10 @@ def assert_same(screen):
 @settings(max_examples=200, deadline=None)
 @given(oracles.screens(most=24), st.sampled_from([16, 20, lowest_cells.MAX_NOTES]))
 def test_nodes_and_chains_are_those_of_plain_walks_for_any_room_for_notes(free, room):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lowest_cells, "MIN_NOTES", room)
-        assert_same(Screen(free))
+    screen = Screen(free)
+    square, (state, words) = np.empty_like(screen._square), new_state(screen._square.shape)
+    survey(free, square, state, words)
+    assert_same(screen, contract(square, state, words, min_notes=room))
 
 
 @pytest.mark.parametrize("kind", lookalikes.KINDS)

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from geometry import Screen
 from geometry.raster import distance_transform
 from geometry.routes.layer import find_pathgraph, least_squared_clearance, new_state
-from geometry.skeleton import sweep
+from geometry.skeleton.graph import contract
 from geometry.skeleton.skeleton import GROUPS, KINDS, SADDLE, SUMMIT
+from geometry.skeleton.sweep import survey
 from tests.geometry import lookalikes, oracles
 from tests.geometry.measuring import measure
 
@@ -95,10 +96,10 @@ def test_skeleton_is_thin_and_connected_as_free_space_is(free):
 @given(oracles.screens(most=16), st.sampled_from([1, 20, 40]))
 def test_results_do_not_depend_on_the_size_of_bands(free, band):
     whole = Screen(free)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sweep, "BAND_CELLS", band)
-        parts = Screen(free)
-    for mine, other in zip(parts._skeleton_at(1), whole._skeleton_at(1), strict=True):
+    square, (state, words) = np.empty_like(whole._square), new_state(whole._square.shape)
+    survey(free, square, state, words, band_cells=band)
+    assert np.array_equal(square, whole._square)
+    for mine, other in zip((state, words, contract(square, state, words)), whole._skeleton_at(1), strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(mine, other, strict=True))
 
 

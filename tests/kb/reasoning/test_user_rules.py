@@ -9,12 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
-from kb.reasoning import user_rules
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.query import QueryEngine
 from kb.reasoning.rulebook import INTERNAL_PREDICATES
 from kb.reasoning.solver import KB_ENCODINGS, solve
-from kb.reasoning.user_rules import read_rules, read_tested_rules
+from kb.reasoning.user_rules import RULE_LIMITS, RuleLimits, read_rules, read_tested_rules, solve_with_user_rules
 from tests.encoding_cases import ENCODINGS, case_file
 
 FACTS = ["region(a,zero,100)"]
@@ -39,10 +38,10 @@ def complaint(tmp_path: Path, *rules: str) -> str:
     return str(caught.value)
 
 
-def refusal(tmp_path: Path, *rules: str) -> str:
+def refusal(tmp_path: Path, *rules: str, limits: RuleLimits = RULE_LIMITS) -> str:
     """Return the message about files of rules that are refused before solving."""
     with pytest.raises(BadInputError) as caught:
-        read_tested_rules(written(tmp_path, *rules))
+        read_tested_rules(written(tmp_path, *rules), limits)
     return str(caught.value)
 
 
@@ -81,15 +80,14 @@ def test_a_rule_that_contradicts_itself_is_refused_when_read(tmp_path: Path) -> 
         assert "leaves no answer, whatever is given" in refusal(tmp_path, rules)
 
 
-def test_a_search_that_is_cut_off_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "MAX_CONFLICTS", 50)
+def test_a_search_that_is_cut_off_is_refused(tmp_path: Path) -> None:
     birds = "bird(1..9). hole(1..8). :- sits(B,H), sits(C,H), B < C. "
     for rules in (
         "1 { sits(B,H) : hole(H) } 1 :- bird(B).",  # there is no answer, but that is hard to prove
         "{ sits(B,H) : hole(H) } 1 :- bird(B). :~ bird(B), not sits(B,_). [1,B]",  # the best one is hard to prove
     ):
         assert "rules0.lp:1:1-1: error: the search for the best answer of these rules was cut off" in refusal(
-            tmp_path, birds + rules
+            tmp_path, birds + rules, limits=RuleLimits(conflicts=50)
         )
 
 
@@ -201,12 +199,15 @@ def test_an_error_of_a_rule_during_a_query_has_its_place(tmp_path: Path) -> None
     assert f"{paths[0]}:2:1-1: error: a number beyond 32 bits" in str(caught.value)
 
 
-def test_a_runaway_rule_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(user_rules, "MAX_RULE_SECONDS", 0.5)
-    before = time.monotonic()
-    for find in (complaint, refusal):
-        said = find(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000.")
-        assert "rules0.lp:1:1-1: error: these rules were given up" in said
+def test_a_runaway_rule_is_given_up(tmp_path: Path) -> None:
+    limits, before = RuleLimits(seconds=0.5), time.monotonic()
+    endless = written(tmp_path, "n(0). n(X+1) :- n(X), X < 2000000000. kind(a, verge, 8) :- n(1).")
+    for run in (
+        lambda: read_tested_rules(endless, limits),
+        lambda: solve_with_user_rules([KB_ENCODINGS / "interpretation.lp"], endless, FACTS, limits),
+    ):
+        with pytest.raises(BadInputError, match=r"rules0\.lp:1:1-1: error: these rules were given up"):
+            run()
     assert time.monotonic() - before < 20
     assert answered(tmp_path, "kind(a, verge, 8).")  # and the next question is answered
 

@@ -60,17 +60,21 @@ def test_rows_beyond_the_limit_are_announced(
     assert capsys.readouterr().out.endswith("\n... and more than these 10000 rows\n")
 
 
-def test_queries_may_call_the_robot_utak(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    facts = ["node(org).", "offset(org,100,200).", "node(o1)."]
-    monkeypatch.setattr("simulator.run.story.facts_of_line", lambda line: facts)
-    scene = ROOT / "examples" / "go_northeast"
+def test_queries_may_call_the_robot_utak(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "ep.jsonl"
+    main(["run", str(scene), "--log", str(path)])
+    header, waking, *rest = path.read_text().splitlines()
+    line = json.loads(waking)
+    line["belief"]["facts"] = ["node(org).", "offset(org,100,200).", "node(o1)."]
+    path.write_text("\n".join([header, json.dumps(line), *rest]) + "\n")
+    capsys.readouterr()
     for query, said in {
         "offset(utak, E, N)": "E    N\n100  200\n",
         "offset(org, E, N)": "E    N\n100  200\n",
         "node(utak)": "yes\n",
         'X = "utak"': 'X\n"utak"\n',
     }.items():
-        assert main(["query", str(scene), query, "--at", "0"]) == 0
+        assert main(["query", str(path), query, "--at", "0"]) == 0
         assert capsys.readouterr().out == said
 
 
@@ -168,7 +172,7 @@ def expecting(folder: Path, text: str) -> Path:
     return folder
 
 
-def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_test_runs_scenarios(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     expecting(scene, "fails.")
     assert main(["test", str(scene)]) == 0
     assert capsys.readouterr().out == f"ok {scene}: limit in 30 steps: the script has ended\n"
@@ -177,7 +181,7 @@ def test_test_runs_scenarios(scene: Path, monkeypatch: pytest.MonkeyPatch, capsy
     seen = capsys.readouterr()
     assert f"FAILED {good}: not met: within(0); Utak does not believe that the task is done; limit in 30" in seen.out
     assert "1 of 2 passed" in seen.err
-    monkeypatch.setattr(sys.modules["planner.cycle"], "Robot", DoneRobot)
+    scripted_robot.install(DoneRobot)
     assert main(["test", str(good)]) == 0
     assert main(["test", str(scene)]) == 1
     assert "Utak believes that an impossible task is done" in capsys.readouterr().out

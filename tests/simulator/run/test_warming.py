@@ -1,5 +1,6 @@
 """Compilation before the first run: what is compiled, where it is cached, and what is announced."""
 
+import gc
 import os
 import pty
 import subprocess
@@ -11,6 +12,30 @@ import pytest
 from simulator.run import warming
 
 COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
+
+
+class RecordingCompiler(warming.KernelCompiler):
+    """A compiler that notes what it is asked to do, and whose second process does nothing.
+
+    `missing` are the uses that it takes for not compiled yet; None for all that it is asked about.
+    """
+
+    def __init__(self, missing=None, packages=()):
+        super().__init__(packages)
+        self.missing, self.compiled, self.announcements, self.passed_on = missing, [], 0, []
+
+    def uncompiled(self, uses):
+        return list(uses) if self.missing is None else self.missing
+
+    def announce(self):
+        self.announcements += 1
+
+    def compile_for(self, uses):
+        self.compiled.extend(uses)
+
+    def second_process_command(self, uses):
+        self.passed_on.extend(uses)
+        return [sys.executable, "-I", "-c", ""]
 
 
 def test_each_use_works_by_itself() -> None:
@@ -26,79 +51,79 @@ def test_two_processes_share_the_work() -> None:
     assert set(walking) <= set(carrying)
 
 
-def test_the_second_process_compiles_its_uses(monkeypatch) -> None:
-    done = []
-    monkeypatch.setattr(warming, "compile_for", done.extend)
+def test_the_second_process_compiles_its_uses() -> None:
     for halves in warming.PROCESS_SPLIT.values():
-        done.clear()
-        warming.main([use.__name__ for use in halves[1]])
-        assert sorted(done, key=repr) == sorted(halves[1], key=repr)
+        compiler = RecordingCompiler()
+        warming.main([use.__name__ for use in halves[1]], compiler)
+        assert compiler.compiled == list(halves[1])
 
 
 def test_the_first_run_announces_the_compilation(monkeypatch) -> None:
-    announced, done = [], []
-    monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
-    monkeypatch.setattr(warming, "tell", lambda: announced.append(True))
-    monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
-    warming.warm(carrying=False)
-    assert announced
-    assert done == list(warming.PROCESS_SPLIT[False][0])
-    monkeypatch.setattr(warming, "uncompiled", lambda uses: [])
-    warming.warm(carrying=True)
-    assert len(announced) == 1
+    compiler = RecordingCompiler()
+    warming.warm(carrying=False, compiler=compiler)
+    assert compiler.announcements == 1
+    assert (compiler.compiled, compiler.passed_on) == tuple(map(list, warming.PROCESS_SPLIT[False]))
+    compiler = RecordingCompiler(missing=[])
+    warming.warm(carrying=True, compiler=compiler)
+    assert (compiler.announcements, compiler.compiled, compiler.passed_on) == (0, [], [])
+
+
+def test_the_announcement_is_printed_once_in_a_process() -> None:
+    code = "from simulator.run.warming import THIS_INSTALLATION as here; here.announce(); here.announce()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.count("compiling geometry kernels") == 1
+
+
+def test_the_compiler_calls_each_use_and_collects_garbage_again() -> None:
+    called = []
+    warming.THIS_INSTALLATION.compile_for([lambda: called.append(gc.isenabled())])
+    assert called == [False]
+    assert gc.isenabled()
 
 
 def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None:
     (tmp_path / "part").mkdir()
     (tmp_path / "part" / "module.py").write_text("ANSWER = 42\n")
     (tmp_path / "broken.py").write_text("ANSWER =\n")
-    monkeypatch.setattr(warming, "PACKAGES", [tmp_path, tmp_path / "absent"])
-    monkeypatch.setattr(warming, "uncompiled", list)
-    monkeypatch.setattr(warming, "second_process_command", lambda *_: [sys.executable, "-I", "-c", ""])
-    monkeypatch.setattr(warming, "tell", lambda: None)
-    monkeypatch.setattr(warming, "compile_for", lambda _: None)
+    compiler = RecordingCompiler(packages=[tmp_path, tmp_path / "absent"])
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     for no_bytecode, cached in ((False, 0), (True, 1)):
         monkeypatch.setattr(sys, "dont_write_bytecode", no_bytecode)
-        warming.warm(carrying=False)
+        warming.warm(carrying=False, compiler=compiler)
         assert len(list(tmp_path.rglob("module.*.pyc"))) == cached
 
 
 def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
+    assert warming.THIS_INSTALLATION.packages == warming.PACKAGES
     assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
 
 
 def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     uses = list(warming.LONGEST_KERNEL)
-    assert warming.uncompiled(uses) == uses
+    assert warming.THIS_INSTALLATION.uncompiled(uses) == uses
     (tmp_path / "geometry_1234").mkdir()
     (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
-    assert warming.uncompiled(uses) == [warming.carry, warming.sightlines]
+    assert warming.THIS_INSTALLATION.uncompiled(uses) == [warming.carry, warming.sightlines]
     (tmp_path / "geometry_1234" / "astar.haul-20.py311.nbi").touch()
     (tmp_path / "other.function-1.py311.nbi").touch()
-    assert warming.uncompiled([warming.search, warming.carry]) == []
+    assert warming.THIS_INSTALLATION.uncompiled([warming.search, warming.carry]) == []
     assert warming.count_cached_kernels() == 2
 
 
 def test_only_uncompiled_uses_are_compiled(monkeypatch) -> None:
-    done = []
-    monkeypatch.setattr(warming, "tell", lambda: None)
-    monkeypatch.setattr(warming, "compile_for", done.extend)
     monkeypatch.delenv("NUMBA_DISABLE_JIT", raising=False)
     for use, asked in ((warming.carry, (True, "skeleton")), (warming.sightlines, (False, "visibility"))):
-        done.clear()
-        monkeypatch.setattr(warming, "uncompiled", lambda uses, use=use: [use])
-        warming.warm(*asked)
-        assert done == [use]
+        compiler = RecordingCompiler(missing=[use])
+        warming.warm(*asked, compiler)
+        assert (compiler.compiled, compiler.passed_on) == ([use], [])
 
 
 CODE = """
 import numpy as np
 from geometry.kernels import jit
-jit.PATIENCE, jit.OFTEN = 0.0, 0.0
+jit.PROGRESS.notice_delay, jit.PROGRESS.interval = 0.0, 0.0
 from geometry.homotopy.funnel import measure_line
 measure_line(np.zeros((2, 2)), 2)
 print(*jit.kernel_status())
