@@ -43,9 +43,9 @@ MAX_SIDE = 32766  # squares: with its frame a column of them can be counted in 1
 class Screen:
     """Free space on a grid of squares.
 
-    Points are (x, y) in squares, x to the east and y to the north; the square in column i and row j has its centre at
-    (i + 0.5, j + 0.5). A point passes between squares that share an edge. It may touch the corners of blocked squares,
-    but never passes between two blocked squares that touch at a corner.
+    Points are (x, y) in squares, x to the east and y to the north, from the south-west corner; the square in column i
+    and row j has its centre at (i + 0.5, j + 0.5). A point passes between squares that share an edge. It may touch the
+    corners of blocked squares, but never passes between two blocked squares that touch at a corner.
 
     Parameters
     ----------
@@ -95,7 +95,8 @@ class Screen:
         Parameters
         ----------
         rows, columns : (n,) array of int
-            Row and column of each square. Of a square named more than once the last value counts.
+            Row (0 in the south) and column of each square, whole numbers. Of a square named more than once the last
+            value counts.
         values : (n,) array of bool, or bool
             True where the square becomes free, False where it becomes blocked; one value for all squares or one for
             each.
@@ -131,12 +132,12 @@ class Screen:
 
     @property
     def free(self) -> Bools:
-        """The free squares: a new (rows, columns) array of bool, True where a point may be."""
+        """The free squares: a new (rows, columns) array of bool, True where a point may be; row 0 in the south."""
         return self._square[1:-1, 1:-1] > 0
 
     @cached_property
     def clearance(self) -> NDArray[np.float64]:
-        """The clearance of each square: (rows, columns) float64, in squares.
+        """The clearance of each square: (rows, columns) float64, in squares, row 0 in the south.
 
         The Euclidean distance from the centre of the square to the nearest point of a square that is not free,
         everything outside included; 0 on squares that are not free. Exact but for the rounding of one square root.
@@ -151,7 +152,7 @@ class Screen:
 
     @cached_property
     def skeleton(self) -> Bools:
-        """The skeleton of the free squares: (rows, columns) bool.
+        """The skeleton of the free squares: (rows, columns) bool, True on its squares, row 0 in the south.
 
         Thin, with as many edge-connected components and as many holes as the free squares. It follows the ridges of
         the clearance from each of its saddles up to the maxima.
@@ -167,7 +168,8 @@ class Screen:
         Nodes are the junctions and ends of the skeleton, numbered from 0, with the attributes ``x``, ``y`` and
         ``clearance``. Edges are the chains between them, with ``length`` (of the polyline through their squares),
         ``clearance`` (the least on the chain) and ``points`` ((k, 2) float64, from one end to the other); the key of an
-        edge is its number. All in squares. ``pathgraph_arrays`` gives the same, sooner, without networkx.
+        edge is its number. All in squares, in the frame of the screen: x to the east, y to the north, (0, 0) at the
+        south-west corner. ``pathgraph_arrays`` gives the same, sooner, without networkx.
 
         Examples
         --------
@@ -191,7 +193,8 @@ class Screen:
         Returns
         -------
         networkx.MultiGraph
-            As ``pathgraph``, of the squares whose clearance is at least the radius; empty when there are none. A new
+            As ``pathgraph`` (nodes with ``x``, ``y``, ``clearance``, edges with ``length``, ``clearance``, ``points``,
+            all in squares), of the squares whose clearance is at least the radius; empty when there are none. A new
             graph at each call.
 
         Raises
@@ -205,7 +208,11 @@ class Screen:
 
     @cached_property
     def pathgraph_arrays(self) -> PathgraphArrays:
-        """The pathgraph as arrays of nodes, edges, points and adjacency, all read-only (see ``PathgraphArrays``)."""
+        """The pathgraph as arrays of nodes, edges, points and adjacency (see ``PathgraphArrays``).
+
+        Read-only, in squares, in the frame of the screen: x to the east, y to the north, (0, 0) at the south-west
+        corner.
+        """
         return self.pathgraph_arrays_for(0.0)
 
     def pathgraph_arrays_for(self, radius: float) -> PathgraphArrays:
@@ -219,7 +226,9 @@ class Screen:
         Returns
         -------
         PathgraphArrays
-            Of the squares whose clearance is at least the radius: new, read-only arrays.
+            Of the squares whose clearance is at least the radius: new, read-only arrays, of no rows when there is no
+            such square. Coordinates, lengths and clearances are in squares; the clearances are those of a point, from
+            which the radius is not taken off.
 
         Raises
         ------
@@ -232,7 +241,10 @@ class Screen:
         return arrays
 
     def _new_arrays(self, radius: float) -> PathgraphArrays:
-        """Return the pathgraph of a body in new, writable arrays."""
+        """Return the pathgraph of a body of that radius (squares; 0 for a point) in new, writable arrays.
+
+        Raises ValueError when the radius is negative or no finite number.
+        """
         state, _, bones = self._skeleton_at(least_squared_clearance(radius))
         return build_pathgraph_arrays(self._square, state, bones)
 
@@ -252,7 +264,7 @@ class Screen:
         Parameters
         ----------
         start : (x, y)
-            Where every route begins, in squares.
+            Where every route begins, in squares from the south-west corner of the screen.
         goal : (x, y), or (rows, columns) array of bool, or set of (column, row)
             Where every route ends. Of an array or a set the centre of any free square will do: each route ends where
             that makes it shortest, and routes whose ends can be moved into each other within the set are one.
@@ -267,13 +279,14 @@ class Screen:
             Passages through which routes must not lead: there are routes exactly between squares of one part of
             ``parts(avoid)``.
         word : sequence of int, optional
-            A signature. Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count.
-            Only for a point as goal.
+            A signature: the signed crossing numbers of a route of this screen and radius, in order (see ``Route``).
+            Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count. Only for a
+            point as goal; with an array or a set it is ignored.
 
         Returns
         -------
         list of Route
-            Empty when there is no route.
+            Empty when there is no route. Points, lengths and clearances are in squares.
 
         Raises
         ------
@@ -312,20 +325,20 @@ class Screen:
         return [] if symbols is None else [questions.of_word(begin, end, symbols)]
 
     def shortest(self, start: Point, goal: Point) -> Route | None:
-        """Return the shortest route of all, at any angle.
+        """Return the shortest route of all for a point, at any angle.
 
         Found exactly, without the pathgraph (Polyanya: Cui, Harabor and Grastien 2017).
 
         Parameters
         ----------
         start, goal : (x, y)
-            Its ends, in squares.
+            Its ends, in squares from the south-west corner of the screen.
 
         Returns
         -------
         Route or None
-            None when there is no route. The ``clearance`` of the route is nan and its ``chains`` are empty;
-            ``tighten`` finds both.
+            None when there is no route. Its points and length are in squares. The ``clearance`` of the route is nan and
+            its ``chains`` are empty; ``tighten`` finds both.
 
         Raises
         ------
@@ -341,18 +354,20 @@ class Screen:
         Parameters
         ----------
         start : (x, y)
-            Where every loop begins and ends, in squares.
+            Where every loop begins and ends, in squares from the south-west corner of the screen.
         around : (rows, columns) array of bool
-            The blocked squares of one object. There are no loops when it is part of the outer wall.
+            True on the blocked squares of one object. There are no loops when it is part of the outer wall.
         k : int
             How many loops at most, no two of one class.
         radius : float
-            Radius of a round body, in squares, as for ``routes``.
+            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            clearance is at least the radius. 0 for a point.
 
         Returns
         -------
         list of Route
-            Empty when there is no loop.
+            Empty when there is no loop, or no room for the body at the start. The first and the last point are the
+            start.
 
         Raises
         ------
@@ -380,14 +395,15 @@ class Screen:
         return questions.loops(begin, mask, k) if questions.admits(begin) else []
 
     def tighten(self, route: Route, radius: float = 0.0) -> Route:
-        """Return the shortest route of the same class, between the same ends.
+        """Return the shortest route of the same class (all that can be deformed into it), between the same ends.
 
         Parameters
         ----------
         route : Route
-            Any polyline over free space; only its ``points`` count.
+            Any polyline over free space; only its ``points`` count, (x, y) in squares in the frame of this screen.
         radius : float
-            Radius of a round body, in squares, as for ``routes``.
+            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            clearance is at least the radius. 0 for a point.
 
         Returns
         -------
@@ -397,7 +413,8 @@ class Screen:
         Raises
         ------
         ValueError
-            When the route leaves free space, or the radius is negative or not finite.
+            When the route leaves free space (of a body: the squares whose clearance is at least the radius), or the
+            radius is negative or not finite.
         """
         questions = self._ask(radius)
         word = word_of_line(questions.layer.runs, route.points.tolist())
@@ -405,19 +422,20 @@ class Screen:
         return questions.of_word(start, goal, word)
 
     def passages(self, pinch: float = DOOR_RATIO) -> list[Passage]:
-        """Return the necks of free space, ordered by place.
+        """Return the necks of free space, ordered by place: by row from the south, then by column from the west.
 
         A neck is a straight line from wall to wall that is shorter than all near it (see necks.py).
 
         Parameters
         ----------
         pinch : float
-            Only necks on both sides of which the floor is at least so many times as wide. The default is the
-            definition of a door.
+            Only necks on both sides of which the floor is at least so many times as wide; more than 1. The default, 2,
+            is the definition of a door.
 
         Returns
         -------
         list of Passage
+            All measures and places in squares, in the frame of the screen; empty when there is none.
         """
         return find_passages(self._walls, pinch)
 
@@ -427,41 +445,51 @@ class Screen:
         Parameters
         ----------
         passage : Passage
-            One of ``passages()``.
+            One of ``passages()`` since the last change of the screen.
         spare : float
-            How much longer than the width of the passage a line from wall to wall may be, in squares.
+            How much longer than the width of the passage a line from wall to wall may be, in squares; 0 or more.
 
         Returns
         -------
         set of (column, row)
             Squares of which a part lies between two such lines, as far as these follow each other without a gap from
-            the passage on.
+            the passage on; empty when no second line is near. Row 0 is in the south.
         """
         return narrow_squares(self._walls, passage, spare)
 
     @cached_property
     def _walls(self) -> Walls:
-        """The triangulated floor between the corners of its walls."""
+        """The triangulated floor between the corners of its walls, found when it is first asked for (see walls.py)."""
         return find_walls(self.free)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
         """Return the parts of the floor when it is cut along the mouths of passages.
 
+        A mouth is the straight line from wall to wall where a passage opens to one side.
+
         Parameters
         ----------
         passages : iterable of Passage
+            Mostly some of ``passages()``; without any, parts are the components by shared edges.
 
         Returns
         -------
         (rows, columns) array of int32
             The number of the part of each square, from 1 in the order of the parts' first squares (row by row from the
             south). 0 on blocked squares, on squares whose centre lies on a mouth, and on the floor between the two
-            mouths of a passage.
+            mouths of a passage with all that can be reached from there alone.
         """
         return find_parts(self.free, passages)
 
     def _checked(self, point: Point, name: str) -> tuple[float, float]:
-        """Return a point as two floats; raise ValueError, with its ``name``, when it does not lie in a free square."""
+        """Return a point as two floats; raise ValueError when it is no (x, y) in a free square of the screen.
+
+        Parameters
+        ----------
+        point : (x, y) in squares from the south-west corner. A point on a border between squares lies in the one to the
+            north and east, so that the north and the east edge of the screen count as blocked.
+        name : what the message calls it.
+        """
         try:
             x, y = map(float, point)
         except (TypeError, ValueError):
@@ -473,18 +501,40 @@ class Screen:
         return x, y
 
     def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
-        """Take memory for squared clearances of that type of integers."""
+        """Take memory for squared clearances of that type of integers, and for the states of the skeleton.
+
+        Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word, both with arbitrary values.
+        ``_tenant`` keeps them from being used again as long as the screen lives.
+        """
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
 
     def _survey(self, grid: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph."""
+        """Measure all clearances of free squares; return the skeleton (twice: by cells, by words) and its graph.
+
+        Fills ``_square`` and ``_words``.
+
+        Parameters
+        ----------
+        grid : (rows, columns) bool, the free squares.
+
+        Returns
+        -------
+        The states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the nodes and
+        chains by cells, which are flat indices into the padded screen.
+        """
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
         return state, words, contract(self._square, state, words)
 
     def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Return the same as ``_survey`` with some squares changed, all measured anew."""
+        """Return the skeleton (by cells, by words) and its graph with some squares changed, all measured anew.
+
+        Parameters
+        ----------
+        rows, columns : (n,) int32, the squares that change, without padding.
+        values : (n,) bool, True where the square becomes free.
+        """
         grid = self.free
         grid[rows, columns] = values
         kind = smallest_distance_type(grid)
@@ -493,7 +543,12 @@ class Screen:
         return self._survey(grid)
 
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
-        """Return the skeleton and graph of the squares whose squared clearance (half squares) is at least ``level``."""
+        """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
+
+        ``level`` is in half squares squared, from 1 (all free squares, as for a point) on: the higher, the larger the
+        body and the less floor. Returned are the states by cells and by words of eight, and the nodes and chains, as by
+        ``_survey``.
+        """
         found = self._skeletons.get(level)
         if found is None:
             state, words = new_state(self._square.shape)
@@ -502,7 +557,10 @@ class Screen:
         return found
 
     def _chains_at(self, level: int) -> Chains:
-        """Return the same graph with the cells of its chains."""
+        """Return the graph of that level with the cells of its chains (flat indices, padded); keep it.
+
+        ``level`` is the least squared clearance, in half squares, of a square where the body may be.
+        """
         found = self._chains.get(level)
         if found is None:
             state, _, bones = self._skeleton_at(level)
@@ -510,7 +568,10 @@ class Screen:
         return found
 
     def _ask(self, radius: float) -> LayerQueries:
-        """Return the object that answers questions for a body of that radius (squares)."""
+        """Return the object that answers questions for a body of that radius (squares; 0 for a point); keep it.
+
+        Raises ValueError when the radius is negative or no finite number.
+        """
         found = self._questions.get(radius)
         if found is None:
             key = least_squared_clearance(radius), radius > 0.0
@@ -522,7 +583,11 @@ class Screen:
 
 
 def checked_grid(free: ArrayLike) -> Bools:
-    """Return the free squares as an array of bool; raise ValueError when they are none."""
+    """Return the free squares as a (rows, columns) array of bool; raise ValueError when they are none.
+
+    That is when ``free`` has not two dimensions, is not of bool, has more than 32766 squares a side or no free square.
+    An array of bool is returned itself, not a copy.
+    """
     grid = np.asarray(free)
     if grid.ndim != 2:
         raise ValueError(f"free must have two dimensions (rows, columns), not {grid.ndim}")
@@ -536,7 +601,7 @@ def checked_grid(free: ArrayLike) -> Bools:
 
 
 def check_count(k: int) -> None:
-    """Raise ValueError unless k is a positive whole number."""
+    """Raise ValueError unless k is a positive whole number (of Python or numpy); return nothing."""
     if not isinstance(k, Integral) or k < 1:
         raise ValueError(f"k must be a whole number and at least 1, but is {k!r}")
 
@@ -544,7 +609,23 @@ def check_count(k: int) -> None:
 def checked_squares(
     rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
 ) -> tuple[Ints, Ints, Bools]:
-    """Return rows, columns and values as arrays of one length, each square once (the last value counts)."""
+    """Return rows, columns and values as arrays of one length, each square once (the last value counts).
+
+    Parameters
+    ----------
+    rows, columns : n whole numbers each, or one number: the squares, row 0 in the south.
+    values : n bools, or one for all squares: True where the square becomes free.
+    shape : numbers of rows and columns of the screen.
+
+    Returns
+    -------
+    (m,) int32, (m,) int32, (m,) bool; m is 0 when nothing is given.
+
+    Raises
+    ------
+    ValueError
+        When a square lies outside, or the lengths or types do not match.
+    """
     i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
     value = np.asarray(values)
     if len(i) == len(j) == value.size == 0:

@@ -14,10 +14,12 @@ DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "
 class Move:
     """The command to walk straight. Nothing happens while an object is held.
 
+    The robot stops early where something blocks its way.
+
     Attributes
     ----------
     east, north : float
-        The way, in squares, robot frame.
+        The way from where the robot stands, in squares, robot frame; negative for west and south.
     """
 
     east: float
@@ -28,6 +30,8 @@ class Move:
 class Grasp:
     """The command to take the movable object, if any, that covers the adjacent square in a direction.
 
+    Nothing happens where no movable object covers that square, or while another object is held.
+
     Attributes
     ----------
     direction : str
@@ -37,6 +41,7 @@ class Grasp:
     direction: str
 
     def __post_init__(self) -> None:
+        """Raise ValueError unless the direction is one of DIRECTIONS."""
         if self.direction not in DIRECTIONS:
             raise ValueError(f"no such direction: {self.direction!r}; one of {', '.join(DIRECTIONS)} is meant")
 
@@ -45,10 +50,12 @@ class Grasp:
 class Push:
     """The command to walk straight together with the held object. Nothing happens with empty hands.
 
+    Both stop early where something blocks either.
+
     Attributes
     ----------
     east, north : float
-        The way, in squares, robot frame.
+        The way from where the robot stands, in squares, robot frame; negative for west and south.
     """
 
     east: float
@@ -57,7 +64,7 @@ class Push:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """The command to rotate the held object about the robot.
+    """The command to rotate the held object about the robot, which stays where it is. Nothing happens with empty hands.
 
     Attributes
     ----------
@@ -70,7 +77,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """The command to let go of the held object."""
+    """The command to let go of the held object. Nothing happens with empty hands."""
 
 
 Command = Move | Grasp | Push | Turn | Release
@@ -83,9 +90,12 @@ class Impression:
     Attributes
     ----------
     retina : tuple of int
-        160 gray levels, 0 to 7: fovea, middle and outer zone, each from its north row to its south row, west to east.
+        160 gray levels of fields (squares of 1, 2 or 4 squares a side about the robot, in the robot frame), from 0 for
+        all free to 7 for all occupied. First the fields of the fovea, then those of the middle and of the outer zone;
+        each zone row by row from its north row to its south row, each row from west to east.
     touch : tuple of str or None
-        The colours of the 8 adjacent squares in the order of DIRECTIONS; None for floor.
+        The colours of the 8 adjacent squares, in the order of DIRECTIONS (clockwise from north, robot frame): one
+        lower-case letter each, None for floor.
     """
 
     retina: tuple[int, ...]
@@ -93,10 +103,10 @@ class Impression:
 
 
 class Body(Protocol):
-    """The only way from the mind to the world."""
+    """The only way from the mind to the world: what moves the robot, and senses for it, has these two methods."""
 
     def wake(self) -> Impression:
-        """Return the first impression."""
+        """Return the first impression, at the point where the robot woke: the origin of the robot frame."""
 
     def act(self, command: Command) -> Impression:
         """Carry out one command as far as the world allows, and return the impression at its end.
@@ -104,10 +114,11 @@ class Body(Protocol):
         Parameters
         ----------
         command : Command
-            The command.
+            A Move, Grasp, Push, Turn or Release; lengths in squares, angles in degrees, directions in the robot frame.
 
         Returns
         -------
         Impression
-            It does not say whether the command succeeded: that must be seen.
+            What the robot senses when it has come to a halt. It does not say whether the command succeeded: that must
+            be seen.
         """

@@ -43,14 +43,16 @@ class Knowledge:
     Parameters
     ----------
     rules : tuple of Path
-        The user's own encodings, solved together with each of kb/asp.
+        Files with the user's own encodings, solved together with each of kb/asp; () for none.
 
     Attributes
     ----------
     tracker : Tracker
         The localisation tracker: frame, place, track, map and objects that were held.
+    rules : tuple of Path
+        As given.
     objects : tuple of Node
-        The objects of the newest world model, by number.
+        The objects of the newest world model, by the number in their names; () before the first impression.
     """
 
     def __init__(self, rules: tuple[Path, ...] = ()) -> None:
@@ -64,7 +66,7 @@ class Knowledge:
 
     @property
     def memory(self) -> TrackerState:
-        """Return what the localisation tracker believes now."""
+        """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects."""
         return self.tracker.state
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
@@ -78,9 +80,10 @@ class Knowledge:
         Returns
         -------
         model : WorldModel
-            The default model, an empty floor about the robot, changed as the impression says.
+            What is believed after it: an empty floor about the robot by default, changed as the impression says.
         accommodated : Accommodation
-            How the impression was explained.
+            How the impression was explained: the chosen explanation, and the status (predicted, explained or noise) of
+            each of its 160 fields.
 
         Raises
         ------
@@ -104,7 +107,8 @@ class Knowledge:
         model : WorldModel
             The new world model. When localisation failed with empty hands, the map is forgotten and a new one begun.
         accommodated : Accommodation
-            What happened, as the impression is explained.
+            The chosen explanation of what happened (such as predicted, blocked or slipped), and the status (predicted,
+            explained or noise) of each of the 160 fields. Its kind is `lost` when the map was forgotten.
 
         Raises
         ------
@@ -121,17 +125,27 @@ class Knowledge:
     def begin_anew(self, impression: Impression, lost: bool = False) -> tuple[WorldModel, Accommodation]:
         """Forget all but the track, and begin a new map with the newest impression.
 
+        The map, the objects that were held and the names of patches are forgotten; the places where impressions were
+        received are kept, in the robot frame.
+
         Parameters
         ----------
         impression : Impression
             The newest impression.
         lost : bool
-            Whether this is because localisation failed.
+            Whether this is because localisation failed: the explanation is then of the kind `lost`, else `anew`.
 
         Returns
         -------
-        model, accommodated
-            As for `wake`.
+        model : WorldModel
+            The new world model.
+        accommodated : Accommodation
+            How the impression was explained, and the status of each of its 160 fields.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
         """
         self.tracker = self.tracker.anew()
         self._names.forget()
@@ -140,7 +154,11 @@ class Knowledge:
         return self._update(impression, woken)
 
     def _grasp(self, direction: str) -> None:
-        """Believe that an object is in hand, if one of known outline is, or is felt, on the adjacent square."""
+        """Believe that an object is in hand, if one of known outline is, or is felt, on the adjacent square.
+
+        `direction` is one of the eight DIRECTIONS of the robot frame. Changes the tracker alone; an object that was
+        held before is preferred. Nothing happens when no such object is there, or while another one is in hand.
+        """
         memory = self.memory
         there = within_reach(self.objects, self._touches, memory.frame, memory.occupancy, memory.square, direction)
         node = min(there, key=lambda n: n.name not in memory.held_objects, default=None)
@@ -148,7 +166,11 @@ class Knowledge:
             self.tracker.grasp(grasped(node))
 
     def _update(self, impression: Impression, accommodated: Accommodation) -> tuple[WorldModel, Accommodation]:
-        """Return the world model after an impression that localisation has taken in already."""
+        """Return the world model after an impression that localisation has taken in already.
+
+        `accommodated`, how localisation explained it, is returned as given. Changes the touches, the names of objects,
+        the completions, the tracker's held objects and `objects`.
+        """
         if accommodated.explanation.remaps:  # all squares are those of another frame now
             self._touches.forget_squares()
             self._completions = NO_COMPLETION_SUMMARY
@@ -159,13 +181,17 @@ class Knowledge:
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
-        """Take in the touches of an impression."""
+        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover."""
         memory = self.memory
         held = {square for load in memory.held_objects.values() for square in load.possible.squares()}
         self._touches.feel(impression.touch, memory.frame, memory.square, held)
 
     def _map(self) -> MapView:
-        """Return the map view: counts solved, and probabilities of open squares from completions drawn anew."""
+        """Return the map view: counts solved, and probabilities of open squares from completions drawn anew.
+
+        A completion is a sampled map that agrees with all counts of the impressions. The new ones are kept for the next
+        call, and by the tracker.
+        """
         memory = self.memory
         counted = memory.occupancy.view(memory.track[: len(memory.been)])
         self._completions = summarise_completions(counted, self._completions)
@@ -177,7 +203,11 @@ class Knowledge:
         )
 
     def _regions(self, view: MapView) -> MapRegions:
-        """Return the regions of the map and what each of them is, as seen and as felt."""
+        """Return the regions of the map and what each of them is, as seen and as felt.
+
+        Squares that are occupied with a probability above MAX_FREE_PROBABILITY form occupied regions, all other seen
+        squares free ones.
+        """
         occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
         felt = self._touches.colours
@@ -188,7 +218,7 @@ class Knowledge:
     def _world(
         self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
     ) -> WorldModel:
-        """Return the world model without objects."""
+        """Return the world model without objects, from the tracker, the touches, the map view and its regions."""
         memory = self.memory
         return WorldModel(
             memory.frame,
@@ -214,7 +244,11 @@ class Knowledge:
         )
 
     def _with_objects(self, model: WorldModel) -> WorldModel:
-        """Return a world model with its objects: those seen on the map, and those that were held."""
+        """Return a world model with its objects: those seen on the map, and those that were held.
+
+        Those that were held are laid upon the map as regions of their own. Also keeps all objects in `objects`, by
+        number, and gives the tracker those of held objects whose shape had to be measured anew.
+        """
         held = self.memory.held_objects
         objects = seen_objects(
             model, lambda patches: self._names.assign(patches, held), self._measurer, self._touches, self.rules

@@ -19,7 +19,7 @@ class Act:
 
     Attributes
     ----------
-    command : what the body shall do.
+    command : what the body shall do, in the robot's own frame.
     why : the reason, in words.
     unplanned_push : the same push in squares, map frame, when no plan asks for it; None for commands of a plan. The
         plan executor must be told when such a command is given (PlanExecutor.depart).
@@ -36,7 +36,7 @@ class Go:
 
     Attributes
     ----------
-    square : one flat index into the view's arrays.
+    square : one flat index (row * columns + column) into the view's arrays, (1,).
     place : the point (x, y) at which to halt, in squares, map frame.
     why : the reason, in words.
     """
@@ -52,18 +52,20 @@ class See:
 
     Attributes
     ----------
-    viewpoint : the squares from which they can be seen, and the reason.
+    viewpoint : the squares from which they can be seen (flat indices on the arrays of the view), and the reason.
     """
 
     viewpoint: Viewpoint
 
 
 def command_of(motion: Motion, model: WorldModel) -> Command:
-    """Return the command for a motion of the held object.
+    """Return the command for a motion of the held object: a Turn for a Rotate, else a Push.
+
+    A turn is in degrees, counter-clockwise positive; a push in squares (east, north), in the robot's own frame.
 
     Parameters
     ----------
-    motion : a push or a turn, in squares and degrees, map frame.
+    motion : a push (dx, dy) in squares along the axes of the map frame, or a turn in degrees.
     model : what is believed; its frame tells the robot's own directions.
     """
     if isinstance(motion, Rotate):
@@ -72,12 +74,12 @@ def command_of(motion: Motion, model: WorldModel) -> Command:
 
 
 def unplanned_act(push: Translate, why: str, model: WorldModel) -> Act:
-    """Return the act of a push that no plan asks for.
+    """Return the act of a push that no plan asks for; its `unplanned_push` is that push.
 
     Parameters
     ----------
-    push : in squares, map frame.
+    push : (dx, dy) in squares along the axes of the map frame.
     why : the reason, in words.
-    model : what is believed.
+    model : what is believed; its frame tells the robot's own directions.
     """
     return Act(command_of(push, model), why, push)

@@ -23,7 +23,7 @@ class Options:
     Attributes
     ----------
     paths : the path-finder: skeleton, visibility or grid.
-    kb_files : the user's own encodings.
+    kb_files : paths of the user's own encodings; none by default.
     max_steps : the number of commands after which the robot gives up.
     pull : whether a held object may be pulled; False when it may only be pushed.
     """
@@ -41,7 +41,7 @@ class StepReport(NamedTuple):
     ----------
     command : the command that was given; None on waking.
     impression : what the body returned after it.
-    belief : what is believed since, ready for JSON.
+    belief : what is believed since, ready for JSON, as `kb.world.facts.belief` returns it.
     why : the reason of the command, in words.
     """
 
@@ -71,9 +71,11 @@ class Robot:
 
     Attributes
     ----------
-    knowledge : what the robot knows; model : what it believes now. Only this class changes the two.
+    body : what senses and acts.
+    options : how the robot works.
+    knowledge : what the robot knows; model : what it believes now, set on waking. Only this class changes the two.
     decider : what chooses the commands.
-    decision : what is done next.
+    decision : what is done next, set on waking.
     finished, verdict : whether and how the task ended.
     steps : how many commands were given.
     """
@@ -85,7 +87,7 @@ class Robot:
         ----------
         body : what senses and acts.
         task : the goals and what is said of their parameters.
-        options : how the robot works; the defaults if None.
+        options : how the robot works; the defaults of Options if None.
         decider : what chooses the commands; a new Decider of this task if None. It belongs to this robot from now on.
         """
         self.body = body
@@ -106,6 +108,11 @@ class Robot:
         -------
         StepReport
             The first impression and what is believed after it; its command is None.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
         """
         impression = self.body.wake()  # (2)
         self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
@@ -125,6 +132,8 @@ class Robot:
         ------
         ValueError
             When the task has ended.
+        BadInputError
+            The user's encodings are wrong.
         """
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
@@ -142,11 +151,20 @@ class Robot:
         return self._report(command, impression, accommodated, why)
 
     def _decide(self) -> None:
-        """Choose the next command, or the verdict."""
+        """Set `decision` to the next command, or the verdict, for what is believed now."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
     def _restart(self, impression: Impression) -> Accommodation | None:
-        """Forget all beliefs and begin anew from an impression; release a held object first and return None then."""
+        """Forget all beliefs and begin anew from an impression; a held object is released first.
+
+        Changes `model`, `decision` and what the robot knows. While an object is held, only `decision` changes, to its
+        release: the restart follows after that.
+
+        Returns
+        -------
+        Accommodation or None
+            How the impression is explained in the new map; None when a held object must be released first.
+        """
         held = self.model.held
         if held is not None:
             why = f"{held} is released, because the robot forgets its map and begins anew; {self.decision.why}"
@@ -160,13 +178,24 @@ class Robot:
     def _report(
         self, command: Command | None, impression: Impression, accommodated: Accommodation, why: str
     ) -> StepReport:
-        """Return the report of one turn of the cycle."""
+        """Return the report of one turn of the cycle.
+
+        Parameters
+        ----------
+        command : the command that was given; None on waking.
+        impression : what the body returned after it.
+        accommodated : how the impression was explained.
+        why : the reason of the command, in words.
+        """
         places = Places(self.decider.rooms, self.decider.corners)
         believed = belief(self.model, places, accommodated, self.decider.bound)
         return StepReport(command, impression, believed, why)
 
     def _test(self) -> None:
-        """Finish when the task is done, when it cannot be done, or when the limit of commands is reached (step 8)."""
+        """Finish when the task is done, when it cannot be done, or when the limit of commands is reached (step 8).
+
+        Sets `verdict` and `finished` then; else nothing changes.
+        """
         decision = self.decision
         if decision.command is None:
             assert decision.verdict is not None

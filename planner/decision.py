@@ -29,12 +29,13 @@ class Decision:
 
     Attributes
     ----------
-    command : what the body does next; None when the task has ended.
+    command : what the body does next, in the robot's own frame; None when the task has ended.
     why : the reason of the command or of the verdict, in words.
     verdict : how the task ended; None while it goes on.
     unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
         none.
-    near : the place (x, y) that the verdict is about, in squares, view frame; None for no such place.
+    near : the place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x =
+        column, y = row); None for no such place.
     """
 
     command: Command | None

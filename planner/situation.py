@@ -22,16 +22,19 @@ from planner.stages import constraints
 class Situation:
     """All that the meaning of a goal depends on.
 
+    The view frame is that of the arrays of the model's view: the map frame moved so that (0, 0) is the south-west
+    corner of square [0, 0].
+
     Attributes
     ----------
     model : the world model.
-    cost_maps : the world model projected on the screen.
+    cost_maps : the world model projected on the screen, an array of squares.
     binding : the name of the node that each parameter of the task means.
-    rooms : the rooms and doors of the floor; whatever is taken for verge bounds them.
-    corners : the corner of the known floor towards each side ("northeast", ...).
+    rooms : the rooms and doors of the floor, view frame; whatever is taken for verge bounds them.
+    corners : the corner of the known floor towards each side ("northeast", ...) of the robot frame, view frame.
     task : the task, with its constraints.
     rules : the user's rule files, read by every encoding.
-    track : where the robot has been, points of the map frame, in squares.
+    track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
     """
 
     model: WorldModel
@@ -45,7 +48,10 @@ class Situation:
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:
-        """The rooms that follow when everything that may be an object is one, and does not bound a room."""
+        """The rooms that follow when everything that may be an object is one, and does not bound a room.
+
+        These are `rooms` when all verge is sure to be wall.
+        """
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
@@ -53,7 +59,7 @@ class Situation:
     def along_with(self, patch: Patch) -> "Situation":
         """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way.
 
-        patch : the squares that the object covers now.
+        patch : the squares that the object covers now, map frame; they count as free.
         """
         return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch)))
 
@@ -66,12 +72,13 @@ class Situation:
         Parameters
         ----------
         place : XY
-            A point of the map frame, in squares.
+            A point (x, y) of the map frame, in squares.
 
         Returns
         -------
         tuple[Bools, tuple[Viewpoint, ...]]
-            (rows, columns); and viewpoints, none when the answer is reliable or no room is next.
+            (rows, columns) bool on the arrays of the view, all False when no room is next; and viewpoints, none when
+            the answer is reliable or no room is next.
         """
         mask = self.next_to(place, self.rooms, MIN_DOOR_CONFIDENCE)
         both = mask & self.next_to(place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
@@ -80,9 +87,20 @@ class Situation:
         return mask, doubtful_wall_ends(self)
 
     def likely_next_rooms(self, place: XY) -> tuple[Rooms, Bools]:
-        """Compute the squares of the rooms that likely share a door with the room of a point of the map frame.
+        """Compute the squares of the rooms that likely share a door with the room of a point.
 
-        Returns the partition into rooms that was used, and (rows, columns).
+        The rooms as believed come first; where they show none, the rooms by sure walls alone.
+
+        Parameters
+        ----------
+        place : XY
+            A point (x, y) of the map frame, in squares.
+
+        Returns
+        -------
+        tuple[Rooms, Bools]
+            The partition into rooms that was used, and (rows, columns) bool on the arrays of the view; all False for
+            none.
         """
         for rooms in (self.rooms, self.rooms_by_sure_walls):
             mask = self.next_to(place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
@@ -93,19 +111,19 @@ class Situation:
     def forbidden(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that the constraints of the task forbid to the robot or to an object.
 
-        Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept
-        from one sure door that it has not gone through. While no such door is known, it is kept from all possible
-        doors, however unlikely: going through a forbidden one could not be undone.
+        Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept from
+        one sure door that it has not gone through. While no such door is known, it is kept from all possible doors,
+        however unlikely: going through a forbidden one could not be undone.
 
         Parameters
         ----------
         actor : str
-            "utak", or the name of a node.
+            "utak" for the robot, or the name of a node.
 
         Returns
         -------
         tuple[Door, ...]
-            Empty when no constraint is about `actor`.
+            View frame; empty when no constraint is about `actor`, or no such door is known.
         """
         meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
         if actor not in meant:
@@ -116,15 +134,21 @@ class Situation:
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
-        """The sure doors that the robot has not gone through."""
+        """The sure doors that the robot has not gone through, by its track; view frame."""
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
         return tuple(door for door in self.rooms.sure if not went_through(track, door))
 
     def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
-        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns).
+        """Compute the squares of the rooms that share a door with the room of a point.
 
-        place : a point of the map frame. least : the least confidence of a door that counts, in percent.
+        (rows, columns) bool on the arrays of the view; all False when there is no such room.
+
+        Parameters
+        ----------
+        place : a point (x, y) of the map frame, in squares.
+        rooms : the partition into rooms that is used.
+        least : the least confidence of a door that counts, in percent.
         """
         row, column = self.model.view.locate(*place)
         return rooms.beyond(int(rooms.labels[row, column]), least)
@@ -133,7 +157,8 @@ class Situation:
 def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls.
 
-    If one of them is an object, rooms end elsewhere.
+    If one of them is an object, rooms end elsewhere. One Viewpoint for each region of such squares that can be seen
+    better from reachable floor; () for none.
     """
     model = situation.model
     pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)

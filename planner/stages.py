@@ -21,7 +21,7 @@ class Stage:
 
     Attributes
     ----------
-    goals : the goals, at least one.
+    goals : the goals, at least one; the first argument of each is "utak" for the robot, or the parameter of an object.
     followed : whether another stage comes after it.
     """
 
@@ -30,20 +30,24 @@ class Stage:
 
     @property
     def own(self) -> tuple[Fact, ...]:
-        """The goals for the robot itself."""
+        """The goals for the robot itself, in order; () for none."""
         return tuple(goal for goal in self.goals if str(goal.args[0]) == "utak")
 
     @property
     def carried(self) -> tuple[Fact, ...]:
-        """The goals for objects, which the robot must carry."""
+        """The goals for objects, which the robot must carry, in order; () for none."""
         return tuple(goal for goal in self.goals if str(goal.args[0]) != "utak")
 
     @property
     def goes_on(self) -> bool:
-        """Whether the robot has more to do when all objects are where they shall be."""
+        """Whether the robot has more to do when all objects of the stage are where they shall be.
+
+        It has when another stage follows, or when the stage has goals for the robot itself.
+        """
         return self.followed or len(self.own) > 0
 
     def __str__(self) -> str:
+        """Return the goals as text, joined by "and"."""
         return " and ".join(str(goal) for goal in self.goals)
 
 
@@ -57,7 +61,8 @@ def stages(task: Task) -> tuple[Stage, ...]:
     Returns
     -------
     tuple[Stage, ...]
-        Without the constraints, such as not_through(utak, d).
+        Goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). Empty
+        for a task of constraints alone.
     """
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
@@ -70,19 +75,22 @@ def stages(task: Task) -> tuple[Stage, ...]:
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:
-    """Return the constraints of a task, such as not_through(utak, d)."""
+    """Return the constraints of a task, such as not_through(utak, d), in order; () for none."""
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
 def _inner(fact: Fact) -> Fact:
-    """Return the goal within first(...) or then(...), or the fact itself."""
+    """Return the goal within first(...) or then(...); any other fact itself."""
     inner = fact.args[0] if fact.name in ("first", "then") else fact
     assert isinstance(inner, Symbol)
     return inner
 
 
 def _ordered(goals: list[Fact]) -> list[Stage]:
-    """Order the goals of one step: each goal of the track alone, then the others together."""
+    """Order the goals of one step: each goal of the track in a stage alone, then the others together in one stage.
+
+    Returns [] for no goals.
+    """
     of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]
     of_place = tuple(goal for goal in goals if goal.name not in TRACK_GOALS)
     return of_track + ([Stage(of_place)] if of_place else [])

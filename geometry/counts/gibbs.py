@@ -1,9 +1,14 @@
 """Gibbs sampling of rasters that agree with counts: samples of a map of which only counts under fields are known.
 
-A raster costs EDGE_COST for each edge between an occupied and a free square, CORNER_COST for each corner of their
-outline, and COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability
-that falls with their cost: each is changed a little, many times over, and a change is kept with the probability that
-its cost allows.
+A field is a set of squares that the robot sees as one; its count says how many of them are occupied. A raster costs
+EDGE_COST for each edge between an occupied and a free square, CORNER_COST for each corner of their outline, and
+COUNT_ERROR_COST for each square by which a field's count is wrong. Rasters are sampled with a probability that falls
+with their cost: each is changed a little, many times over, and a change is kept with the probability that its cost
+allows.
+
+In the kernels a drawn square (one whose state is sampled) has a number k, from 0 by row and column, and a flat index,
+row * columns + column, in the raster with a frame of one unseen square on each side. Neighbours are numbered as in
+NEIGHBOUR_STEPS; a set of them is a number whose bit n stands for neighbour n.
 
 Source: Geman and Geman (1984), simulated annealing and the Gibbs sampler on an Ising prior. Besides the flip of a
 single square there are two more moves. Two squares of one field are exchanged, which leaves its count as it is. A
@@ -49,13 +54,14 @@ __all__ = ["FREE", "OCCUPIED"]
 
 
 class Counts(NamedTuple):
-    """The counts of occupied squares under n fields.
+    """The counts of occupied squares under n fields; a field is a set of squares that the robot sees as one.
 
     Attributes
     ----------
-    where : (n, m) int32, flat indices of the squares of each field.
+    where : (n, m) int32, flat indices (row * columns + column) of the squares of each field, in the ground without
+        frame.
     weight : (n, m) int16, how often each square counts; 0 is padding.
-    low, high : (n,) int16, the least and the greatest count.
+    low, high : (n,) int16, the least and the greatest count, by weight.
     """
 
     where: NDArray[np.int32]
@@ -64,21 +70,28 @@ class Counts(NamedTuple):
     high: NDArray[np.int16]
 
     def of(self, fields: NDArray[np.int64]) -> "Counts":
-        """Return the counts of some of the fields, by number."""
+        """Return the counts of some of the fields, given by number (index), in the order of these; new arrays.
+
+        A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+        """
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
 
 class _Raster(NamedTuple):
     """A raster with a frame of one unseen square, and the n squares of it that are drawn.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Attributes
     ----------
-    squares : (n,) int64, their flat indices.
-    rank : (size,) int32, which of them a square is; RANK_FIXED or RANK_UNSEEN if none.
-    shown_corners : (n,) int32, as bits, the corners of each square about which all four squares were seen.
-    around : (8,) int64, flat steps to the neighbours.
-    ends, field, share : the fields of square k are field[ends[k]:ends[k + 1]], and how often each counts it.
-    where : (fields, m) int32, flat indices of the squares of each field.
+    squares : (n,) int64, their flat indices in the framed raster, ascending.
+    rank : (size,) int32, by flat index, which of them a square is; RANK_FIXED or RANK_UNSEEN if none.
+    shown_corners : (n,) int32, as bits, the corners of each square about which all four squares were seen: 1
+        north-east, 2 north-west, 4 south-east, 8 south-west.
+    around : (8,) int64, flat steps to the neighbours, in the order of NEIGHBOUR_STEPS.
+    ends, field, share : (n + 1,), (entries,) and (entries,) int32: the fields of square k are field[ends[k]:ends[k +
+        1]], and how often each counts it.
+    where : (fields, m) int32, flat indices of the squares of each field, in the framed raster.
     used : (fields, m) bool, those of them that are drawn.
     limits : (fields, 2) int32, the least and the greatest count.
     """
@@ -98,16 +111,21 @@ class _Raster(NamedTuple):
 def pictures(
     ground: NDArray[np.int8], counts: Counts, first: NDArray[np.int8], sweeps: int, hot: float, seed: int = 20031
 ) -> NDArray[np.int8]:
-    """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied.
+    """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0.
+
+    They agree as well as the sampling brings them; some counts may stay wrong. A field is a set of squares that the
+    robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
-    ground : (rows, columns) int8: FREE, OCCUPIED, DRAWN (to be sampled) or UNSEEN_SQUARE (outside the raster,
-    drawn as 0).
+    ground : (rows, columns) int8, row 0 in the south: FREE, OCCUPIED, DRAWN (to be sampled) or UNSEEN_SQUARE (outside
+        the raster, drawn as 0).
     counts : counts under fields, of squares of the ground.
-    first : (m, rows, columns) int8, the rasters with which the m samples begin.
-    sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE.
-    hot : the inverse temperature of the first sweep.
+    first : (m, rows, columns) int8, 1 where occupied, the rasters with which the m samples begin; read where the ground
+        is DRAWN.
+    sweeps : the number of sweeps over all squares, from the inverse temperature `hot` to FINAL_INVERSE_TEMPERATURE, in
+        equal steps.
+    hot : the inverse temperature of the first sweep, more than 0; the lower, the freer are the first changes.
     seed : from 1 to 2^31 - 2. The same arguments give the same samples.
     """
     framed = np.pad(ground, 1, constant_values=UNSEEN_SQUARE)
@@ -127,11 +145,14 @@ def pictures(
 def costs(
     images: NDArray[np.int8], ground: NDArray[np.int8], counts: Counts, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
-    """Return the cost of each raster, (m,): its edges, its corners, and the squares by which counts are wrong.
+    """Return the cost of each raster, (m,) float64: its edges, its corners, and the squares by which counts are wrong.
+
+    A cost is a negative log probability at the inverse temperature 1, without its constant; the lower the likelier.
+    Edges and corners count only where they touch points about which all four squares were seen.
 
     Parameters
     ----------
-    images : (m, rows, columns) int8, as sampled.
+    images : (m, rows, columns) int8, 1 where occupied, as sampled.
     ground, counts : those with which they were sampled.
     edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
         that goes on straight is what is to be expected.
@@ -149,7 +170,15 @@ def costs(
 
 
 def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
-    """Return the raster of a framed ground."""
+    """Return the squares of a framed ground that are drawn (sampled), with their neighbours and fields, as arrays.
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    framed : (rows + 2, columns + 2) int8: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE; the frame is UNSEEN_SQUARE.
+    counts : counts under fields, with flat indices in the ground without frame.
+    """
     columns = framed.shape[1]
     row, column = np.divmod(counts.where, columns - 2)
     where = (row + 1) * columns + column + 1
@@ -177,7 +206,16 @@ def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
 
 
 def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns: int) -> NDArray[np.int32]:
-    """Return as bits, (n,), the corners of each square about which all four squares were seen."""
+    """Return as bits, (n,) int32, the corners of each square about which all four squares were seen.
+
+    The bits are 1 north-east, 2 north-west, 4 south-east, 8 south-west.
+
+    Parameters
+    ----------
+    seen : (size,) bool, flat over the framed raster.
+    squares : (n,) flat indices of the squares, none of them in the frame.
+    columns : columns of the framed raster.
+    """
     shown = np.zeros(len(squares), np.int32)
     for point in range(4):
         corner = squares - point % 2 - point // 2 * columns  # the lower left of the four squares about it
@@ -188,9 +226,10 @@ def _shown_corners(seen: NDArray[np.bool_], squares: NDArray[np.int64], columns:
 
 @cache
 def _flip_costs() -> NDArray[np.float32]:
-    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2), flat.
+    """Return the change of the cost, counts left out, when a square flips: (16, 256, 2) float32, flat.
 
-    The indices are the square's shown corners, its neighbours, and its state before.
+    It is negative where the raster becomes cheaper. The indices are the square's shown corners (bits), its occupied
+    neighbours (bits), and its state before (1 occupied): the flat index is (corners << 9) + (neighbours << 1) + state.
     """
     shown_corners, around, was = np.ogrid[:16, :256, :2]
     change = np.zeros((16, 256, 2))
@@ -208,7 +247,14 @@ def _flip_costs() -> NDArray[np.float32]:
 def _corner_cost(
     square: Bits, horizontal: Bits, vertical: Bits, diagonal: Bits, edge_cost: float = EDGE_COST
 ) -> NDArray[np.float64]:
-    """Return the cost of four squares about a point: half of each edge between two of them, and each corner."""
+    """Return the cost of four squares about a point: half of each edge between two of them, and each corner.
+
+    Parameters
+    ----------
+    square, horizontal, vertical, diagonal : arrays of 0 (free) and 1 (occupied) that broadcast: one of the four
+        squares, its neighbours beside and above or below it, and the one opposite.
+    edge_cost : the cost of an edge.
+    """
     edges = (square ^ horizontal) + (vertical ^ diagonal) + (square ^ vertical) + (horizontal ^ diagonal)
     corners = np.where(edges == 4, 2, (square + horizontal + vertical + diagonal) % 2)
     result: NDArray[np.float64] = edge_cost * edges / 2 + CORNER_COST * corners
@@ -217,16 +263,32 @@ def _corner_cost(
 
 @cache
 def _thresholds() -> NDArray[np.float32]:
-    """Return equally likely thresholds (THRESHOLD_COUNT,): rises of the cost allowed at inverse temperature 1."""
+    """Return equally likely thresholds (THRESHOLD_COUNT,) float32: rises of the cost allowed at inverse temperature 1.
+
+    They are more than 0, in falling order, distributed exponentially with mean 1.
+    """
     return (-np.log((np.arange(THRESHOLD_COUNT) + 0.5) / THRESHOLD_COUNT)).astype(np.float32)
 
 
 @bare
 def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed):  # type: ignore[no-untyped-def]
-    """Change rasters, (m, size) int8, until they are simple and agree with the counts.
+    """Change rasters, in place, until they are simple and agree with the counts.
 
-    `neighbours` (m, n) int32 is filled with the neighbours of each drawn square, as bits. `counts` (m, fields) int32
-    are those of the rasters. `flipped` (2 MAX_MOVED_LENGTH + 2,) int32 is scratch.
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
+    flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
+    thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
+    images : (m, size) int8, 1 where occupied, flat framed rasters; changed at drawn squares.
+    neighbours : (m, n) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
+    counts : (m, fields) int32, the count of occupied squares of each raster under each field, by weight; kept up to
+        date.
+    flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
+    inverse_temperatures : (sweeps,) float32, one for each sweep over all drawn squares.
+    seed : from 1 to 2^31 - 2; raster j begins with (j + 1) times this random number.
     """
     for number in range(images.shape[0]):
         random = seed * (number + 1) % LEHMER_MODULUS
@@ -245,7 +307,23 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
 
 @bare
 def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random):  # type: ignore[no-untyped-def]
-    """Change one raster, square by square, in one sweep for each inverse temperature."""
+    """Change one raster, in place, square by square, in one sweep for each inverse temperature.
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
+    flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
+    thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
+    image : (size,) int8, 1 where occupied, the flat framed raster; changed at drawn squares.
+    neighbours : (n,) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
+    counts : (fields,) int32, the count of occupied squares under each field, by weight; kept up to date.
+    flipped : (2 MAX_MOVED_LENGTH + 2,) int32, scratch.
+    inverse_temperatures : (sweeps,) float32, one for each sweep over all drawn squares.
+    random : the first random number, from 1 to LEHMER_MODULUS - 1.
+    """
     squares, rank, shown_corners, around, ends, field, share, where, used, limits = raster
     count_error = 0
     for f in range(limits.shape[0]):
@@ -301,7 +379,17 @@ def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, i
 
 @bare
 def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other):  # type: ignore[no-untyped-def]
-    """Return the change of the cost, counts left out, when two squares flip."""
+    """Return the change of the cost, counts left out, when two squares flip; nothing is changed.
+
+    Parameters
+    ----------
+    squares, shown_corners, around : attributes of `_Raster`: flat indices of the drawn squares; the corners of each
+        about which all was seen, as bits; flat steps to the eight neighbours.
+    flip_costs : (8192,) float32, as of `_flip_costs`.
+    image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits (bit n for
+        neighbour n of NEIGHBOUR_STEPS).
+    k, other : numbers of the two drawn squares.
+    """
     other_neighbours = neighbours[other]  # once k is changed
     for n in range(8):
         other_neighbours ^= (squares[k] + around[n] == squares[other]) << (7 - n)
@@ -313,7 +401,20 @@ def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbo
 def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number):  # type: ignore[no-untyped-def]
     """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold.
 
-    Returns by how many squares more the counts are wrong then; `count_error` is by how many they were wrong before.
+    Return by how many squares more the counts are wrong then (negative: fewer); 0 when the squares are left as they
+    were. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
+    flip_costs : (8192,) float32, as of `_flip_costs`.
+    image : (size,) the flat framed raster, 1 where occupied; changed when the squares flip, as are the next two.
+    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS).
+    counts : (fields,) the count of occupied squares under each field.
+    count_error : by how many squares the counts are wrong before, all fields together.
+    threshold : the rise of the cost that is allowed.
+    flipped : numbers of drawn squares.
+    number : how many of them flip; with 0 nothing changes.
     """
     squares, rank, shown_corners, around, ends, field, share, _, _, limits = raster
     cost, worse = 0.0, 0
@@ -339,8 +440,18 @@ def try_flips(raster, flip_costs, image, neighbours, counts, count_error, thresh
 def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type: ignore[no-untyped-def]
     """List the squares that flip when the edge on one side of square k is moved beyond it; return how many they are.
 
-    The random number decides whether the whole edge moves or a piece, with the outline opposite or without. Squares lie
-    on one edge as long as they are drawn, have the state of square k, and the squares across have the other state.
+    The random number decides which side, whether the whole edge moves or a piece, with the outline opposite or without.
+    Squares lie on one edge as long as they are drawn, have the state of square k, and the squares across have the other
+    state. Return 0 when there is no edge on that side.
+
+    Parameters
+    ----------
+    squares, rank, around : attributes of `_Raster`: flat indices of the drawn squares; the number of each drawn square,
+        by flat index; flat steps to the eight neighbours.
+    image : (size,) the flat framed raster, 1 where occupied.
+    k : the number of the square, among those that are drawn (sampled).
+    random : a random number; its lowest 11 bits are used.
+    flipped : written from index 0 on: numbers of drawn squares, k first.
     """
     side, here = random & 3, squares[k]
     across, along, look = around[ACROSS[side]], around[ALONG_EDGE[side]], image[here]
@@ -372,7 +483,17 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type
 
 @bare
 def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-def]
-    """Flip a square in the raster and in its neighbours' bits, but not in the counts."""
+    """Flip a square in the raster and in its neighbours' bits, but not in the counts.
+
+    Parameters
+    ----------
+    square : its flat index in the framed raster.
+    rank, around : attributes of `_Raster`: the number of each drawn square, by flat index; flat steps to the eight
+        neighbours.
+    image : (size,) the flat framed raster, 1 where occupied; changed at the square.
+    neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS);
+        changed for drawn squares about it.
+    """
     image[square] = 1 - image[square]
     for n in range(8):
         other = rank[square + around[n]]
@@ -382,7 +503,19 @@ def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-de
 
 @bare
 def count_error_change(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
-    """Return by how many squares more the counts are wrong when square k is counted once more, or once less."""
+    """Return by how many squares more the counts are wrong when a square is counted once more, or once less.
+
+    It is negative where they are wrong by fewer. A field is a set of squares that the robot sees as one; its count is
+    that of its occupied squares.
+
+    Parameters
+    ----------
+    k : the number of the square, among those that are drawn (sampled).
+    more : 1 when it becomes occupied, -1 when it becomes free.
+    ends, field, share, limits : attributes of `_Raster`: the fields of each drawn square and how often each counts it,
+        and the least and greatest count of each field.
+    counts : (fields,) the count of occupied squares under each field; not changed.
+    """
     worse = 0
     for i in range(ends[k], ends[k + 1]):
         f = field[i]
@@ -395,6 +528,16 @@ def count_error_change(k, more, ends, field, share, limits, counts):  # type: ig
 
 @bare
 def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
-    """Count square k once more, or once less."""
+    """Count a square once more, or once less, under each of its fields: as often as the field samples it.
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    k : the number of the square, among those that are drawn (sampled).
+    more : 1 when it becomes occupied, -1 when it becomes free.
+    ends, field, share : attributes of `_Raster`: the fields of each drawn square, and how often each counts it.
+    counts : (fields,) the count of occupied squares under each field; changed.
+    """
     for i in range(ends[k], ends[k + 1]):
         counts[field[i]] += share[i] * more

@@ -13,15 +13,18 @@ from geometry.kernels.jit import compiled
 
 
 class Blobs(NamedTuple):
-    """The edge-connected occupied parts of a raster.
+    """The n edge-connected occupied parts of a raster.
 
     Attributes
     ----------
-    labels : (rows, columns) int32, 0 for none, k for the part at [k - 1] of the other arrays.
-    area : (n,) in squares.
-    outward : (n,) number of sides of its squares beyond which nothing was seen.
-    spread : (n,) sum of its principal moments, divided by the square of the area (a square has 1/6, a disc 1/2 pi).
-    lengthy : (n,) the difference of the principal moments, divided by their sum (0: as wide as long).
+    labels : (rows, columns) int32, 0 for none, k for the part at [k - 1] of the other arrays; numbered by first square,
+        row by row from row 0.
+    area : (n,) int64, in squares.
+    outward : (n,) int64, number of sides of its squares beyond which nothing was seen.
+    spread : (n,) float64, sum of its principal moments (the second moments of its area, of squares with sides), divided
+        by the square of the area; no unit (a square has 1/6, a disc 1 / (2 pi)).
+    lengthy : (n,) float64, the difference of the principal moments, divided by their sum; no unit (0: as wide as long,
+        near 1: a line).
     """
 
     labels: NDArray[np.int32]
@@ -32,12 +35,13 @@ class Blobs(NamedTuple):
 
 
 def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
-    """Return the edge-connected occupied parts of one raster.
+    """Return the edge-connected occupied parts of one raster; without any, arrays of length 0.
 
     Parameters
     ----------
     image : (rows, columns) int8, 1 where a square is occupied.
-    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`; only UNSEEN_SQUARE matters.
+    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`: what is known of each square; only
+        UNSEEN_SQUARE matters. Squares beyond the array count as unseen.
 
     Examples
     --------
@@ -62,6 +66,17 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
 
 @compiled
 def _label_parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
+    """Write the number of each square's edge-connected occupied part, sum up the parts, and return how many there are.
+
+    Parameters
+    ----------
+    image : (rows, columns) int8, 1 where a square is occupied.
+    ground : (rows, columns) int8, UNSEEN_SQUARE where nothing was seen.
+    labels : (rows, columns) int32, 0 at first, written: the number of each square's part, from 1; 0 for none.
+    sums : (parts + 1 or more, 7) float64, 0 at first, written at row k for part k: its number of squares, the sums over
+        them of column x, row y, x * x, y * y and x * y (whole numbers, in squares), and its sides beyond which nothing
+        was seen.
+    """
     rows, columns = image.shape
     stack = np.empty((rows * columns, 2), np.int64)
     number = 0

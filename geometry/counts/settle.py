@@ -1,10 +1,12 @@
 """Squares that counts of overlapping fields settle: those that must be occupied, and those that cannot be.
 
-These are kernels over the arrays of kb.mapping.occupancy. `state` (squares,) int8 is OPEN, FREE or OCCUPIED, and
-`settled_by` (squares,) int16 is the number of the impression that settled a square; both are flat. A field is a row of
-`where` (n, m) int32, flat squares, each of them once, with its `weight` (n, m) int16, 0 for padding, and the least and
-the greatest count, `low` and `high` (n,) int16. `fresh` (n,) bool marks the fields that are not yet compared with all
-others since they came in, or since one of their squares was settled.
+A field is a set of squares that the robot sees as one; its count says how many of them are occupied, each as often as
+the field samples it (its weight there). These are kernels over the arrays of kb.mapping.occupancy. `state` (squares,)
+int8 is OPEN, FREE or OCCUPIED, and `settled_by` (squares,) int16 is the number of the impression that settled a square;
+both are flat, index row * columns + column in the map's array. A field is a row of `where` (n, m) int32, flat squares,
+each of them once, with its `weight` (n, m) int16, 0 for padding, and the least and the greatest count, `low` and `high`
+(n,) int16. `fresh` (n,) bool marks the fields that are not yet compared with all others since they came in, or since
+one of their squares was settled.
 
 # Strategy: every rule looks at all fields with what is settled so far, then all that it found is settled at once; so
 the order of the fields does not matter. Fields that share squares are found by lists of the fields on every square. Two
@@ -30,15 +32,20 @@ def remaining_counts(
 ) -> tuple[NDArray[np.bool_], Longs, Longs, Longs]:
     """Return what remains of every field once settled squares are taken out.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
-    state, where, weight, low, high : states of squares, and fields (see the module's description).
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
 
     Returns
     -------
     open : (n, m) bool, the entries on squares that are not settled.
     weight : (n,) int64, the sum of their weights.
-    low, high : (n,) int64, the least and the greatest count left for them.
+    low, high : (n,) int64, the least (0 or more) and the greatest count left for them. The greatest is below the least,
+        or negative, where the field contradicts what is settled.
     """
     fields, entries = where.shape
     open_ = np.zeros((fields, entries), np.bool_)
@@ -64,10 +71,14 @@ def misfits(
 ) -> int:
     """Return how many fields cannot have their counts if all that is settled is right; mark them in `wrong`.
 
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
     Parameters
     ----------
-    state, where, weight, low, high : states of squares, and fields (see the module's description).
-    wrong : (n,) bool, filled.
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
+    wrong : (n,) bool, written.
     """
     found = 0
     for i in range(where.shape[0]):
@@ -94,13 +105,18 @@ def settle(
     fresh: NDArray[np.bool_],
     impression: int,
 ) -> None:
-    """Settle in place all squares that the counts settle.
+    """Settle in place all squares that the counts settle, by single fields and by pairs of fields.
+
+    At most MAX_ROUNDS rounds are made. Where fields contradict each other some verdict is settled, without an error. A
+    field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
-    state, settled_by : states of squares, and what settled them; changed.
-    where, weight, low, high : the fields (see the module's description).
-    fresh : (n,) bool, the fields not compared yet; all False afterwards.
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are OPEN.
+    settled_by : (squares,) int16, the number of the impression that settled a square; changed for these squares.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
+    fresh : (n,) bool, the fields not compared yet; all False afterwards, unless the rounds ran out.
     impression : the number of the present impression, written to `settled_by`.
     """
     verdicts, newly_settled = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
@@ -135,8 +151,18 @@ def _settle_by_single_fields(
     """Settle squares by single fields, and return whether any was settled.
 
     A field that can take no more occupied squares leaves its other squares free. A field that needs all its open
-    squares fills them. `verdicts` (n * m,) is scratch; squares that are settled are marked in `newly_settled`,
-    (squares,).
+    squares fills them. If two fields contradict each other, the square becomes OCCUPIED. A field is a set of squares
+    that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
+    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
+    verdicts : (n * m,) int8, scratch.
+    newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
+    impression : the number of the present impression, written to `settled_by`.
     """
     fields, entries = where.shape
     found = False
@@ -184,8 +210,19 @@ def _settle_by_pairs(
 ) -> bool:
     """Settle what two fields do not share, from the difference of their counts; return whether any square was settled.
 
-    Only fields whose open squares all count once are compared. No field is fresh afterwards. Squares that are settled
-    are marked in `newly_settled`, (squares,).
+    Only fields whose open squares all count once are compared, and of these pairs in which one is fresh. If pairs
+    contradict each other, the square becomes FREE. A field is a set of squares that the robot sees as one; its count is
+    that of its occupied squares.
+
+    Parameters
+    ----------
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square; changed where squares are settled.
+    settled_by : (squares,) int16, the number of the impression that settled a square; changed there.
+    where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
+    low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
+    fresh : (n,) bool, the fields not compared yet; all False afterwards.
+    newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
+    impression : the number of the present impression, written to `settled_by`.
     """
     fields, entries = where.shape
     open_weight, low_left, high_left = (
@@ -265,7 +302,23 @@ def _settle_by_pairs(
 def _fields_by_square(
     state: SquareStates, where: Ints, weight: Numbers, open_weight: Longs, chosen: NDArray[np.bool_], entries: int
 ) -> tuple[Longs, Longs]:
-    """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]]."""
+    """Return the chosen fields with open squares, by open square: those on square s are on[first[s]:first[s + 1]].
+
+    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+
+    Parameters
+    ----------
+    state : (squares,) int8, by flat square.
+    where, weight : (n, m) flat squares of each field, and how often each counts, 0 for padding.
+    open_weight : (n,) fields where this is 0 are left out.
+    chosen : (n,) bool, which fields to list.
+    entries : how many entries `on` must have room for: the sum of `open_weight`.
+
+    Returns
+    -------
+    first : (squares + 2,) int64, indices into `on`.
+    on : (entries,) int64, numbers of fields.
+    """
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)
     for i in range(where.shape[0]):
         if chosen[i] and open_weight[i] > 0:

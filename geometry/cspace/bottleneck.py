@@ -38,7 +38,7 @@ class Bottleneck:
     Attributes
     ----------
     place : (x, y), its middle.
-    sides : the two points (x, y) of the obstacles that make it.
+    sides : the two points (x, y) of the obstacles that make it, in no order that means anything.
     width : distance between them.
     """
 
@@ -53,9 +53,9 @@ def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats
     Parameters
     ----------
     obstacle_field : the obstacles.
-    goals : (rows, columns) mask of the field's raster: pixels of the goal.
-    reached : (n, 2) places that the body came to, the start first. The search ended at the one from which the path left
-        to the goal costs least.
+    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal.
+    reached : (n, 2) places x, y, squares, table frame, that the body came to, the start first. The search ended at the
+        one from which the path left to the goal costs least.
     radius : of the body, squares. The bottleneck is sought within NECK_SEARCH_RADII radii of there. If the body has
         room to turn all along that stretch it was not stopped there, and the whole path counts.
     """
@@ -76,8 +76,12 @@ def _narrowest_index(clearance: Floats, candidates: Bools) -> int:
     """Return the index of the pixel where a path is narrowest, starting from the pixels in `candidates`.
 
     From their narrowest it goes on along the path as long as the path grows narrower, then to the middle of a stretch
-    of equal clearance: amid a neck of several pixels, not at its mouth. `clearance` : of each pixel of the path, in
-    squares.
+    of equal clearance: amid a neck of several pixels, not at its mouth.
+
+    Parameters
+    ----------
+    clearance : (n,) distance from each pixel of the path to the obstacles, in squares.
+    candidates : (n,) bool, at least one True.
     """
     first = int(np.argmin(np.where(candidates, clearance, np.inf)))
     for ahead in (1, -1):
@@ -92,8 +96,10 @@ class ClearanceField(NamedTuple):
 
     Attributes
     ----------
-    frame, raster : as of an ObstacleField, or finer.
-    goals : (rows, columns) mask: pixels of the goal.
+    frame : (3,) x, y of the raster's lower left corner in the table frame, side of a pixel; squares.
+    raster : (rows, columns) signed distance to the obstacles, squares, negative inside; row 0 in the south. As of an
+        ObstacleField, or finer.
+    goals : (rows, columns) bool: pixels of the goal.
     """
 
     frame: Floats
@@ -101,7 +107,10 @@ class ClearanceField(NamedTuple):
     goals: Bools
 
     def pixels_at(self, places: Floats) -> npt.NDArray[np.intp]:
-        """Return the pixels (n, 2) row, column of places (n, 2) x, y; the nearest pixel for places outside."""
+        """Return the pixels (n, 2) row, column of places (n, 2) x, y; the nearest pixel for places outside.
+
+        Places are in squares, table frame; row 0 is in the south.
+        """
         found = np.floor((places - self.frame[:2]) / self.frame[2]).astype(np.intp)[:, ::-1]
         pixels: npt.NDArray[np.intp] = np.clip(found, 0, np.array(self.raster.shape) - 1)
         return pixels
@@ -112,7 +121,8 @@ def _coarsest_passable_raster(
 ) -> tuple[ClearanceField, float]:
     """Return the coarsest raster with a path from start to goal, and the clearance of the widest path, in squares.
 
-    The field's own raster and 0.0 if there is a path in none.
+    The field's own raster and 0.0 if there is a path in none. `goals` : (rows, columns) bool on the field's own raster.
+    `start` : (2,) x, y in squares, table frame.
     """
     field = ClearanceField(obstacle_field.frame, obstacle_field.raster, goals)
     for times in RASTER_REFINEMENTS:
@@ -129,8 +139,9 @@ def _coarsest_passable_raster(
 def _costs_to_goal(field: ClearanceField, path_clearance: float) -> Floats:
     """Return the cost to the goal from every pixel, by paths nowhere narrower than the widest path from the start is.
 
-    Clearance is cheap, so that paths keep off walls and are narrow only where they must be. They end at goal pixels
-    that are as wide, if there are any: a narrower one beside the bottleneck would be taken for it.
+    (rows, columns) float64 as field.raster; a pixel costs at most 1, one narrower than `path_clearance` (squares)
+    NARROWER_PIXEL_COST. Clearance is cheap, so that paths keep off walls and are narrow only where they must be. They
+    end at goal pixels that are as wide, if there are any: a narrower one beside the bottleneck would be taken for it.
     """
     clearance = np.maximum(field.raster, path_clearance)
     narrower = field.raster < path_clearance - EQUAL_CLEARANCE
@@ -143,7 +154,15 @@ def _costs_to_goal(field: ClearanceField, path_clearance: float) -> Floats:
 
 @compiled
 def _widest_path_clearance(raster: Floats, goals: Bools, row: int, column: int, pixel: float) -> float:
-    """Return the least clearance on the widest path (maximin) from the goal pixels to a pixel; 0.0 without any path."""
+    """Return the least clearance on the widest path (maximin) from the goal pixels to a pixel; 0.0 without any path.
+
+    Parameters
+    ----------
+    raster : (rows, columns) signed distance to the obstacles, squares, row 0 in the south.
+    goals : (rows, columns) bool.
+    row, column : the pixel where the path ends.
+    pixel : side of a pixel, squares.
+    """
     rows, columns = raster.shape
     path_clearance = np.full((rows, columns), -1e9)
     heap = [(0.0, 0, 0)]
@@ -172,7 +191,13 @@ def _widest_path_clearance(raster: Floats, goals: Bools, row: int, column: int, 
 
 
 def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
-    """Return the pixels (n, 2) row, column on the way of steepest descent of `costs` from `start` to the goal."""
+    """Return the pixels (n, 2) row, column on the way of steepest descent of `costs` from `start` to the goal.
+
+    Parameters
+    ----------
+    costs : (rows, columns) cost to the goal, 0 at goal pixels.
+    start : (2,) row, column; the first pixel of the result. The way ends early at a local minimum.
+    """
     row, column = int(start[0]), int(start[1])
     path = [(row, column)]
     while costs[row, column] > 0.0:
@@ -187,7 +212,10 @@ def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]
 
 
 def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) -> Bottleneck | None:
-    """Return the bottleneck about a place: from the nearest point of an obstacle to the nearest on the other side."""
+    """Return the bottleneck about a place: from the nearest point of an obstacle to the nearest on the other side.
+
+    `place` : (x, y) in squares, table frame. None without obstacles on both sides, or if the place is in an obstacle.
+    """
     obstacles = shapely.union_all(obstacle_field.polygons)
     here = np.array(place)
     sides: list[Floats] = []
@@ -210,13 +238,16 @@ def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) ->
 
 
 def _nearest_point(here: Floats, obstacles: Any) -> Floats | None:
-    """Return the point of a geometry that is nearest to a place; None if it is empty."""
+    """Return the point (2,) x, y of a shapely geometry that is nearest to the place `here` (2,); None if empty."""
     line = shapely.shortest_line(shapely.Point(here), obstacles)
     return None if line is None or line.is_empty else np.array(line.coords[1])
 
 
 def _half_plane(here: Floats, ahead: Floats, far: float) -> Any:
-    """Return the half-plane, cut off at the distance `far`, of what lies from `here` in the direction `ahead`."""
+    """Return the half-plane of what lies from `here` in the direction `ahead`, cut off at the distance `far` (squares).
+
+    A shapely Polygon, table frame. `here` and `ahead` are (2,) x, y; the length of `ahead` does not matter.
+    """
     unit = ahead / max(float(np.hypot(*ahead)), 1e-12)
     across = np.array([-unit[1], unit[0]]) * far
     base = here + 1e-6 * unit
@@ -224,15 +255,15 @@ def _half_plane(here: Floats, ahead: Floats, far: float) -> Any:
 
 
 def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach: float) -> Any:
-    """Return the obstacles with the two sides of a bottleneck moved apart.
+    """Return the obstacles (shapely geometry, table frame) with the two sides of a bottleneck moved apart.
 
     Only the connected free space that the bottleneck is in grows: what lies behind a wall would open it from behind.
 
     Parameters
     ----------
-    obstacles : shapely geometry.
+    obstacles : shapely geometry, squares, table frame.
     bottleneck : the place to widen.
-    extra : by how many squares it becomes wider.
+    extra : by how many squares it becomes wider; half of it on each side.
     reach : the sides are moved within this many squares of its middle.
     """
     middle = shapely.Point(bottleneck.place)
@@ -250,12 +281,16 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
 def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> bool:
     """Return whether a body would get through if one bottleneck alone were as wide as the body however it is turned.
 
+    False also if planning stays undecided.
+
     Parameters
     ----------
-    obstacles : shapely geometry.
+    obstacles : shapely geometry, squares, table frame.
     bottleneck : the place to widen.
     radius : of the body, squares.
-    status_with : as for missing_width.
+    status_with : status_with(walls, all_cells) returns the status of a MotionPlan ("found", "impossible" or "limit")
+        for the motion among other obstacles (shapely geometry); all_cells says whether to search with all cells or with
+        few.
     """
     extra, reach = _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
     return _decided_status(widen_bottleneck(obstacles, bottleneck, extra, reach), status_with) == "found"
@@ -264,16 +299,18 @@ def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, sta
 def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> float:
     """Return how much wider a bottleneck must be for a body to pass, in squares, provided that widening it suffices.
 
-    Method: bisection. What is not decided lies within the resolution of the very width that is sought, unless it is
-    hard otherwise: so undecided questions are asked with all cells only above LONG_SEARCH_PRECISION.
+    Method: bisection, to WIDTH_PRECISION. What is not decided lies within the resolution of the very width that is
+    sought, unless it is hard otherwise: so undecided questions are asked with all cells only above
+    LONG_SEARCH_PRECISION.
 
     Parameters
     ----------
-    obstacles : shapely geometry.
+    obstacles : shapely geometry, squares, table frame.
     bottleneck : the place to widen.
     radius : of the body, squares.
-    status_with : returns the status of planning the motion among other obstacles; its second argument says whether with
-        all cells.
+    status_with : status_with(walls, all_cells) returns the status of a MotionPlan ("found", "impossible" or "limit")
+        for the motion among other obstacles (shapely geometry); all_cells says whether to search with all cells or with
+        few.
     """
     low, high, reach = 0.0, _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
     while high - low > WIDTH_PRECISION:
@@ -291,16 +328,19 @@ def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_
 
 
 def _decided_status(walls: Any, status_with: StatusQuery) -> str:
-    """Return the status among other obstacles, asked again with all cells if a few do not decide it."""
+    """Return the status among other obstacles, asked again with all cells if a few do not decide it.
+
+    "found", "impossible" or "limit" (undecided even so). `walls` : shapely geometry. `status_with` : see missing_width.
+    """
     status = status_with(walls, False)
     return status_with(walls, True) if status == "limit" else status
 
 
 def _max_widening(bottleneck: Bottleneck, radius: float) -> float:
-    """Return by how many squares a bottleneck is widened at most."""
+    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares."""
     return max(2.2 * radius - bottleneck.width, 4 * WIDTH_PRECISION)
 
 
 def _window_radius(bottleneck: Bottleneck, radius: float) -> float:
-    """Return within how many squares of a bottleneck its sides are moved."""
+    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares."""
     return bottleneck.width + 2 * radius + _max_widening(bottleneck, radius)

@@ -50,18 +50,22 @@ NODE_NEW, NODE_QUEUED, NODE_SETTLED, NODE_POSTPONED = 0, 1, 2, 3  # states of ce
 class ChannelSearch(NamedTuple):
     """A search among the cells of a tree, kept from one channel to the next.
 
+    A channel is a chain of neighbouring cells from start to goal. A cost of 1 stands for one square of path in large
+    free cells. Arrays of (capacity,) are indexed by the number of a cell.
+
     Attributes
     ----------
-    cost_to_go : (capacity,) estimated cost from a cell to the goal, weighted.
+    cost_to_go : (capacity,) estimated cost from a cell to the goal, times COST_TO_GO_WEIGHT.
     cost : (capacity,) cost of the cheapest path found to a cell.
     paths : the tree of these paths.
     state : (capacity,) NODE_NEW, NODE_QUEUED (on the heap), NODE_SETTLED, or NODE_POSTPONED (a settled cell that may
         hold a goal and is on the heap again).
     seen : (2,) number of cells that have a state; 1 if the last channel ends at a postponed cell, else 0.
-    key, item, size : the heap, see bounded_heap.
-    channel : the cells of the last channel, the start's first.
+    key, item, size : the heap, see bounded_heap: keys, cells, and (number on it, number dropped).
+    channel : (capacity,) the cells of the last channel, the start's first; how many is what find_channel returned.
     unattached : scratch of the repair.
-    distances : (rows, columns) estimated length to the goal from a pixel, squares.
+    distances : (rows, columns) estimated length to the goal from a pixel of the field's raster, squares, row 0 in the
+        south.
     disc_centre : (2,) the point of the body, body frame, that these lengths are for.
     """
 
@@ -82,7 +86,11 @@ class ChannelSearch(NamedTuple):
 def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) -> ChannelSearch:
     """Return a search with memory for a tree of `capacity` cells, nothing seen yet.
 
-    `distances` and `disc_centre` : as in ChannelSearch.
+    Parameters
+    ----------
+    capacity : number of cells.
+    distances : (rows, columns) estimated length to the goal from a pixel of the field's raster, squares.
+    disc_centre : (2,) the point of the body, body frame (its centre at the origin), that these lengths are for.
     """
     channel, unattached = (np.empty(capacity, np.int32) for _ in range(2))
     item = np.empty(8 * capacity, np.int32)
@@ -114,13 +122,15 @@ def find_channel(
 ) -> int:
     """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none.
 
-    The cells are written to search.channel.
+    The cells are written to search.channel, the start's first.
 
     Parameters
     ----------
     tree, body, nearby : the cells, and the body among obstacles.
     region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
-    start, goal : cells; `goal` may be REGION_GOAL.
+    search : the search so far; changed. search.seen[1] becomes 1 if the channel ends at a cell that only may hold a
+        pose in the goal region.
+    start, goal : numbers of leaves; `goal` may be REGION_GOAL.
     through_given_up : whether the channel may run through cells given up. Then search.seen must have been set to 0
         before, which forgets all earlier searches.
     """
@@ -153,10 +163,10 @@ def find_channel(
 
 @bare
 def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: int) -> int:
-    """Return the kind of a cell with respect to the goal region.
+    """Return the kind of a cell with respect to the goal region, whose complement is `region`.
 
     CELL_FREE or CELL_CENTRE_FREE : the pose in its middle is in the region. CELL_UNDECIDED : another pose of it may be.
-    CELL_BLOCKED : none is.
+        CELL_BLOCKED : none is.
     """
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
@@ -166,7 +176,14 @@ def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: i
 
 @bare
 def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: ChannelSearch) -> None:
-    """Cut off what hung on cells that were split or given up; attach it and the new cells again."""
+    """Cut off what hung on cells that were split or given up; attach it and the new cells again. `search` is changed.
+
+    Parameters
+    ----------
+    tree : the cells; its list of changes is emptied.
+    radius : of the body, squares.
+    nearby : only the frame of its raster is used.
+    """
     unattached = 0
     for k in range(tree.changes[0]):
         root = tree.changed[k]
@@ -191,7 +208,10 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
 
 @bare
 def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> None:
-    """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one."""
+    """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one.
+
+    `search` is changed; `radius` of the body in squares.
+    """
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
     link = next_link_to_leaf(child, head, links, cell, -1)
@@ -210,7 +230,11 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
 
 @bare
 def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell: int, through_given_up: bool) -> None:
-    """Put the neighbours of a settled cell on the heap where the path through it is cheaper."""
+    """Put the neighbours of a settled cell on the heap where the path through it is cheaper.
+
+    `search` is changed. `through_given_up` : whether paths may run through cells given up. `radius` of the body in
+        squares.
+    """
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     link = next_link_to_leaf(child, head, links, cell, -1)
     while link >= 0:
@@ -226,7 +250,11 @@ def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell
 
 @bare
 def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
-    """Return the cost of going from the middle of cell a to the middle of cell b."""
+    """Return the cost of going from the middle of cell a to the middle of cell b.
+
+    It is the distance in squares, plus half the radius (squares) times the turn (radians), times the mean price of the
+    two cells. `middle`, `kind`, `box` : as in CellTree.
+    """
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])
     turn = min(turn, 2 * math.pi - turn)
@@ -236,7 +264,15 @@ def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: fl
 
 @bare
 def _cost_to_go(middle: Floats, distances: Floats, disc_centre: Floats, frame: Floats, cell: int) -> float:
-    """Return the estimated cost from the middle of a cell to the goal, weighted."""
+    """Return the estimated cost from the middle of a cell to the goal, times COST_TO_GO_WEIGHT.
+
+    Parameters
+    ----------
+    middle : as in CellTree: (capacity, 3) poses in the middle of cells.
+    distances, disc_centre : as in ChannelSearch: lengths to the goal by pixel, for that point of the body.
+    frame : (3,) x, y of the raster's lower left corner, side of a pixel; squares, table frame. The nearest pixel
+        counts.
+    """
     c, s = math.cos(middle[cell, 2]), math.sin(middle[cell, 2])
     x = middle[cell, 0] + c * disc_centre[0] - s * disc_centre[1]
     y = middle[cell, 1] + s * disc_centre[0] + c * disc_centre[1]
@@ -247,7 +283,10 @@ def _cost_to_go(middle: Floats, distances: Floats, disc_centre: Floats, frame: F
 
 @bare
 def _write_channel(parent: Ints, channel: Ints, cell: int) -> int:
-    """Write the channel that ends at a cell, from its start; return its number of cells."""
+    """Write the channel that ends at a cell to `channel`, from its start on; return its number of cells.
+
+    `parent` : (capacity,) the cell before each cell, -1 before the start.
+    """
     length = 0
     at = cell
     while at >= 0:

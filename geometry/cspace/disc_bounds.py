@@ -22,20 +22,24 @@ MAX_PATH_CORNERS = 400  # corners of the free space up to which paths are sought
 
 
 def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
-    """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more."""
+    """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more.
+
+    Argument and result are shapely geometries, squares, table frame. A negative radius counts as 0.
+    """
     times = 1.0 / math.cos(math.pi / (4 * SIDES_PER_QUARTER)) if outer else 1.0
     return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)
 
 
 def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: Any) -> bool:
-    """Return whether a disc surely cannot get from a place to a goal.
+    """Return whether a disc surely cannot get from a place to a goal; False proves nothing.
 
     Parameters
     ----------
     obstacles : shapely geometry, squares, table frame.
     radius : radius of the disc, squares.
     bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
-    start : (x, y) of its centre. goal : shapely geometry that its centre must reach.
+    start : (x, y) of its centre.
+    goal : shapely geometry that its centre must reach, squares, table frame.
     """
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius - DISC_SHRINKAGE, outer=False))
     own = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
@@ -43,9 +47,16 @@ def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, g
 
 
 def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:
-    """Return the corners of a path for the centre of a disc from `start` to `goal`, or None.
+    """Return the corners of a path for the centre of a disc from `start` to `goal`, both among them, or None.
 
     None proves nothing: grown obstacles are approximated from outside, and long searches are not made.
+
+    Parameters
+    ----------
+    obstacles : shapely geometry, squares, table frame.
+    radius : radius of the disc, squares.
+    bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
+    start, goal : (x, y) of its centre, squares, table frame.
     """
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius, outer=True))
     for part in shapely.get_parts(room):
@@ -55,9 +66,15 @@ def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goa
 
 
 def shortest_path_within(part: Any, start: XY, goal: XY) -> list[XY] | None:
-    """Return the corners of the shortest path within a polygon; None if it has more than MAX_PATH_CORNERS corners.
+    """Return the corners (x, y) of the shortest path within a polygon, from `start` to `goal`, both among them.
 
-    Method: Dijkstra's algorithm on the visibility graph of the corners.
+    None if the polygon has more than MAX_PATH_CORNERS corners, or if no path is found. Method: Dijkstra's algorithm on
+    the visibility graph of the corners.
+
+    Parameters
+    ----------
+    part : shapely Polygon, holes allowed, squares, table frame.
+    start, goal : (x, y) in it.
     """
     corners = sorted({(x, y) for x, y in shapely.get_coordinates(part).tolist()} - {start, goal})
     if len(corners) > MAX_PATH_CORNERS:

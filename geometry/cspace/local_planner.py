@@ -24,8 +24,8 @@ class HopContext(NamedTuple):
     ----------
     body : the body about its centre.
     nearby : obstacle edges by place, and the bounds of the reference point.
-    surface : the boundary that the body must not cross.
-    placed : (m, 7) scratch: the body's edges at a pose.
+    surface : the boundary that the body must not cross, table frame.
+    placed : (m, 7) scratch: the body's edges at a pose, table frame.
     """
 
     body: MovingBody
@@ -35,13 +35,19 @@ class HopContext(NamedTuple):
 
 
 def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
-    """Return a context with scratch memory of its own."""
+    """Return a context with scratch memory of its own.
+
+    Parameters
+    ----------
+    body, nearby, surface : as in HopContext: the body, the obstacle edges by place, the boundary that it must not
+        cross.
+    """
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 
 
 @bare
 def copy_pose(target: Floats, pose: Floats) -> None:
-    """Copy a pose (x, y, angle) into `target`.
+    """Copy a pose (x, y, angle), (3,), into `target`, (3,).
 
     An array assignment would take numba long to compile.
     """
@@ -51,7 +57,14 @@ def copy_pose(target: Floats, pose: Floats) -> None:
 
 @bare
 def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, angle: float) -> None:
-    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7)."""
+    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7), see MovingBody.edges.
+
+    Parameters
+    ----------
+    body_edges : in the body frame.
+    edges : output, in the table frame.
+    x, y, angle : pose of the body's centre, squares, table frame, radians.
+    """
     c, s = math.cos(angle), math.sin(angle)
     for i in range(len(edges)):
         for k in range(0, 6, 2):
@@ -66,7 +79,11 @@ def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, a
 
 @bare
 def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: float, dy: float) -> bool:
-    """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds."""
+    """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds.
+
+    The end alone is checked against the bounds: the start must be within. Pose x, y, angle of the body's centre:
+    squares, table frame, radians. context.placed is overwritten.
+    """
     if not _reference_in_bounds(context.body.reference, context.nearby.bounds, x + dx, y + dy, angle):
         return False
     if abs(dx) + abs(dy) < MIN_MOTION:
@@ -78,7 +95,11 @@ def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: floa
 
 @bare
 def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: float) -> bool:
-    """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds."""
+    """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds.
+
+    Pose x, y, angle of the body's centre: squares, table frame, radians; turns are counter-clockwise positive.
+    context.placed is overwritten.
+    """
     if not _arc_in_bounds(context.body.reference, context.nearby.bounds, x, y, angle, turn):
         return False
     if abs(turn) < MIN_MOTION:
@@ -91,13 +112,17 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
 
 @bare
 def shorter_turn(turn: float) -> float:
-    """Return the angle equal to `turn` radians that is from -pi to pi."""
+    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to pi."""
     return turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
 
 
 @bare
 def hop(context: HopContext, here: Floats, there: Floats) -> int:
-    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST, PUSH_FIRST or BLOCKED."""
+    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST, PUSH_FIRST or BLOCKED.
+
+    It makes one turn about its centre, the shorter way round, and one push, in the order named; TURN_FIRST if both are
+    free. Poses are (3,) x, y of the body's centre in squares, table frame, radians.
+    """
     dx, dy = there[0] - here[0], there[1] - here[1]
     turn = shorter_turn(there[2] - here[2])
     if turn_is_free(context, here[0], here[1], here[2], turn) and push_is_free(
@@ -115,7 +140,10 @@ def hop(context: HopContext, here: Floats, there: Floats) -> int:
 
 @bare
 def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float) -> bool:
-    """Return whether the reference point is within its bounds at a pose."""
+    """Return whether the reference point is within its bounds (x0, y0, x1, y1) at a pose of the body's centre.
+
+    `reference` : (2,) x, y relative to the centre, body frame.
+    """
     c, s = math.cos(angle), math.sin(angle)
     rx, ry = x + c * reference[0] - s * reference[1], y + s * reference[0] + c * reference[1]
     return bool(bounds[0] - 1e-9 <= rx <= bounds[2] + 1e-9 and bounds[1] - 1e-9 <= ry <= bounds[3] + 1e-9)
@@ -123,7 +151,14 @@ def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, 
 
 @bare
 def _arc_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float, turn: float) -> bool:
-    """Return whether the reference point stays within its bounds over a turn: at both ends and the arc's extremes."""
+    """Return whether the reference point stays within its bounds over a turn: at both ends and the arc's extremes.
+
+    Parameters
+    ----------
+    reference : (2,) x, y relative to the centre, body frame.
+    bounds : (4,) x0, y0, x1, y1, squares, table frame.
+    x, y, angle : pose of the centre before the turn. turn : radians, counter-clockwise positive.
+    """
     if not _reference_in_bounds(reference, bounds, x, y, angle):
         return False
     if not _reference_in_bounds(reference, bounds, x, y, angle + turn):

@@ -42,10 +42,11 @@ class MotionQuery:
 
     Attributes
     ----------
-    shape, field, start, goal, points : as in plan_motion.
+    shape, field, start, goal, points : as in plan_motion; `field` are the obstacles prepared.
     radius : radius of the body about its centre, squares.
-    reached : (n, 2) where the centre of the body's largest inscribed disc came to, the start first.
-    goals : (rows, columns) mask of the field's raster: pixels of the goal.
+    reached : (n, 2) x, y in squares, table frame, where the centre of the body's largest inscribed disc came to, the
+        start first.
+    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal.
     """
 
     shape: Any
@@ -59,17 +60,17 @@ class MotionQuery:
 
     @cached_property
     def solid(self) -> Any:
-        """Return all obstacles as one geometry."""
+        """Return all obstacles as one shapely geometry, squares, table frame. Computed at first use."""
         return shapely.union_all(self.field.polygons)
 
     def status_among(self, walls: Any, all_cells: bool) -> str:
-        """Return the status of the same question among other, smaller obstacles.
+        """Return the status of the same question among other, smaller obstacles: "found", "impossible" or "limit".
 
         What was an obstacle becomes part of a goal region that it borders on.
 
         Parameters
         ----------
-        walls : shapely geometry, the obstacles instead.
+        walls : shapely geometry, squares, table frame: the obstacles instead.
         all_cells : whether to search with as many cells as the question itself, rather than with WIDENING_CELLS.
         """
         field, goal = ObstacleField(walls, self.field.bounds.tolist()), self.goal
@@ -87,12 +88,16 @@ class MotionPlan:
     Attributes
     ----------
     status : "found", "impossible" (proved) or "limit" (not decided at the resolution or within the cells allowed).
-    motions : Translate and Rotate from start to goal, each free by exact first contact; () unless found.
-    poses : Pose of the reference point before, between and after the motions; () unless found.
-    cells : number of cells made. rounds : number of channels looked at.
+    motions : Translate and Rotate from start to goal, in order, table frame, each free by exact first contact; ()
+        unless found.
+    poses : Pose of the reference point, table frame, before, between and after the motions (one more than motions); ()
+        unless found.
+    cells : number of cells made.
+    rounds : number of channels (chains of cells from start to goal) looked at.
     resolution : size of the smallest cells, squares.
     reason : "start" or "goal" if impossible because the body overlaps an obstacle or is out of bounds there; else "".
-    track : (n, 3) the path before smoothing: x, y in squares, table frame, radians, of the body's centre.
+    track : (n, 3) the path before smoothing: x, y in squares, table frame, radians, of the body's centre; (0, 3) unless
+        found.
     question : what was asked, for `passage` and `missing`; None unless impossible for another reason than start or
         goal.
     """
@@ -115,7 +120,10 @@ class MotionPlan:
 
     @cached_property
     def opens(self) -> bool:
-        """Return whether widening the passage alone would make the motion possible. Computed at first use."""
+        """Return whether widening the passage alone would make the motion possible. Computed at first use.
+
+        False without a passage.
+        """
         query, bottleneck = self.question, self.passage
         return (
             query is not None
@@ -136,14 +144,14 @@ class MotionPlan:
 
     @cached_property
     def length(self) -> float:
-        """Return the length of the path of the reference point, in squares; nan unless found."""
+        """Return the length of the path of the reference point, in squares, arcs included; nan unless found."""
         if self.status != "found":
             return math.nan
         return sum(_path_length(motion, pose) for motion, pose in zip(self.motions, self.poses, strict=False))
 
 
 def _path_length(motion: Motion, pose: Pose) -> float:
-    """Return how far a motion takes a reference point that is at `pose`, in squares."""
+    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc."""
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
@@ -164,12 +172,13 @@ def plan_motion(
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon whose reference point is the origin, in squares.
+    shape : shapely Polygon or MultiPolygon whose reference point is the origin, in squares, body frame.
     obstacles : any shapely geometry, a list of them, or an ObstacleField prepared for many calls (whose bounds then
         hold). Squares, table frame.
-    start : Pose of the reference point. The body may touch obstacles there.
-    goal : Pose of the reference point, or Inside(polygon).
-    bounds : (x0, y0, x1, y1) of the reference point; None for the bounding box of obstacles, start and goal.
+    start : Pose of the reference point, table frame. The body may touch obstacles there.
+    goal : Pose of the reference point, table frame, or Inside(polygon) for the whole body in a region.
+    bounds : (x0, y0, x1, y1) of the reference point, squares, table frame; None for the bounding box of obstacles,
+        start and goal.
     resolution : cells smaller than this times the bounds' longer side are not split.
     points : (x, y) in the body's own frame that move with it and must not enter obstacles, such as Utak.
     cells : upper bound on the number of cells. If it is more than FIRST_CELLS, what is not decided with FIRST_CELLS
@@ -179,7 +188,7 @@ def plan_motion(
 
     Returns
     -------
-    MotionPlan
+    MotionPlan : its status is "found", "impossible" (proved) or "limit" (not decided).
 
     Raises
     ------
@@ -223,7 +232,10 @@ def plan_motion(
 
 
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
-    """Return the bounds given, or the bounding box of obstacles, start and goal."""
+    """Return the bounds given, or the bounding box of obstacles, start and goal.
+
+    x0, y0, x1, y1 in squares, table frame. The start counts with one square all round it.
+    """
     if bounds is not None:
         return bounds
     geometries = list(obstacles) if isinstance(obstacles, list | tuple) else [obstacles]

@@ -16,9 +16,11 @@ from geometry.motion.cell_clearance import CELL_CENTRE_FREE, CELL_FREE, CELL_GIV
 class HopSequence(NamedTuple):
     """The poses of a path found so far; the hops between them are free.
 
+    A hop is one turn about the body's centre and one push, in either order.
+
     Attributes
     ----------
-    poses : (n, 3) x, y, radians of the body's centre; the first is the start.
+    poses : (n, 3) x, y of the body's centre in squares, table frame, radians; the first is the start.
     used : (1,) number of poses in use.
     goal : (3,) the pose to end at; (0,) if the middle of the channel's last cell will do.
     free_from : (cells,) for each cell another from whose middle the hop to its own middle was found free; -1 for none.
@@ -34,7 +36,10 @@ class HopSequence(NamedTuple):
 
 
 def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
-    """Return a path that begins at the pose `start`, with memory for channels of `cells` cells."""
+    """Return a path that begins at the pose `start`, with memory for channels of `cells` cells.
+
+    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same, or (0,) for a region.
+    """
     hops = HopSequence(
         np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
     )
@@ -53,9 +58,11 @@ def follow_channel(
 
     Parameters
     ----------
-    channel, length : the cells, and how many of them.
+    tree : the cells; changed where cells are split or given up.
+    context : the body among its obstacles.
+    channel, length : (capacity,) numbers of the cells from start to goal, and how many of them are in use.
     split_last : whether the last cell must be split in any case.
-    hops : the path; its poses are overwritten.
+    hops : the path; its poses are overwritten. If 0 is returned they are free from the start to the goal.
     """
     hops.used[0] = 1
     total = length + (1 if len(hops.goal) > 0 else 0)
@@ -90,7 +97,18 @@ def follow_channel(
 def _write_stop(
     middle: Floats, kind: npt.NDArray[np.int8], channel: Ints, length: int, goal: Floats, n: int, there: Floats
 ) -> bool:
-    """Write stop n of a channel, a cell's middle or the goal after the last; return whether the body is free there."""
+    """Write stop n of a channel to `there`; return whether the body is known to be free there.
+
+    A stop is the middle of cell n, or the goal after the last cell.
+
+    Parameters
+    ----------
+    middle, kind : as in CellTree.
+    channel, length : numbers of the cells, and how many of them are in use.
+    goal : (3,) pose to end at; (0,) if there is none after the last cell.
+    n : number of the stop, from 0.
+    there : (3,) output: x, y of the body's centre in squares, table frame, radians.
+    """
     if n == length:
         copy_pose(there, goal)
         return True
@@ -110,7 +128,16 @@ def _hop_to_stop(
     here: Floats,
     there: Floats,
 ) -> bool:
-    """Hop to stop n, directly or by way of the face between two cells, and append it; return whether that is free."""
+    """Hop to stop n, directly or by way of the face between two cells, and append it; return whether that is free.
+
+    Parameters
+    ----------
+    channel, length : numbers of the cells, and how many of them are in use.
+    hops : the path; if the hop is free one or two poses are appended.
+    last : index in the channel of the cell from whose middle the hop leads; -1 for another pose.
+    n : index of the stop: a cell's middle, or the goal after the last cell.
+    here, there : (3,) poses where the hop begins and ends: x, y in squares, table frame, radians.
+    """
     if not _direct_hop_is_free(context, channel, length, hops, last, n, here, there):
         if last < 0 or n >= length or n != last + 1:
             return False
@@ -128,7 +155,11 @@ def _hop_to_stop(
 def _direct_hop_is_free(
     context: HopContext, channel: Ints, length: int, hops: HopSequence, last: int, n: int, here: Floats, there: Floats
 ) -> bool:
-    """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once."""
+    """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once.
+
+    Parameters as for _hop_to_stop: `last` and `n` are indices in `channel`, `here` and `there` the poses.
+    hops.free_from is written.
+    """
     between = last >= 0 and n < length
     if between and hops.free_from[channel[n]] == channel[last]:
         return True
@@ -141,7 +172,10 @@ def _direct_hop_is_free(
 
 @bare
 def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
-    """Write the pose in the middle of the face that two neighbouring cells share."""
+    """Write the pose in the middle of the face that neighbouring cells a and b share to `middle`, (3,).
+
+    x, y in squares, table frame, and radians (below 0 or above 2 pi where the angles wrap).
+    """
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
         size_a = tree.sizes[tree.box[a, 3], k // 2] * unit
@@ -160,7 +194,14 @@ def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
 def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int, n: int, length: int, ends: int) -> int:
     """Split the cell that a failed hop leads into, and the one that it leaves if that is as doubtful and as large.
 
-    Returns the number of cells blamed.
+    Returns the number of cells blamed, at least 1.
+
+    Parameters
+    ----------
+    channel, length : numbers of the cells, and how many of them are in use.
+    last : index in the channel of the cell that the hop leaves; -1 for none.
+    n : index of the stop that it leads to; `length` for the goal after the last cell.
+    ends : number of ends that must be reached: 2 with a goal pose, 1 (the start) with a goal region.
     """
     blamed = 0
     if n < length and tree.kind[channel[n]] != CELL_FREE:
@@ -178,7 +219,14 @@ def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int,
 def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, length: int, ends: int) -> int:
     """Split cell n of a channel, or the one next to it if cell n holds an end to be reached and is too small.
 
-    The body is free at its ends: their cells are never given up. Others come as near to them as they can.
+    Returns 1, the number of cells blamed. The body is free at its ends: in a channel of more than two cells theirs are
+    never given up. Others come as near to them as they can.
+
+    Parameters
+    ----------
+    channel, length : numbers of the cells, and how many of them are in use.
+    n : index in the channel.
+    ends : number of ends that must be reached: 2 with a goal pose, 1 (the start) with a goal region.
     """
     if length > 1 and not is_splittable(tree, channel[n], context.body):
         if n == 0:
@@ -190,7 +238,7 @@ def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, leng
 
 @bare
 def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
-    """Split a leaf, or give it up if it is too small. Return 1: it was changed, now or before."""
+    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before."""
     if tree.child[cell] >= 0 or tree.kind[cell] == CELL_GIVEN_UP:
         return 1
     if is_splittable(tree, cell, context.body):

@@ -22,6 +22,15 @@ def run_rounds(
 ) -> tuple[int, int]:
     """Run the rounds from `round_number`, counted from 1, to `last_round` at most.
 
+    A round finds a channel (a chain of cells from start to goal), follows it and splits the cells to blame.
+
+    Parameters
+    ----------
+    tree, search : the cells and the search among them; changed.
+    context : the body among its obstacles.
+    region : the complement of the goal region, as obstacles; not used for a goal pose.
+    hops : start, goal and path; its poses are overwritten.
+
     Returns
     -------
     The outcome, and the number of the round that it came in. SEARCH_FOUND : the path in `hops` is free.
@@ -47,9 +56,17 @@ def next_channel(
     hops: HopSequence,
     through_given_up: bool,
 ) -> int:
-    """Find the next channel; return its number of cells, 0 if there is none.
+    """Find the next channel; return its number of cells, 0 if there is none or an end is outside the tree of cells.
 
-    `through_given_up` : whether it may run through cells given up.
+    The cells are written to search.channel, the start's first.
+
+    Parameters
+    ----------
+    tree, context : the cells, and the body among its obstacles.
+    region : the complement of the goal region, as obstacles; not used for a goal pose.
+    search : the search among the cells; changed.
+    hops : start and goal are taken from it.
+    through_given_up : whether the channel may run through cells given up.
     """
     start, goal = hops.poses[0], hops.goal
     first = leaf_at(tree, start[0], start[1], start[2])

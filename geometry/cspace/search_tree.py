@@ -13,13 +13,13 @@ from geometry.kernels.jit import bare
 
 
 class SearchTree(NamedTuple):
-    """Parents and children of cells; all arrays are (capacity,), and -1 stands for no cell.
+    """Parents and children of cells; all arrays are (capacity,) int32 by number of cell, and -1 stands for no cell.
 
     Attributes
     ----------
     parent : the cell before a cell on the path to it.
     first_child : one of the cells that have a cell as their parent.
-    next_sibling, previous_sibling : the next and the previous cell with the same parent.
+    next_sibling, previous_sibling : the next and the previous cell with the same parent; undefined without a parent.
     """
 
     parent: Ints
@@ -35,13 +35,13 @@ def new_search_tree(capacity: int) -> SearchTree:
 
 @bare
 def add_cell(paths: SearchTree, cell: int) -> None:
-    """Make a cell known, with neither parent nor children."""
+    """Make a cell known in `paths`, with neither parent nor children."""
     paths.parent[cell] = paths.first_child[cell] = -1
 
 
 @bare
 def set_parent(paths: SearchTree, cell: int, parent: int) -> None:
-    """Let the path to a cell run through another parent."""
+    """Let the path to a cell run through another parent; the cell keeps its children. `paths` is changed."""
     detach(paths, cell)
     first = paths.first_child[parent]
     paths.parent[cell], paths.next_sibling[cell], paths.previous_sibling[cell] = parent, first, -1
@@ -52,7 +52,7 @@ def set_parent(paths: SearchTree, cell: int, parent: int) -> None:
 
 @bare
 def detach(paths: SearchTree, cell: int) -> None:
-    """Take a cell, with all that hangs on it, off its parent, if it has one."""
+    """Take a cell, with all that hangs on it, off its parent, if it has one. `paths` is changed."""
     parent = paths.parent[cell]
     if parent < 0:
         return
@@ -70,7 +70,12 @@ def detach(paths: SearchTree, cell: int) -> None:
 def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
     """Take a cell and all cells that hang on it out of the tree; return the new number of `cells`.
 
-    The cells are written to `cells` from index `count` on, the root first. None of them has a parent or children then.
+    Parameters
+    ----------
+    paths : the tree; changed. None of the cells taken out has a parent or children then.
+    root : the cell.
+    cells : list with room for them; they are written from index `count` on, the root first.
+    count : number of cells that the list has before.
     """
     detach(paths, root)
     cells[count] = root
@@ -99,7 +104,7 @@ def sort_cells(cells: Ints, count: int) -> None:
 
 @bare
 def _sift_down(cells: Ints, at: int, size: int) -> None:
-    """Move the cell at an index down the heap of `size` cells to its place."""
+    """Move the cell at index `at` of `cells` down the max-heap in its first `size` entries to its place; in place."""
     while True:
         child = 2 * at + 1
         if child >= size:

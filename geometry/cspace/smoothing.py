@@ -17,8 +17,9 @@ PULL_ROUNDS = 4  # times that every corner of a path is pulled straight; tuned o
 
 @compiled
 def shorten_path(context: HopContext, poses: Floats) -> Floats:
-    """Return a shorter path from the first to the last of `poses` (n, 3).
+    """Return a shorter path (m, 3) from the first to the last of `poses` (n, 3); every hop of it is free.
 
+    Poses are x, y of the body's centre in squares, table frame, and radians; hops from one to the next must be free.
     Poses are skipped by hops, the corners left are moved to where there is room, then pulled straight several times.
     """
     kept = _skip_poses(context, poses)
@@ -34,7 +35,8 @@ def shorten_path(context: HopContext, poses: Floats) -> Floats:
 def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
     """Return the path with its corners moved to where the body has more clearance: there the longest hops begin.
 
-    Where the hop between two such corners is not free the old ones stay between them.
+    Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame, radians. Where the hop between two such
+    corners is not free the old ones stay between them.
     """
     roomy = poses.copy()
     for n in range(1, len(poses) - 1):
@@ -56,7 +58,10 @@ def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
 
 @bare
 def _move_to_clearance(context: HopContext, pose: Floats) -> None:
-    """Move a pose, in place, to where the body has more clearance: pattern search in place and angle, halving steps."""
+    """Move a pose, in place, to where the body has more clearance: pattern search in place and angle, halving steps.
+
+    `pose` : (3,) x, y of the body's centre in squares, table frame, radians.
+    """
     best, radius = _clearance(context, pose), context.body.radius
     step = min(max(best, 0.02 * radius), 0.5 * radius)
     while step > 1e-4 * radius:
@@ -77,11 +82,14 @@ def _move_to_clearance(context: HopContext, pose: Floats) -> None:
 def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
     """Return a pose near one that touches obstacles, with more clearance and a free hop between the two.
 
-    Where a body touches, no cell is free: a search must begin and end a little away from the wall.
+    A copy of `pose` where it does not touch, or where no such pose is found. Where a body touches, no cell is free: a
+    search must begin and end a little away from the wall.
 
     Parameters
     ----------
-    pose : (3,) x, y, radians.
+    context : the body among its obstacles.
+    pose : (3,) x, y of the body's centre in squares, table frame, radians. The result has the same form and the same
+        angle.
     leaving : whether the hop leads from `pose` to the result; otherwise it leads from the result to `pose`.
     """
     best, found, tried = _clearance(context, pose), pose.copy(), pose.copy()
@@ -106,14 +114,20 @@ def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
 
 @bare
 def _clearance(context: HopContext, pose: Floats) -> float:
-    """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius."""
+    """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius.
+
+    -1.0 if they overlap. `pose` : (3,) x, y of the body's centre in squares, table frame, radians.
+    """
     body, c, s = context.body, math.cos(pose[2]), math.sin(pose[2])
     return min(clearance_at(body, context.nearby, pose[0], pose[1], c, s), 0.3 * body.radius)
 
 
 @compiled
 def _skip_poses(context: HopContext, poses: Floats) -> Floats:
-    """Return a subsequence of `poses`: from each the hop goes as far ahead as doubling and halving finds it free."""
+    """Return a subsequence (m, 3) of `poses` (n, 3), the first and the last among it, with free hops between them.
+
+    From each the hop goes as far ahead as doubling and halving finds it free.
+    """
     kept = np.empty_like(poses)
     copy_pose(kept[0], poses[0])
     count, at, last = 1, 0, len(poses) - 1
@@ -138,7 +152,10 @@ def _skip_poses(context: HopContext, poses: Floats) -> Floats:
 
 @compiled
 def _pull_straight(context: HopContext, poses: Floats) -> None:
-    """Move each pose, in place, towards the straight line between its neighbours as far as the hops stay free."""
+    """Move each of `poses`, in place, towards the straight line between its neighbours as far as the hops stay free.
+
+    (n, 3) x, y of the body's centre in squares, table frame, radians; the first and the last stay.
+    """
     here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
         before, after = poses[n - 1], poses[n + 1]
@@ -161,6 +178,9 @@ def _pull_straight(context: HopContext, poses: Floats) -> None:
 
 def motions_along(context: HopContext, poses: Floats) -> tuple[Motion, ...]:
     """Return the turns and pushes of a path of poses (n, 3), in order, without those of no size.
+
+    Poses are x, y of the body's centre in squares, table frame, and radians. Motions are Rotate about that centre and
+    Translate, table frame.
 
     Raises
     ------

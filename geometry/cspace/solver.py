@@ -41,7 +41,9 @@ class Inside:
 
     @cached_property
     def polygon(self) -> Any:
-        """Return all polygons as one valid shapely geometry; those that touch stay separate parts.
+        """Return all polygons as one valid shapely Polygon or MultiPolygon; those that touch stay separate parts.
+
+        Squares, table frame. Computed at first use.
 
         Raises
         ------
@@ -59,20 +61,25 @@ class MotionSolver:
     ----------
     body : the body, made ready to be moved.
     field : the obstacles.
-    start, goal : poses of the reference point; the goal may be a region.
+    start, goal : poses of the reference point, table frame; the goal may be a region.
     resolution : cells smaller than this times the field's side are not split.
-    cells : number of cells for which there is memory.
+    cells : number of cells (boxes of places and angles) for which there is memory.
 
     Attributes
     ----------
-    start, end : (3,) poses of the body's centre (x, y, radians) between which is searched; (0,) for a region as goal.
+    start, end : (3,) poses of the body's centre (x, y in squares, table frame, radians) between which is searched;
+        `end` is (0,) for a region as goal.
     ends : the same two as the caller gave them. The search may begin and end a little off, where there is more
         clearance.
     min_cell : resolution in squares.
-    rounds : number of rounds so far.
-    track : (n, 3) poses of the path found, before smoothing.
-    goals : (rows, columns) mask of the field's raster: pixels of the goal.
-    goal_region : the polygon of a region as goal, else None.
+    rounds : number of rounds so far; in each one channel (chain of cells from start to goal) is looked at.
+    track : (n, 3) poses of the path found, before smoothing, of the body's centre as `start`; (0, 3) until one is
+        found.
+    goals : (rows, columns) bool: pixels of the field's raster, row 0 in the south, that are the goal.
+    goal_region : the shapely Polygon or MultiPolygon of a region as goal, squares, table frame; else None.
+    nearby : the obstacle edges by place.
+    region : the same for the complement of the goal region; `nearby` for a goal pose.
+    tree : the cells.
 
     Raises
     ------
@@ -99,13 +106,18 @@ class MotionSolver:
 
     @cached_property
     def search(self) -> ChannelSearch:
-        """Return the search among the cells, with its estimates of the length to go."""
+        """Return the search among the cells, with its estimates of the length to go; made at first use, then kept."""
         largest = self.body.probes[0]
         distances = self.field.disc_distances(self.goals, float(largest[2]))
         return new_channel_search(len(self.tree.child), distances, largest[:2].copy())
 
     def _goal(self, goal: Pose | Inside) -> tuple[Floats, NearbyEdges, npt.NDArray[np.bool_]]:
-        """Return the pose to end at ((0,) for a region), the complement of the goal region, and the goal's pixels."""
+        """Return the pose to end at, the complement of the goal region as obstacles, and the goal's pixels.
+
+        The pose is (3,) x, y of the body's centre in squares, table frame, radians; (0,) for a region. For a pose the
+        obstacles themselves stand for the complement. The pixels are a bool mask (rows, columns) of the field's raster,
+        for the centre of the body's largest inscribed disc.
+        """
         if isinstance(goal, Pose):
             end = centre_pose(self.body, goal)
             c, s = math.cos(end[2]), math.sin(end[2])
@@ -117,7 +129,11 @@ class MotionSolver:
         return np.empty(0), region.ground(self.body), goals
 
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
-        """Search and split until there is an answer; return the status of a MotionPlan and its motions."""
+        """Search and split until there is an answer; return the status of a MotionPlan and its motions.
+
+        "found" with the motions in order; "impossible" (proved) or "limit" (cells were given up) with (). Call it once:
+        it changes `start`, `end`, `tree`, `rounds`, and `track` if found.
+        """
         context = self._hop_context()
         direct = np.array([self.start, self.end]) if len(self.end) else None
         if direct is not None and hop(context, *direct) != BLOCKED:
@@ -142,11 +158,14 @@ class MotionSolver:
 
     @property
     def is_small(self) -> bool:
-        """Return whether the body is so few cells across that cells tell little about it."""
+        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it."""
         return 2.0 * self.body.radius < SMALL_BODY_CELLS * self.min_cell
 
     def solve_by_discs(self) -> tuple[str, tuple[Motion, ...]]:
         """Decide, by the discs within and about the body, what the cells left undecided; return status and motions.
+
+        "impossible" and () where the inscribed disc cannot pass; "found" and the motions where the enclosing disc can,
+        with `track` set; else "limit" and ().
 
         Raises
         ------
@@ -172,7 +191,15 @@ class MotionSolver:
         return "limit", ()
 
     def _path_by_disc(self, obstacles: Any, bounds: Floats) -> Floats | None:
-        """Return poses (n, 3) from start to goal where the enclosing disc fits between them; None if none are found."""
+        """Return poses (n, 3) from start to goal where the enclosing disc fits between them; None if none are found.
+
+        x, y of the body's centre in squares, table frame, radians.
+
+        Parameters
+        ----------
+        obstacles : shapely geometry, squares, table frame.
+        bounds : (4,) x0, y0, x1, y1 that the centre of the disc cannot leave; None is returned where they are empty.
+        """
         if bounds[2] <= bounds[0] or bounds[3] <= bounds[1]:
             return None
         start, end = ((float(pose[0]), float(pose[1])) for pose in (self.start, self.end))
@@ -185,11 +212,14 @@ class MotionSolver:
         return None if any(hop(context, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
 
     def _hop_context(self) -> HopContext:
-        """Return the body among the obstacles, for exact first contact."""
+        """Return the body among the obstacles, for exact first contact, with scratch memory of its own."""
         return new_hop_context(self.body, self.nearby, self.field.surface)
 
     def _disc_centre_at(self, pose: Floats) -> tuple[float, float]:
-        """Return where the centre of the largest inscribed disc is at a pose of the body's centre: x, y in squares."""
+        """Return where the centre of the largest inscribed disc is at a pose of the body's centre: x, y in squares.
+
+        Table frame. `pose` : (3,) x, y in squares, radians.
+        """
         x, y, angle = pose.tolist()
         px, py = self.body.probes[0, :2].tolist()
         c, s = math.cos(angle), math.sin(angle)
@@ -198,8 +228,8 @@ class MotionSolver:
     def reached_places(self) -> Floats:
         """Return where the centre of the body's largest inscribed disc got to: (n, 2) x, y in squares, the start first.
 
-        These are the middles of settled cells. A cell whose middle is not free may be anywhere beside a wall and is
-        left out.
+        Table frame. These are the middles of settled cells, in order of their numbers. A cell whose middle is not free
+        may be anywhere beside a wall and is left out.
         """
         known = self.search.seen[0]
         leaf, free = self.tree.child[:known] < 0, self.tree.kind[:known] <= CELL_CENTRE_FREE

@@ -19,19 +19,22 @@ LANDMARK_COUNT = 6  # landmarks of a pathgraph, at most; chosen, no measurement 
 class Landmarks(NamedTuple):
     """Precomputed routing data of a pathgraph with n nodes and m chains.
 
-    An arc is a chain with a direction: its code is twice the chain's number, plus 1 when walked backwards (see
-    astar.py).
+    A chain is a path over the skeleton between two nodes, which are the skeleton's junctions and ends. An arc is a
+    chain with a direction: its code is twice the chain's number, plus 1 when walked backwards, from its last cell to
+    its first (see astar.py). A landmark is a node from which the distances to all others are kept. Integers are int32.
 
     Attributes
     ----------
     symbol : (cells,) for each chain cell, the signed portal between it and the next cell of its chain; 0 within a row.
-    word : (size,) the reduced words of all whole chains, one after the other.
+    word : (size,) the reduced words, from first to last cell (signed portals, negative when crossed southwards), of all
+        whole chains, one after the other.
     spelt : (m + 1,) the index in `word` at which each chain's word starts.
     length : (m,) the length of each chain when pulled tight between its ends, in squares.
-    place : (n, 2) the nodes' centres (x, y), in squares.
-    head : (n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none.
-    arc : (n, 4) the code of that arc.
-    step : (n, 4) the length of that arc, in squares.
+    place : (n, 2) the nodes' centres (x, y), in squares from the screen's south-west corner.
+    head : (n, 4) the node to which the chain leads that leaves a node to the east, north, west, south; -1 for none, and
+        for a chain that leads back to its own node.
+    arc : (n, 4) the code of that arc; 0 for none.
+    step : (n, 4) the length of that arc, in squares; 0 for none.
     sight : (n, landmarks) distances over the pathgraph from the landmarks, in squares; infinite where there is no path.
     """
 
@@ -51,10 +54,10 @@ class Anchor(NamedTuple):
 
     Attributes
     ----------
-    chain : the chain, or -1 at a node without chains.
-    position : the index of the cell on its chain, from 0.
-    node : the node met, or -1 inside a chain.
-    cell : the index of the padded cell.
+    chain : the number of the chain (at a node: of one of its chains), or -1 at a node without chains.
+    position : the index of the cell on its chain, from 0 at the chain's first cell; 0 when there is no chain.
+    node : the number of the node met, or -1 inside a chain.
+    cell : the index of the cell in the flat padded screen, (row + 1) * width + column + 1.
     """
 
     chain: int
@@ -64,11 +67,13 @@ class Anchor(NamedTuple):
 
 
 def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
-    """Return what routing precomputes on a pathgraph.
+    """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) int, squared clearances in half squares; only the shape is read.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares; only the shape is read.
     chains : the chains of the pathgraph.
     strips : the strips of the same free space.
     body : True for a body, whose centre keeps to the lines between centres of squares; False for a point.
@@ -93,7 +98,19 @@ def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, 
 
 @bare
 def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints, width: int, symbol: Ints) -> None:
-    """Fill `symbol` with the signed portal after each chain cell."""
+    """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row.
+
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A cell's index is (row + 1) *
+    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
+    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
+        first column of each portal.
+    width : columns of the padded screen.
+    symbol : (cells,) written, but for the last cell of each chain.
+    """
     for chain in range(start.shape[0] - 1):
         for k in range(start[chain], start[chain + 1] - 1):
             symbol[k] = symbol_between(row, up, left, 0 + cells[k], 0 + cells[k + 1], width)
@@ -117,7 +134,21 @@ def measure_chains(
 ) -> None:
     """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
 
-    `left`, `right` and `line` are those of the strips' portals; `out` and `funnel` are scratch.
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
+    with its cells.
+
+    Parameters
+    ----------
+    start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
+    symbol : (cells,) the signed portal after each cell, 0 for none.
+    left, right, line : those of the strips' portals.
+    body : True for a body, which keeps to the lines between centres of squares; False for a point.
+    width : columns of the padded screen.
+    length : (m,) written, in squares.
+    words : written: the signed portals (index plus 1, negative when crossed southwards) of all chains, one chain after
+        the other.
+    spelt : (m + 1,) 0 at first, written: the index in `words` at which each chain's word starts.
+    out, funnel : scratch, for the longest chain.
     """
     for chain in range(length.shape[0]):
         word, size = words[spelt[chain] :], 0
@@ -133,7 +164,18 @@ def measure_chains(
 
 @bare
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
-    """Fill the arcs out of every node. A chain from a node back to itself gives no arc."""
+    """Fill the arcs out of every node. A chain from a node back to itself gives no arc.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    leave : (n, 4) the chain that leaves a node to the east, north, west, south; -1 for none.
+    ends : (m, 2) the first and last node of each chain.
+    length : (m,) of the chains, in squares.
+    head, arc, step : (n, 4) written where there is an arc: the node it leads to, its code (2 chain, plus 1 when walked
+        backwards), its length in squares.
+    """
     for node in range(leave.shape[0]):
         for slot in range(4):
             chain = leave[node, slot]
@@ -144,9 +186,15 @@ def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, st
 
 
 def landmark_distances(head: Ints, step: Floats) -> Floats:
-    """Return the distances of all nodes from the landmarks, (n, landmarks), in squares.
+    """Return the distances of all nodes from the landmarks, (n, landmarks) float64, in squares.
 
-    Each landmark is the node that is furthest from those before it (Goldberg and Harrelson 2005).
+    They are infinite where there is no path. Each landmark is the node that is furthest from those before it (Goldberg
+    and Harrelson 2005); there are LANDMARK_COUNT, or n if that is less.
+
+    Parameters
+    ----------
+    head : (n, 4) the node at the other end of each arc out of a node; -1 for none.
+    step : (n, 4) the length of that arc, in squares.
     """
     n = len(head)
     sight = np.full((min(LANDMARK_COUNT, n), n), np.inf)
@@ -167,7 +215,13 @@ def landmark_distances(head: Ints, step: Floats) -> Floats:
 def fill_distances_from(head: Ints, step: Floats, spot: int, out: Floats, key: Floats, node: Ints) -> None:
     """Fill `out` with the distances of all nodes from node `spot` by Dijkstra's algorithm, in squares.
 
-    `key` and `node` are scratch for its heap.
+    Parameters
+    ----------
+    head : (n, 4) the node at the other end of each arc out of a node; -1 for none.
+    step : (n, 4) the length of that arc, in squares.
+    spot : the number of the node from which distances are measured.
+    out : (n,) infinite at first, written; it stays infinite where no path leads.
+    key, node : (4 n + 8,) scratch for the heap.
     """
     out[spot] = 0.0
     size = push(key, node, 0, 0.0, spot)
@@ -189,10 +243,22 @@ def ascend(
 ) -> tuple[int, int]:
     """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`.
 
+    Parameters
+    ----------
+    cell : the index, in the flat padded screen, (row + 1) * width + column + 1, of a cell where the body may be.
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    states : (cells,) the skeleton's states, 0 off the skeleton.
+    width : columns of the padded screen.
+    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
+        first column of each portal.
+    word : written from index 0 on: the reduced word of signed portals (index plus 1, negative when crossed southwards)
+        from the cell to the skeleton.
+
     Returns
     -------
     (int, int)
-        The skeleton cell, and the size of the word.
+        The skeleton cell (flat padded index), and the size of the word. A size equal to the length of `word` says that
+        there was not enough room. For a cell of the skeleton: the cell itself, and 0.
     """
     size = 0
     while states[cell] == 0:
@@ -204,14 +270,17 @@ def ascend(
 
 @bare
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """Return the anchor of a skeleton cell: its chain and position on the pathgraph.
+    """Return the anchor of a skeleton cell: its chain and position on the pathgraph, or its node.
+
+    A chain is an edge of the pathgraph, with its cells.
 
     Parameters
     ----------
-    cell : index of a padded cell of the skeleton.
-    states : the skeleton's states, flat.
-    width : columns of the padded grid.
-    node, leave, start, cells : those of the chains.
+    cell : index, in the flat padded screen, (row + 1) * width + column + 1, of a cell of the skeleton.
+    states : (cells,) the skeleton's states, flat: links to the neighbours, and flags (see skeleton.py).
+    width : columns of the padded screen.
+    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
+        cells of each chain begin, and these cells.
     """
     if is_node(0 + states[cell]):
         return locate_node(cell, node, leave, start, cells)
@@ -230,7 +299,17 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
 
 @bare
 def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
-    """Return the anchor of a node's cell: an end of one of its chains if it has any."""
+    """Return the anchor of a node's cell: an end of one of its chains if it has any.
+
+    Of several chains that of the last direction counts, of east, north, west, south. Without chains the anchor's chain
+    is -1 and its position 0.
+
+    Parameters
+    ----------
+    cell : index of the node's cell in the flat padded screen, (row + 1) * width + column + 1.
+    node, leave, start, cells : attributes of `Chains`: the nodes' cells, the chains that leave each node, where the
+        cells of each chain begin, and these cells.
+    """
     number, found, position = find(node, cell), -1, 0
     for direction in range(4):
         chain = 0 + leave[number, direction]
@@ -242,7 +321,19 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 
 @bare
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
-    """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size."""
+    """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    start : (m + 1,) where the cells of each chain begin.
+    symbol : (cells,) the signed portal after each chain cell, 0 for none.
+    chain : the number of the chain.
+    begin, end : indices of cells on the chain, from 0 at its first cell.
+    word : a reduced word of signed portals (index plus 1, negative when crossed southwards), extended; inverses cancel.
+    size : the number of its symbols before. A returned size equal to the array's length says that there is no room.
+    """
     first = start[chain]
     if begin <= end:
         for k in range(first + begin, first + end):
@@ -259,9 +350,12 @@ def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, si
 
     Parameters
     ----------
-    other : the word to append; its entries from `first` up to `last`, excluded, are used.
-    backwards : whether to append the inverse.
-    word, size : the word that is extended. When it has no room, the returned size equals the length of its array.
+    other : the word to append, signed portals (index plus 1, negative when crossed southwards); its entries from
+        `first` up to `last`, excluded, are used.
+    first, last : see `other`.
+    backwards : whether to append the inverse: the entries in reverse order, with their signs changed.
+    word : the word that is extended; changed.
+    size : the number of its symbols before. When it has no room, the returned size equals the length of its array.
     """
     if backwards:
         while last > first and size > 0 and word[size - 1] == other[last - 1]:

@@ -14,17 +14,18 @@ WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the
 def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order.
 
-    The line may touch walls and their corners.
+    It is empty when the line stays in one strip. The line may touch walls and their corners. A signed portal is a
+    portal's index plus 1, negative when it is crossed southwards.
 
     Parameters
     ----------
-    strips : the strips of free space.
-    points : (x, y) in squares, at least one.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    points : (x, y) in squares from the screen's south-west corner, at least one.
 
     Raises
     ------
     ValueError
-        When the line leaves free space.
+        When the line starts in a blocked square or leaves free space.
     """
     line = [(float(x), float(y)) for x, y in points]
     strip, row = first_strip(strips, line[0])
@@ -48,7 +49,25 @@ def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
 
 
 def first_strip(strips: Strips, point: XY) -> tuple[int, int]:
-    """Return the strip and the row of a line's first point."""
+    """Return the strip and the row of a line's first point.
+
+    A point between two rows belongs to the northern one, a point on the screen's northern edge to the last row.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    point : (x, y) in squares from the screen's south-west corner.
+
+    Returns
+    -------
+    (int, int)
+        The number of the strip, and its row, counted from 0 in the south.
+
+    Raises
+    ------
+    ValueError
+        When the point lies in a blocked square.
+    """
     row = min(int(point[1]), len(strips.row) - 2)
     strip = int(strip_at(strips.row, strips.low, row, int(point[0])))
     if strips.row[row] == strips.row[row + 1] or not strips.low[strip] <= point[0] <= strips.high[strip] + 1:
@@ -60,7 +79,14 @@ def symbol_into_square(strips: Strips, strip: int, row: int, point: XY) -> int:
     """Return the signed portal from the strip in which a line ends to that of its last point's square, 0 if the same.
 
     A point on a line between two rows belongs to the upper one, from whichever side the line comes: words between the
-    same ends must end in the same strip. If the square above is blocked, the line ends in the strip in which it is.
+    same ends must end in the same strip. If the square above is blocked, the line ends in the strip in which it is, and
+    0 is returned. A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    strip, row : the strip in which the line ends, and its row, from 0 in the south.
+    point : the line's last point, (x, y) in squares from the screen's south-west corner.
 
     Raises
     ------
@@ -82,7 +108,14 @@ def symbol_into_square(strips: Strips, strip: int, row: int, point: XY) -> int:
 
 
 def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None:
-    """Return the point at which the segment p-q leaves the strip of p, in squares; None when it ends in the strip."""
+    """Return the point at which the segment p-q leaves the strip of p; None when it ends in the strip.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    strip, row : the strip in which p lies, and its row, from 0 in the south.
+    p, q : (x, y) in squares from the screen's south-west corner, as is the point that is returned.
+    """
     low, high = float(strips.low[strip]), float(strips.high[strip] + 1)
     last = 1.0
     for at, by, least, most in ((p[0], q[0] - p[0], low, high), (p[1], q[1] - p[1], float(row), row + 1.0)):
@@ -98,6 +131,15 @@ def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None
 
 def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
     """Return the signed portal at p, on the edge of a strip, through which the segment p-q gets furthest.
+
+    It is positive when the portal leads to the row above, negative when to the row below. A signed portal is a portal's
+    index plus 1, negative when it is crossed southwards.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    strip, row : the strip that the segment leaves, and its row, from 0 in the south.
+    p, q : (x, y) in squares from the screen's south-west corner; p lies on the strip's northern or southern edge.
 
     Raises
     ------
@@ -120,7 +162,11 @@ def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
 
 
 def join_words(*words: Ints) -> Ints:
-    """Return the words one after the other, as one reduced word (n,) of signed portals."""
+    """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array.
+
+    A signed portal followed by its negative is left out. Without words, or when all cancel, the result is empty. A
+    signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    """
     whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
     size = 0
     for word in words:
@@ -130,12 +176,15 @@ def join_words(*words: Ints) -> Ints:
 
 
 def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:
-    """Return the signed crossing numbers of a reduced word: the signature of its class.
+    """Return the signed crossing numbers of a reduced word, in its order: the signature of its class.
+
+    Portals of the spanning forest have no number and are left out. A number is negative where the portal is crossed
+    southwards. Words with the same ends are of one class exactly when their signatures are equal.
 
     Parameters
     ----------
-    strips : the strips of free space.
-    word : (n,) signed portals.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    word : (n,) int, signed portals.
     """
     numbers = strips.crossing[np.abs(word) - 1] * np.sign(word)
     return tuple(numbers[numbers != 0].tolist())

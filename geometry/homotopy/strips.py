@@ -1,9 +1,14 @@
 """Strips and portals: free space cut into horizontal strips, whose nerve has the homotopy type of free space.
 
 A strip is a maximal horizontal row of free squares. A portal is the overlap of a strip with a strip in the row above.
-The class of a path is the word of portals that it crosses, without neighbouring inverses: portals are counted from 1,
-positive when crossed upwards, negative when crossed downwards. All portals but those of a spanning forest of the strips
-get a crossing number. With the ends fixed, the crossing numbers of a reduced word name its class.
+The class of a path is the word of portals that it crosses, without neighbouring inverses (a word without them is
+reduced): portals are counted from 1, positive when crossed upwards (to the north), negative when crossed downwards.
+Such a number is called a symbol or a signed portal. All portals but those of a spanning forest of the strips get a
+crossing number. With the ends fixed, the crossing numbers of a reduced word name its class.
+
+Columns and rows count from 0 at the screen's south-west square, whose south-west corner is the point (0, 0). A padded
+cell is a square given by its index in the flat screen with one blocked cell on each side: (row + 1) * width + column +
+1, where width = columns + 2.
 """
 
 from typing import NamedTuple
@@ -17,21 +22,21 @@ from geometry.kernels.jit import bare
 class Strips(NamedTuple):
     """The n strips of a screen, ordered by (row, column), and its p portals, ordered by (lower row, column).
 
-    Rows and columns are those of the screen, without padding. A signed portal is its index plus 1, negative when it is
-    crossed downwards.
+    Rows and columns are those of the screen, without padding, row 0 in the south. A signed portal is its index plus 1,
+    negative when it is crossed downwards. All arrays are int32.
 
     Attributes
     ----------
-    row : (rows + 1,) the first strip of each row.
-    low : (n,) the first column of each strip.
-    high : (n,) the last column of each strip, included.
+    row : (rows + 1,) the number of the first strip of each row; the strips of row r are row[r] to row[r + 1] - 1.
+    low : (n,) the first (western) column of each strip.
+    high : (n,) the last (eastern) column of each strip, included.
     up : (n + 1,) the first portal from each strip to the row above; the portals of strip s are up[s] to up[s + 1] - 1.
     down : (n + 1,) the first portal from each strip to the row below, in the same way.
-    left : (p,) the first column of each portal.
-    right : (p,) the last column of each portal, included.
-    lower : (p,) the strip below each portal.
-    upper : (p,) the strip above each portal.
-    line : (p,) the row of the strip below each portal.
+    left : (p,) the first (western) column of each portal.
+    right : (p,) the last (eastern) column of each portal, included.
+    lower : (p,) the strip below (south of) each portal.
+    upper : (p,) the strip above (north of) each portal.
+    line : (p,) the row of the strip below each portal; the portal lies at y = line + 1, from x = left to x = right + 1.
     crossing : (p,) the crossing number of each portal, counted from 1; 0 for portals of the spanning forest.
     exit : (n,) the signed portal by which every path out of a dead-end strip leaves it; 0 for all other strips.
     """
@@ -55,13 +60,13 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) int, squared clearances in half squares, padded by one cell on each side.
-    level : the least squared clearance of a cell that counts as free, in half squares.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares, padded by one cell on each side.
+    level : the least squared clearance of a cell that counts as free, in squared half squares; at least 1.
 
     Returns
     -------
     Strips
-        In unpadded rows and columns.
+        In unpadded rows and columns; without strips and portals when no cell is free.
     """
     row = np.zeros(square.shape[0] - 1, np.int32)
     count = count_strips(square, level, row)
@@ -87,13 +92,20 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
 
 
 def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
-    """Return copies of the first `size` entries of three arrays."""
+    """Return copies of the first `size` entries of three one-dimensional arrays, in the order given."""
     return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
 @bare
 def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
-    """Return the number of strips; fill `row` with the number of strips up to the end of each row."""
+    """Return the number of strips; fill `row` with the number of strips up to the end of each row.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.
+    level : the least squared clearance of a free cell.
+    row : (rows + 1,) written but for row[0]: row[i] becomes the number of strips in rows 0 to i - 1.
+    """
     total = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
@@ -105,7 +117,14 @@ def count_strips(square: SquaredDistances, level: int, row: Ints) -> int:
 
 @bare
 def fill_strips(square: SquaredDistances, level: int, low: Ints, high: Ints) -> None:
-    """Fill the first and last columns of all strips."""
+    """Fill the first and last columns of all strips.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.
+    level : the least squared clearance of a free cell.
+    low, high : (n,) written: the first and the last column of each strip, without padding, both included.
+    """
     strip = 0
     for i in range(1, square.shape[0] - 1):
         here = square[i]
@@ -133,7 +152,12 @@ def fill_portals(
 ) -> int:
     """Fill the portals between each row and the next, and return their number.
 
-    The arrays are those of `Strips`: `row`, `low` and `high` are read, all others are written.
+    Parameters
+    ----------
+    row, low, high : attributes of `Strips`, read.
+    up, down : (n + 1,) zero at first, written: the attributes of that name of `Strips`.
+    left, right, lower, upper, line : written in their first entries: the attributes of that name of `Strips`. Twice as
+        many entries as there are strips are enough.
     """
     found = 0
     for i in range(row.shape[0] - 2):
@@ -157,9 +181,13 @@ def fill_portals(
 
 @bare
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
-    """Give numbers, from 1 in their order, to the portals that close a ring of strips.
+    """Give crossing numbers, from 1 in the order of the portals, to the portals that close a ring of strips.
 
-    `parent` is a union-find forest over the strips; it must begin as the identity.
+    Parameters
+    ----------
+    lower, upper : (p,) the strips below and above each portal.
+    parent : (n,) scratch: a union-find forest over the strips; it must begin as the identity.
+    crossing : (p,) zero at first, written; it stays 0 for portals of the spanning forest, which close no ring.
     """
     number = 0
     for portal in range(crossing.shape[0]):
@@ -175,7 +203,15 @@ def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> 
 def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degree: Ints, queue: Ints) -> None:
     """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
 
-    `degree` (n,) holds the number of portals of each strip and is used up; `queue` (n,) is scratch.
+    A dead end is a part of free space, without rings, that one portal joins to the rest. A signed portal is a portal's
+    index plus 1, negative when it is crossed southwards.
+
+    Parameters
+    ----------
+    up, down, lower, upper : attributes of `Strips`, read.
+    exits : (n,) zero at first, written: the signed portal that leads out of a dead-end strip; it stays 0 elsewhere.
+    degree : (n,) the number of portals of each strip; used up.
+    queue : (n,) scratch.
     """
     size = 0
     for strip in range(exits.shape[0]):
@@ -203,7 +239,10 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
 
 @bare
 def find_root(parent: Ints, strip: int) -> int:
-    """Return the representative of a strip's component; halve the path to it in the union-find forest."""
+    """Return the representative of a strip's component, a strip; halve the path to it in the union-find forest.
+
+    `parent` (n,), changed, holds for each strip a strip nearer to its representative, and for that itself.
+    """
     while parent[strip] != strip:
         parent[strip] = parent[parent[strip]]
         strip = parent[strip]
@@ -212,7 +251,16 @@ def find_root(parent: Ints, strip: int) -> int:
 
 @bare
 def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
-    """Return the strip in which a square lies, given `row` and `low` of the strips; the square must be free."""
+    """Return the number of the strip in which a square lies.
+
+    The square must be free: of a blocked one some other strip is returned, without an error.
+
+    Parameters
+    ----------
+    rows, lows : the attributes `row` and `low` of `Strips`: the first strip of each row, and the first column of each
+        strip.
+    row, column : those of the square, without padding, from the south-west.
+    """
     low, high = 0 + rows[row], rows[row + 1] - 1
     while low < high:
         middle = (low + high + 1) >> 1
@@ -227,11 +275,15 @@ def strip_at(rows: Ints, lows: Ints, row: int, column: int) -> int:
 def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, width: int) -> int:
     """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
 
+    Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free. A signed
+    portal is a portal's index plus 1, negative when it is crossed southwards.
+
     Parameters
     ----------
-    rows, up, left : `row`, `up` and `left` of the strips.
-    cell, other : indices of padded cells.
-    width : columns of the padded grid.
+    rows, up, left : the attributes `row`, `up` and `left` of `Strips`: the first strip of each row, the first portal of
+        each strip upwards, the first column of each portal.
+    cell, other : indices of the cells in the flat padded screen, (row + 1) * width + column + 1.
+    width : columns of the padded screen.
     """
     step = other - cell
     if step == 1 or step == -1:
@@ -252,7 +304,14 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
 def append_symbol(word: Ints, size: int, symbol: int) -> int:
     """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol.
 
-    A symbol of 0 changes nothing. A word that fills its array is not extended: the caller needs a larger one.
+    A symbol of 0 changes nothing. A word that fills its array is not changed any more: the caller sees by a size equal
+    to the array's length that it needs a larger one.
+
+    Parameters
+    ----------
+    word : signed portals, of which the first `size` count; changed.
+    size : the number of symbols before.
+    symbol : the signed portal to append: index plus 1, negative when crossed southwards.
     """
     if symbol == 0 or size >= word.shape[0]:
         return size

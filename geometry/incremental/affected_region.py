@@ -19,7 +19,7 @@ between two cells that are looked at (3); derived."""
 
 
 def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
-    """Return the boxes around changed cells, one for each tile with such cells.
+    """Return the boxes around changed cells, one for each tile of 32 x 32 cells with such cells.
 
     Parameters
     ----------
@@ -31,7 +31,8 @@ def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
     Returns
     -------
     (n, 4) int32
-        First and last row, first and last column of each box.
+        First and last row, first and last column of each box, both included, padded; in the order in which ``cells``
+        first meet the tiles.
     """
     rows, width = shape
     boxes = np.empty((len(cells), 4), np.int32)
@@ -41,7 +42,15 @@ def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
 
 @bare
 def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
-    """Fill the boxes and return their number. ``slot`` holds for each tile the number of its box, -1 for none."""
+    """Fill the boxes around changed cells, one for each tile with such cells, and return their number.
+
+    Parameters
+    ----------
+    cells : (k,) int32, flat indices of changed cells in the padded screen.
+    width : width of the padded screen.
+    slot : (tiles,) int32, all -1 at first; filled with the number of each tile's box, -1 for none.
+    boxes : (k, 4) int32, filled from row 0 on: first and last row, first and last column, included, padded.
+    """
     found = 0
     for k in range(cells.shape[0]):
         row, column = cells[k] // width, cells[k] % width
@@ -60,10 +69,17 @@ def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
 
 @bare
 def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
-    """Fill ``bounds`` (rows, 2 or more) with the first and last column of each row whose clearance may change.
+    """Fill ``bounds`` with the first and last column of each row whose clearance may change.
 
-    Where none may change the first is the width of the screen and the last -1. ``square`` holds the clearances before
-    the change.
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares before the change.
+    boxes : (n, 4) int32
+        First and last row, first and last column of the boxes around changed cells, padded.
+    bounds : (rows + 2, 2 or more) int32
+        Filled, by padded rows, with the first and the last such column, included, padded. Where none may change the
+        first is the width of the padded screen and the last -1.
     """
     last = square.shape[0] - 2
     for row in range(bounds.shape[0]):
@@ -83,7 +99,18 @@ def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
 def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints) -> bool:
     """Widen the bounds of a row and of the rows next to it by the cells whose clearance the k-th box may change.
 
-    Returns whether there may be such cells in rows further away.
+    Returns False when there are none in this row, and so none in rows further from the box; else True.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares before the change.
+    boxes : (n, 4) int32
+        First and last row, first and last column of each box, padded.
+    k, row : int
+        Number of the box, and the padded row that is looked at.
+    bounds : (rows + 2, 2 or more) int32
+        First and last column of each row, padded; changed.
     """
     left, right = boxes[k, 2], boxes[k, 3]
     off = boxes[k, 0] - row if row < boxes[k, 0] else row - boxes[k, 1]

@@ -23,7 +23,10 @@ SPARE_ROOM = 64  # nodes or chains, and a sixteenth of what there are: so many m
 
 
 class Splice(NamedTuple):
-    """The nodes after a change, and their numbers before and after it.
+    """The nodes of a skeleton's graph after a change, and their numbers before and after it.
+
+    Cells are flat indices into the padded screen. Only a stretch of the list of nodes, which is ordered by cells, is
+    merged anew; nodes before it keep their numbers.
 
     Attributes
     ----------
@@ -45,18 +48,23 @@ class Splice(NamedTuple):
 
 
 def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
-    """Return the nodes of a stretch that stay merged with new ones.
+    """Return the nodes of a stretch that stay merged with new ones, and how the numbers of old nodes change.
 
     Parameters
     ----------
     old : (n,) int32
-        Cells of all nodes before the change.
+        Cells (flat indices) of all nodes before the change, ascending. Their memory is reused where it has room.
     low, high : int
         The stretch: old nodes ``low <= k < high``.
     open_ends : (n,) uint8
-        For each old node the bits of the ends whose chains are gone; 16 and more when the node itself is gone.
+        For each old node the bits (by direction, 0 east to 3 south) of the ends whose chains are gone; 16 and more when
+        the node itself is gone.
     grown : (k,) int32
-        Cells of the new nodes.
+        Cells of the new nodes, which all lie within the stretch.
+
+    Returns
+    -------
+    Splice
     """
     stretch, stays = old[low:high], open_ends[low:high] < 16
     merged = np.concatenate([stretch[stays], grown])
@@ -79,15 +87,20 @@ def splice_chains(
     Parameters
     ----------
     heights, states, width
-        Squared clearances and states of the padded screen, flat, and its width.
+        Squared clearances (half squares) and states of the padded screen after the change, flat, and its width.
     bones : SkeletonGraph
-        The graph before the change; its arrays are reused where they have room.
+        The graph before the change; its arrays are reused where they have room, so that it no longer holds.
     splice : Splice
         The nodes after the change.
     open_ends : (n,) uint8
-        For each old node the bits of the ends whose chains are gone.
+        For each old node the bits (by direction, 0 east to 3 south) of the ends whose chains are gone.
     seeds : (k,) int32
         Ends (4 times the new node plus direction) from which new chains may lead, ascending.
+
+    Returns
+    -------
+    SkeletonGraph
+        In the order that graph.py would give it: equal to that of a new screen.
     """
     old, (node, low, high, number, shift) = len(bones.port), splice
     first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
@@ -126,7 +139,11 @@ def splice_chains(
 
 
 def with_room(array: Array, size: int) -> Array:
-    """Return the array of which ``array`` is the beginning if that has at least ``size`` rows, else a longer copy."""
+    """Return the array of which ``array`` is the beginning if that has at least ``size`` rows, else a longer copy.
+
+    Either begins with the rows of ``array`` and has ``size`` rows or more; further rows have arbitrary values. A copy
+    has a sixteenth and 64 rows to spare.
+    """
     whole = array.base
     if isinstance(whole, np.ndarray) and whole.ndim == array.ndim and len(whole) >= size:
         return cast(Array, whole)
@@ -137,7 +154,14 @@ def with_room(array: Array, size: int) -> Array:
 
 @bare
 def renamed(end: int, low: int, high: int, number: Longs, shift: int) -> int:
-    """Return the new code of an end (4 times the node plus direction) whose code before the change was ``end``."""
+    """Return the new code of an end (4 times the node plus direction) whose code before the change was ``end``.
+
+    Parameters
+    ----------
+    low, high : the old nodes ``low <= k < high`` are numbered anew one by one; those before keep their numbers.
+    number : (high - low,) int64, their new numbers; the node must not be gone (-1).
+    shift : how much the numbers of nodes from ``high`` on grow.
+    """
     node = end >> 2
     if node < low:
         return end
@@ -167,8 +191,33 @@ def merge_chains(
 ) -> int:
     """Fill ``port``, ``neck`` and ``steps`` with the old chains of a stretch that stay and the new ones, in order.
 
-    Returns their number. The chains ``ahead`` of the stretch only get the new codes of their last ends. ``seeds`` are
-    ascending ends from which new chains are walked; ``notes`` is scratch (see lowest_cells.py).
+    Returns their number. Ends are coded as 4 times the number of the node plus the direction (0 east to 3 south) in
+    which the chain leaves it; cells are flat indices into the padded screen.
+
+    Parameters
+    ----------
+    heights, states : (cells,)
+        Squared clearances in half squares and states of the skeleton, after the change, flat.
+    width : int
+        Width of the padded screen.
+    ahead : (a, 2) int32
+        Ends of the chains before the stretch; those last ends that lie in it or behind it get their new codes, in
+        place.
+    old_port, old_neck, old_steps : (s, 2), (s,), (s,) int32
+        Ends, lowest cells and numbers of steps of the chains of the stretch before the change.
+    open_ends : (n,) uint8
+        For each old node the bits (by direction) of the ends whose chains are gone.
+    low, high, number, shift
+        How the numbers of old nodes change (see ``Splice``).
+    seeds : (k,) int32
+        Ends, by new numbers and ascending, from which new chains are walked; a chain that is met from both ends counts
+        once.
+    node : (new n,) int32
+        Cells of all nodes after the change.
+    port, neck, steps : (s + k, 2), (s + k,), (s + k,) int32
+        Filled from index 0 on: ends by new numbers, lowest cell, number of steps from square to square.
+    notes : (size,) int32
+        Scratch (see lowest_cells.py).
     """
     size, k = 0, 0
     for chain in range(ahead.shape[0]):

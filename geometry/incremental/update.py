@@ -38,23 +38,25 @@ def change_squares(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares; changed in place.
+        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton; changed in place.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
     bones : SkeletonGraph
         The graph before the change. Its arrays may become those of the result.
     rows, columns : (n,) int32
         The squares, without the padding; none twice.
     free : (n,) bool
-        True where a square becomes free.
+        True where a square becomes free, False where it becomes blocked. Squares that are so already stay as they are.
     max_affected_share : float
         The largest share of the screen's cells that the change may alter.
 
     Returns
     -------
     SkeletonGraph or None
-        None when the change may alter more of the screen, or ``square`` is of a type too small for it. Nothing is
-        changed then, and all has to be computed anew.
+        Equal to that of a new screen; ``bones`` itself when no square changes. None when the change may alter more of
+        the screen, or ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed
+        anew.
 
     Raises
     ------
@@ -93,8 +95,25 @@ def clearances_in(
 ) -> SquaredDistances | None:
     """Return squared clearances of a block and one cell around it after a change, or None if their type is too small.
 
-    They are right within the bounds and arbitrary elsewhere. ``cells`` are the flat indices of the cells that change,
-    ``free`` tells which become free.
+    They are right within the bounds and arbitrary elsewhere.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int16 or int32
+        Squared clearances in half squares before the change.
+    block : (int, int, int, int)
+        First and last row, first and last column, padded, included.
+    bounds : (rows + 2, 2 or more) int32
+        First and last column of each row whose clearance may change, padded; the last is less than the first for none.
+    cells : (n,) int32
+        Flat indices of the cells that change.
+    free : (n,) bool
+        Which of them become free; the others become blocked.
+
+    Returns
+    -------
+    (block rows + 2, block columns + 2) array of the type of ``square``, or None
+        Half squares squared; row 0 and column 0 are those before the first of the block.
     """
     (low, high, west, east), width = block, square.shape[1]
     rows, columns = cells // width - low, cells % width - west
@@ -114,7 +133,14 @@ def clearances_in(
 def block_about(square: SquaredDistances, bounds: Ints) -> Block:
     """Return a block whose walls suffice to measure the cells within the bounds.
 
-    Next to the bounds clearances stay as they were. None between exceeds theirs by more than its distance from them.
+    It is the first and last row and the first and last column, included, padded. Next to the bounds clearances stay as
+    they were. None between exceeds theirs by more than its distance from them.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    bounds : (rows + 2, 2 or more) first and last column of each row whose clearance may change; last -1 for none, but
+        some row must have one.
     """
     low, high, west, east = bounds.shape[0], -1, square.shape[1], -1
     for row in range(bounds.shape[0]):
@@ -132,13 +158,24 @@ def block_about(square: SquaredDistances, bounds: Ints) -> Block:
 
 @bare
 def reach_of(square: SquaredDistances, row: int, column: int) -> int:
-    """Return a whole number of squares greater than a cell's clearance."""
+    """Return a whole number of squares greater than a cell's clearance.
+
+    `square` : (rows + 2, columns + 2) squared clearances in half squares; `row` and `column` are padded.
+    """
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
 
 
 @bare
 def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
-    """Lower ``fresh`` to the old clearances within the bounds. It begins in row ``low`` and column ``west``."""
+    """Lower ``fresh``, in place, to the old clearances where these are less, within the bounds.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    fresh : squared clearances of a part of the screen; its row 0 and column 0 are row ``low`` and column ``west``,
+        padded.
+    bounds : (rows + 2, 2 or more) first and last column of each padded row; last -1 for none.
+    """
     for row in range(bounds.shape[0]):
         first, size = bounds[row, 0], bounds[row, 1] - bounds[row, 0] + 1
         if size > 0:
@@ -149,10 +186,16 @@ def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west
 
 @bare
 def narrow(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
-    """Narrow the bounds to the cells that differ, and fill their third column.
+    """Narrow the bounds, in place, to the cells that differ, and fill their third column.
 
-    That is the flat index in ``fresh`` of the first such cell of a row. ``fresh`` begins in row ``low`` and column
-    ``west``.
+    That is the flat index in ``fresh`` of the first such cell of a row.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    fresh : those after it, of a part of the screen; its row 0 and column 0 are row ``low`` and column ``west``, padded.
+    bounds : (rows + 2, 3) int32, first and last column of each padded row. Where no cell differs they become the width
+        of the padded screen and -1.
     """
     width = fresh.shape[1]
     for row in range(bounds.shape[0]):

@@ -34,12 +34,14 @@ def measure_within(
     ----------
     free : (rows, columns) bool
         Free squares of a block; everything outside counts as blocked.
-    bounds : (all rows, 2 or more) int32
-        First and last column to be measured in each row of the screen; none lies outside the block.
+    bounds : (all rows + 2, 2 or more) int32
+        First and last column to be measured in each padded row of the screen; none lies outside the block. The last is
+        less than the first where none is.
     low, west : int
-        Row and column of the screen that are row 0 and column 0 of ``square``.
+        Padded row and column of the screen that are row 0 and column 0 of ``square``.
     square : (rows + 2, columns + 2) int16 or int32
-        Filled within the bounds with squared clearances in half squares, arbitrary elsewhere.
+        Filled within the bounds with squared clearances in half squares (capped when the type does not hold them),
+        arbitrary elsewhere.
     sites : (int, int)
         First and last column of ``square`` between which walls count; ``ALL_SITES`` when all may count.
     """
@@ -62,10 +64,25 @@ def measure_parts(
     sites: Sites,
     heights: Sites,
 ) -> bool:
-    """Measure as ``measure_within`` does, from the steps to the nearest blocked square below in each column.
+    """Measure squared clearances within bounds; return whether the type of ``square`` holds them.
 
-    ``first`` and ``last`` are the columns between which walls count; when ``first`` is greater, all may count. ``gap``
-    (width,) is 0, as it is north of the block; ``sites`` and ``heights`` are scratch.
+    Parameters
+    ----------
+    steps : (rows + 2, columns + 2 or more) int16
+        Steps from each cell of a block to the nearest blocked one to the south (count_steps_south); in the memory of
+        ``square``, whose rows are read before they are written.
+    bounds : (all rows + 2, 2 or more) int32
+        First and last column to be measured in each padded row of the screen.
+    low, west : int
+        Padded row and column of the screen that are row 0 and column 0 of ``square``.
+    square : (rows + 2, columns + 2) int16 or int32
+        Filled within the bounds with squared clearances in half squares, capped at the greatest value of the type.
+    first, last : int
+        The columns of ``square`` between which walls count; when ``first`` is greater, all may count.
+    gap : (width,) int16
+        0, as it is north of the block; scratch from then on.
+    sites, heights : (width + 1,) int64
+        Scratch.
     """
     roof, fits, restricted = largest_value_of(square), True, first <= last
     for row in range(square.shape[0] - 2, 0, -1):
@@ -90,7 +107,14 @@ def measure_parts(
 def outermost(gap: ColumnSteps, column: int, step: int) -> int:
     """Return the furthest column whose site counts for a free column, or for columns on its other side.
 
-    ``step`` is the direction of the search: 1 to the east, -1 to the west. The site is the edge behind that column.
+    A site is the edge between two columns; that of a column is the one behind it, as seen in the direction of the
+    search.
+
+    Parameters
+    ----------
+    gap : (width,) int16, steps to the nearest blocked square in each column of the row; 0 on blocked ones.
+    column : a free column, counted as in `gap`.
+    step : the direction of the search: 1 to the east, -1 to the west.
     """
     found, off = column, 1
     least = 1 + site_of(gap, column, column - step)
@@ -107,7 +131,15 @@ def outermost(gap: ColumnSteps, column: int, step: int) -> int:
 
 @bare
 def site_of(gap: ColumnSteps, one: int, other: int) -> int:
-    """Return the squared distance (half squares) from the edge between two columns to the nearest wall along it."""
+    """Return the squared distance along the edge between two columns to the nearest wall, in half squares squared.
+
+    It is taken from the middle of the edge's part in the row, and 0 when a square beside that is blocked.
+
+    Parameters
+    ----------
+    gap : (width,) int16, steps to the nearest blocked square in each column of the row; 0 on blocked ones.
+    one, other : the two columns, in any order.
+    """
     lower = gap[one] if gap[one] < gap[other] else gap[other]
     edge = 2 * np.int64(lower) - 1 if lower > 0 else np.int64(0)
     return int(edge * edge)

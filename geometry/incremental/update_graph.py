@@ -32,9 +32,15 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
     width : int
         Width of the padded screen.
     bones : SkeletonGraph
-        The graph before the change. Its arrays may be reused for the result.
+        The graph before the change. Its arrays may be reused for the result, so that it no longer holds.
     journal : ChangeLog
-        The cells that may have changed, with their states before.
+        The cells that may have changed, with their states before. In its states the bit HALT is set and cleared as
+        rings without a junction come and go; its marks get JOINED and PASSED.
+
+    Returns
+    -------
+    SkeletonGraph
+        Equal to that of a new screen; ``bones`` itself when nothing in it has changed.
     """
     states, mark = journal.states, journal.mark
     keys = np.empty(int(journal.size[0]), np.int64)
@@ -63,7 +69,16 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
 
 @bare
 def find_changed(journal: ChangeLog, keys: Longs) -> int:
-    """Mark the touched cells that differ, list each as 256 times the cell plus its state before, and count them."""
+    """Mark the touched cells that differ as JOINED, list them in ``keys``, and return their number.
+
+    Parameters
+    ----------
+    journal : ChangeLog
+        The cells that may have changed, with their states before; its marks are changed.
+    keys : (touched,) int64
+        Filled from index 0 on with 256 times the cell (flat index) plus its state before, for each cell whose state or
+        clearance differs.
+    """
     found = 0
     for k in range(journal.size[0]):
         cell = journal.touched[k]
@@ -80,8 +95,22 @@ def find_open(
 ) -> tuple[int, int]:
     """Set ``open_ends``: for each old node the bits of the ends of all chains on which a changed cell lay.
 
-    ``before`` holds the states of ``cells`` before the change. Returns the numbers of the first node with such an end
-    and of the one behind the last.
+    Returns the numbers of the first node with such an end and of the one behind the last; the number of nodes and 0
+    when there is none.
+
+    Parameters
+    ----------
+    states, mark : (cells,) uint8
+        States of the skeleton after the change, in which HALT is cleared on changed rings, and marks (JOINED: changed).
+    width : int
+        Width of the padded screen.
+    cells, before : (k,) int32 and uint8
+        The changed cells (flat indices, ascending) and their states before the change.
+    node : (n,) int32
+        Cells of the old nodes, ascending.
+    open_ends : (n,) uint8
+        0 at first; filled with bits by direction (0 east to 3 south), or NODE_GONE (31) where the node itself has
+        changed.
     """
     low, high = node.shape[0], 0
     for k in range(cells.shape[0]):
@@ -114,7 +143,19 @@ def find_open(
 def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
     """Flag the first cell of every ring without a junction on which a changed cell lies; return the number of rings.
 
-    Fills ``bases`` with these first cells. Each chain is followed only from changed cells that no earlier walk passed.
+    Each chain is followed only from changed cells that no earlier walk passed.
+
+    Parameters
+    ----------
+    states, mark : (cells,) uint8
+        States of the skeleton, in which HALT is set on the first cell (least index) of such rings, and marks, which get
+        PASSED.
+    width : int
+        Width of the padded screen.
+    cells : (k,) int32
+        The changed cells, flat indices.
+    bases : (k,) int32
+        Filled from index 0 on with the first cells of the rings.
     """
     found = 0
     for k in range(cells.shape[0]):
@@ -141,8 +182,23 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
 def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
     """Fill ``seeds`` with the ends where new chains may start, and return their number.
 
-    An end is 4 times the new number of the node plus the direction. ``number`` holds the new numbers of the old nodes
-    from ``low`` on, -1 for those that are gone; ``grown`` the cells of new nodes.
+    An end is 4 times the new number of the node plus the direction (0 east to 3 south). They are not sorted.
+
+    Parameters
+    ----------
+    states : (cells,) uint8
+        States of the skeleton after the change, flat.
+    node : (new n,) int32
+        Cells of all nodes after the change, ascending.
+    grown : (g,) int32
+        Cells of the new nodes; each of their links is a seed.
+    low, number : int and (s,) int64
+        The new numbers of the old nodes from ``low`` on, -1 for those that are gone.
+    open_ends : (old n,) uint8
+        For each old node the bits (by direction) of the ends whose chains are gone; these are seeds where the node
+        stays.
+    seeds : (4 (g + s),) int32
+        Filled from index 0 on.
     """
     found = 0
     for k in range(grown.shape[0]):

@@ -37,16 +37,19 @@ JOINED, PASSED = 4, 8  # bits of marks: the cell has to be joined again, a walk 
 class ChangeLog(NamedTuple):
     """A log of the cells whose state or clearance a change may have altered.
 
+    Cells are flat indices (row * width + column) into the padded screen.
+
     Attributes
     ----------
     states : (cells,) uint8
         The states of the skeleton, which are changed in place.
     mark : (cells,) uint8
-        TOUCHED, MOVED and the like, 0 for all other cells.
+        Bits: TOUCHED (1, logged), MOVED (2, other clearance), JOINED (4, its chain is joined again), PASSED (8, a walk
+        has passed it); 0 for all other cells.
     touched : (cells,) int32
         Room for the touched cells, of which the first ``size[0]`` are listed.
     before : (cells,) uint8
-        The states of these before the change.
+        The states of these before the change, in the same order.
     size : (1,) int32
         Number of touched cells.
     """
@@ -66,15 +69,22 @@ def regrow(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares; changed in place.
+        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton; changed in place.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
     bounds : (rows + 2, 3) int32
-        For each row the first and last column that change, and the index in ``fresh`` of the value of the first.
+        For each row the first and last column that change, and the index in ``fresh`` of the value of the first. The
+        last is -1 in rows where none does.
     fresh : (n,) int16 or int32
-        New squared clearances.
+        New squared clearances in half squares, flat, of a part of the screen.
     scratch : Scratch
-        Becomes part of the log.
+        Becomes part of the log; its marks are 0 before and have to be cleared by the caller.
+
+    Returns
+    -------
+    ChangeLog
+        The states, and the cells touched with their states before.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
     journal = ChangeLog(states, *scratch, np.zeros(1, np.int32))
@@ -88,7 +98,14 @@ def regrow(
 
 @bare
 def find_columns_about(bounds: Ints, width: int, about: Ints) -> None:
-    """Fill ``about`` (rows, 2) with the first and last column of each row at or next to a changed cell."""
+    """Fill ``about`` with the first and last column of each row at or next to a changed cell.
+
+    Parameters
+    ----------
+    bounds : (rows + 2, 2 or more) int32, first and last column of each padded row that change; last -1 for none.
+    width : width of the padded screen.
+    about : (rows + 2, 2) int32, output, padded columns within the frame; the width and -1 for rows without such a cell.
+    """
     rows = bounds.shape[0]
     for row in range(rows):
         about[row, 0], about[row, 1] = width, -1
@@ -103,7 +120,7 @@ def find_columns_about(bounds: Ints, width: int, about: Ints) -> None:
 
 @bare
 def touch(journal: ChangeLog, cell: int) -> None:
-    """Log a cell and its state before the state changes, once."""
+    """Log a cell (flat index) and its state before the state changes, once; later calls for it do nothing."""
     if not journal.mark[cell] & TOUCHED:
         journal.mark[cell] |= TOUCHED
         k = journal.size[0]
@@ -112,7 +129,19 @@ def touch(journal: ChangeLog, cell: int) -> None:
 
 @bare
 def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
-    """Remove the links that lead up from the cells within ``about``, and the ascents that depend on them."""
+    """Remove the links that lead up from the cells within ``about``, and the ascents that depend on them.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares before the change, flat.
+    width : int
+        Width of the padded screen.
+    about : (rows + 2, 2) int32
+        First and last column of each padded row; the last is -1 for none.
+    journal : ChangeLog
+        Its states are changed, and every cell that is touched is logged.
+    """
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
@@ -129,7 +158,7 @@ def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None
 
 @bare
 def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
-    """Remove the link from a cell to another in a direction."""
+    """Remove the link from a cell to another, its neighbour in a direction (0 east to 3 south); log both."""
     touch(journal, cell)
     touch(journal, other)
     journal.states[cell] &= 255 - (1 << direction)
@@ -138,7 +167,17 @@ def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
 
 @bare
 def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: int) -> None:
-    """Remove the ascent from a cell outside ``about`` up to where another ascent still leads into it."""
+    """Remove the ascent from a cell outside ``about`` up to where another ascent still leads into it.
+
+    It also ends at saddles, summits and cells within ``about``, which are pruned otherwise.
+
+    Parameters
+    ----------
+    heights, width, about, journal
+        As for ``prune``: old squared clearances, flat; width of the padded screen; columns of each row; states and log.
+    cell : int
+        Flat index of the cell from which a link below was removed.
+    """
     states = journal.states
     while not states[cell] & (SADDLE | SUMMIT):
         row = cell // width
@@ -163,7 +202,25 @@ def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, 
 def set_clearances(
     heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: ChangeLog
 ) -> None:
-    """Set the new clearances, and the flags of the cells within ``about``. ``flags`` (width,) is scratch."""
+    """Set the new clearances, and the flags SADDLE and SUMMIT of the cells within ``about``.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat; changed.
+    width : int
+        Width of the padded screen.
+    bounds : (rows + 2, 3) int32
+        For each padded row the first and last column that change, and the index in ``fresh`` of the value of the first.
+    fresh : (n,) int16 or int32
+        New squared clearances in half squares.
+    about : (rows + 2, 2) int32
+        First and last column of each padded row at or next to a changed cell.
+    flags : (width,) uint8
+        Scratch.
+    journal : ChangeLog
+        Its states are changed; cells that differ are marked MOVED, and those with other flags logged.
+    """
     states = journal.states
     for row in range(bounds.shape[0]):
         size = bounds[row, 1] - bounds[row, 0] + 1
@@ -184,7 +241,7 @@ def set_clearances(
 
 @bare
 def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
-    """Copy ``fresh`` into ``heights``, and mark the cells that differ as MOVED."""
+    """Copy ``fresh`` into ``heights``, and mark the cells that differ as MOVED in ``mark``; all three are (n,)."""
     for k in range(heights.shape[0]):
         mark[k] |= np.uint8(MOVED) if heights[k] != fresh[k] else np.uint8(0)
         heights[k] = fresh[k]
@@ -192,7 +249,7 @@ def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
 
 @bare
 def differ(states: Flags, flags: Flags) -> bool:
-    """Return whether any state has other flags (SADDLE, SUMMIT) than given."""
+    """Return whether any of some states (n,) has other flags (SADDLE, SUMMIT) than given in ``flags`` (n,)."""
     other = np.uint8(0)
     for k in range(states.shape[0]):
         other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
@@ -201,7 +258,19 @@ def differ(states: Flags, flags: Flags) -> bool:
 
 @bare
 def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
-    """Climb again from the saddles within ``about``, and from where ascents from outside lead into it."""
+    """Climb again from the saddles within ``about``, and from where ascents from outside lead into it.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares after the change, flat.
+    width : int
+        Width of the padded screen.
+    about : (rows + 2, 2) int32
+        First and last column of each padded row; the last is -1 for none.
+    journal : ChangeLog
+        Its states are changed, and every cell that is touched is logged.
+    """
     states = journal.states
     for row in range(about.shape[0]):
         for cell in range(row * width + about[row, 0], row * width + about[row, 1] + 1):
@@ -218,7 +287,19 @@ def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
 
 @bare
 def climb(cell: int, direction: int, heights: Heights, width: int, journal: ChangeLog) -> None:
-    """Link a cell to a higher neighbour and ascend from there, as in skeleton.py, and log every cell."""
+    """Link a cell to a higher neighbour, ascend until a saddle, a summit or an earlier ascent, and log every cell.
+
+    Parameters
+    ----------
+    cell, direction : int
+        Flat index of the cell, and the direction (0 east, 1 north, 2 west, 3 south) of the neighbour.
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat.
+    width : int
+        Width of the padded screen.
+    journal : ChangeLog
+        In its states links and CLIMBED are set on the way.
+    """
     states = journal.states
     while True:
         other = cell + stride(direction, width)

@@ -25,14 +25,14 @@ HEADER_WORD = re.compile(r"[^ \t]+")
 
 
 class MapError(ValueError):
-    """An error in the text of a map.
+    """An error in the text of a map; its message is "line:column-end: error: what".
 
     Attributes
     ----------
     line : the line, counted from 1.
-    column : the first column where it goes wrong, counted from 1.
-    end : the last such column.
-    what : what is wrong, in words.
+    column : the first column (letter of the line) where it goes wrong, counted from 1.
+    end : the last such column; by default, and at least, the first.
+    what : what is wrong, in words, without a full stop.
     """
 
     def __init__(self, line: int, column: int, what: str, end: int | None = None) -> None:
@@ -41,13 +41,14 @@ class MapError(ValueError):
 
 
 class Trip(NamedTuple):
-    """One problem of a scenario file, in squares of the screen (row 0 in the south).
+    """One problem of a scenario file, in squares of the screen (row 0 in the south, (0, 0) at its south-west corner).
 
     Attributes
     ----------
     start : (x, y), the centre of the first square.
     goal : (x, y), the centre of the last square.
-    octile : the length of the optimal path over eight directions, as the file says.
+    octile : the length in squares of the optimal path over eight directions, as the file says; a diagonal step counts
+        sqrt(2).
     """
 
     start: tuple[float, float]
@@ -56,7 +57,13 @@ class Trip(NamedTuple):
 
 
 def read_map(path: str | Path) -> Bools:
-    """Return the free squares of a map file, (rows, columns) bool, row 0 in the south.
+    """Return the free squares of a map file, (rows, columns) bool, row 0 in the south (the last line of the file).
+
+    The letters ``.``, ``G`` and ``S`` are free (True), ``@``, ``O``, ``T`` and ``W`` are not.
+
+    Parameters
+    ----------
+    path : the file, in the format of the Moving AI benchmarks (see the top of this module).
 
     Raises
     ------
@@ -74,10 +81,17 @@ def read_map(path: str | Path) -> Bools:
 def parse_map(raw: bytes) -> Bools:
     r"""Return the free squares of the map that these bytes describe, (rows, columns) bool, row 0 in the south.
 
+    The first row of text is the north edge. The letters ``.``, ``G`` and ``S`` are free (True), ``@``, ``O``, ``T`` and
+    ``W`` are not.
+
+    Parameters
+    ----------
+    raw : the content of a file in the format of the Moving AI benchmarks (see the top of this module).
+
     Raises
     ------
     MapError
-        When they describe none.
+        When they describe none: at the first line, counted from 1, that goes wrong.
 
     Examples
     --------
@@ -100,7 +114,17 @@ def parse_map(raw: bytes) -> Bools:
 
 
 def _header(lines: list[str]) -> tuple[int, int, int]:
-    """Return the number of lines before the first row, the height and the width."""
+    """Return the number of lines before the first row (the line "map" included), the height and the width in squares.
+
+    Parameters
+    ----------
+    lines : all lines of the file, without blanks at their ends.
+
+    Raises
+    ------
+    MapError
+        When a line of the head is unknown, missing or given twice.
+    """
     found: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
         words = list(HEADER_WORD.finditer(line))
@@ -123,7 +147,14 @@ def _header(lines: list[str]) -> tuple[int, int, int]:
 
 
 def _number(line: int, name: str, word: "re.Match[str]") -> int:
-    """Return the number that a word of the head gives, or raise MapError."""
+    """Return the whole number above 0 that a word of the head gives, or raise MapError when it gives none.
+
+    Parameters
+    ----------
+    line : the number of the line, counted from 1, for the error.
+    name : the word before it, "height" or "width".
+    word : where it stands in the line, as a match.
+    """
     text = word.group()
     if not re.fullmatch("[0-9]+", text) or len(text) > MAX_HEADER_DIGITS or int(text) == 0:
         raise MapError(line, word.start() + 1, f"{name} must be a whole number above 0, not {text[:20]!r}", word.end())
@@ -131,7 +162,14 @@ def _number(line: int, name: str, word: "re.Match[str]") -> int:
 
 
 def _check_row(number: int, row: str, width: int) -> None:
-    """Raise MapError when a row has unknown letters or another width."""
+    """Raise MapError when a row has unknown letters or another width; return nothing.
+
+    Parameters
+    ----------
+    number : the number of its line in the file, counted from 1.
+    row : its text, without blanks at its end.
+    width : the number of squares that it must have.
+    """
     for column, square in enumerate(row[:width], 1):
         if square not in MAP_LETTERS:
             raise MapError(number, column, f"unknown square {square!r}; known are {' '.join(MAP_LETTERS)}")
@@ -140,7 +178,17 @@ def _check_row(number: int, row: str, width: int) -> None:
 
 
 def read_trips(path: str | Path) -> list[Trip]:
-    """Return the problems of a scenario file; lines that do not have nine words are skipped."""
+    """Return the problems of a scenario file, in order; lines that do not have nine words are skipped.
+
+    The file counts rows from the north; starts and goals are turned to the screen's frame, row 0 in the south.
+
+    Raises
+    ------
+    ValueError
+        When a line of nine words has no numbers where they belong, or the file is no ASCII text.
+    OSError
+        When it cannot be read.
+    """
     trips = []
     for line in Path(path).read_text(encoding="ascii").splitlines():
         words = line.split()

@@ -22,7 +22,7 @@ TEXT_STYLE = "text{font:13px sans-serif;fill:#222}"
 
 
 def place(point: XY) -> str:
-    """Return a point in words, in squares east and north of the south-west corner."""
+    """Return a point (x, y) in words, "(x, y)", in squares east and north of the south-west corner."""
     return f"({point[0]:g}, {point[1]:g})"
 
 
@@ -35,7 +35,10 @@ def draw(
     ends: tuple[XY, XY] | None = None,
     words: Callable[[XY], str] = place,
 ) -> str:
-    """Return an SVG document that shows a screen, north up.
+    """Return an SVG document, as text, that shows a screen, north up.
+
+    It has the free and blocked squares, the skeleton, and on these the pathgraph, passages and routes, with a legend on
+    the right and a scale bar below.
 
     Parameters
     ----------
@@ -44,8 +47,9 @@ def draw(
     passages : passages to draw.
     pathgraph : whether to draw the pathgraph.
     scale : pixels a square; by default such that the longer side has 960 pixels, but at most 48 pixels a square.
-    ends : (start, goal) in squares; those of the first route by default.
-    words : how the legend writes a point.
+    ends : (start, goal), each (x, y) in squares, to be marked; those of the first route by default, none without
+        routes.
+    words : how the legend writes a point (x, y) in squares; by default as "(x, y)".
     """
     routes = list(routes)
     rows, columns = screen.shape
@@ -73,7 +77,16 @@ def draw(
 
 
 def _squares(screen: Screen, width: float, height: float, scale: float) -> list[str]:
-    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it."""
+    """Return the beginning of the document: the page, and the free squares, blocked squares and skeleton on it.
+
+    It is a list of SVG elements as text. The last group is left open: what follows in it is in squares, y to the north.
+
+    Parameters
+    ----------
+    screen : the screen.
+    width, height : size of the page in pixels.
+    scale : pixels a square.
+    """
     rows, columns = screen.shape
     return [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" width="{width:g}" '
@@ -88,7 +101,10 @@ def _squares(screen: Screen, width: float, height: float, scale: float) -> list[
 
 
 def _passage_line(passage: Passage, scale: float) -> str:
-    """Return the SVG of a passage: a line from its left to its right end."""
+    """Return the SVG of a passage, in squares: a line from its left to its right end, 3 pixels wide at `scale`.
+
+    Left is as seen by a robot that goes from the first side of the passage to the second. `scale` : pixels a square.
+    """
     (ax, ay), (bx, by) = passage.a, passage.b
     style = f'stroke="#8e44ad" stroke-width="{3 / scale:g}"'
     return f'<path class="passage" d="M{ax:g} {ay:g}L{bx:g} {by:g}" {style}/>'
@@ -101,7 +117,7 @@ def route_line_width(number: int, count: int, scale: float) -> float:
 
     Parameters
     ----------
-    number, count : the number of the route, from 0, and of how many.
+    number, count : the number of the route, from 0 (drawn on top), and of how many.
     scale : pixels a square.
     """
     thinnest = min(3.0, max(1.5, 0.125 * scale)) / scale
@@ -109,12 +125,18 @@ def route_line_width(number: int, count: int, scale: float) -> float:
 
 
 def _below_first(routes: Sequence[Route]) -> list[tuple[int, Route]]:
-    """Return the routes by number, the first one last, because it is on top."""
+    """Return the routes with their numbers, (number from 0, route), in reverse order: the first one last, on top."""
     return list(reversed(list(enumerate(routes))))
 
 
 def _line_style(number: int, width: float) -> str:
-    """Return the SVG attributes for the colour, dashes and width of a route's line."""
+    """Return the SVG attributes for the colour, dashes and width of a route's line, as text.
+
+    Parameters
+    ----------
+    number : the number of the route, from 0; colour and dashes follow from it, and 28 routes differ.
+    width : width of the line, in the unit of the group that it is drawn in.
+    """
     dashes = ROUTE_DASHES[number // len(ROUTE_COLOURS) % len(ROUTE_DASHES)]
     pattern = " ".join(f"{float(part) * width:g}" for part in dashes.split())
     dashed = f' stroke-dasharray="{pattern}"' if pattern else ""
@@ -122,25 +144,45 @@ def _line_style(number: int, width: float) -> str:
 
 
 def _route_text(number: int, route: Route) -> str:
-    """Return number, length and clearance of a route in words."""
+    """Return number (`number`, counted from 0, plus 1), length and clearance of a route in words, in squares.
+
+    A clearance that is nan is "not known".
+    """
     clearance = "not known" if isnan(route.clearance) else f"{route.clearance:g}"
     return f"{number + 1}: length {route.length:.3f}, clearance {clearance}"
 
 
 def _line(number: int, route: Route, width: float) -> str:
-    """Return the SVG of a route."""
+    """Return the SVG of a route, in squares (y to the north): a line with a title that gives its length and clearance.
+
+    Parameters
+    ----------
+    number : the number of the route, from 0, which decides on colour and dashes.
+    route : its points are corners (x, y) in squares.
+    width : width of the line in squares.
+    """
     points = "L".join(f"{x:g} {y:g}" for x, y in route.points.tolist())
     title = f"<title>route {_route_text(number, route)}</title>"
     return f'<path class="route" d="M{points}" {_line_style(number, width)}>{title}</path>'
 
 
 def _pixel(point: XY, rows: int, scale: float) -> XY:
-    """Return a point in pixels of the picture."""
+    """Return a point (x, y) in squares of the screen as (x, y) in pixels of the picture, from its top left corner.
+
+    Parameters
+    ----------
+    point : (x, y) in squares, y to the north.
+    rows : number of rows of the screen.
+    scale : pixels a square.
+    """
     return PICTURE_MARGIN + point[0] * scale, PICTURE_MARGIN + (rows - point[1]) * scale
 
 
 def _marks(ends: Sequence[XY]) -> list[str]:
-    """Return the SVG of a ring at the start and a diamond at the goal."""
+    """Return the SVG of a ring at the start and a diamond at the goal, as two elements.
+
+    `ends` : (start, goal), each (x, y) in pixels, y downwards.
+    """
     (ax, ay), (bx, by) = ends
     return [
         f'<circle class="start" cx="{ax:g}" cy="{ay:g}" r="6" fill="#ffffff" stroke="#000000" stroke-width="2.5"/>',
@@ -149,7 +191,14 @@ def _marks(ends: Sequence[XY]) -> list[str]:
 
 
 def _scale_bar(longest: float, scale: float, x: float, y: float) -> list[str]:
-    """Return the SVG of a bar of a round number of squares, at most `longest`, with its length in words."""
+    """Return the SVG of a bar of a round number of squares, at most `longest`, with its length in words.
+
+    Parameters
+    ----------
+    longest : in squares; less than 1 counts as 1. The bar has 1, 2 or 5 times a power of ten squares.
+    scale : pixels a square.
+    x, y : its left end in pixels of the picture, y downwards.
+    """
     power = 10.0 ** floor(log10(max(longest, 1.0)))
     squares = max(digit * power for digit in (1, 2, 5) if digit * power <= max(longest, 1.0))
     text = f"{squares:g} square" + "s" * (squares != 1)
@@ -166,7 +215,15 @@ LegendRow = Callable[[float, float], str]
 def _legend(
     routes: Sequence[Route], ends: tuple[XY, XY] | None, words: Callable[[XY], str], pathgraph: bool
 ) -> list[LegendRow]:
-    """Return the rows of the legend: functions that give a row's SVG at a place."""
+    """Return the rows of the legend, from the top: functions that give a row's SVG at a place (x, y) in pixels.
+
+    Parameters
+    ----------
+    routes : all routes; the first 24 get a row each, the others one row together.
+    ends : (start, goal), each (x, y) in squares; None for no rows of them.
+    words : how a point is written.
+    pathgraph : whether there is a row for the pathgraph.
+    """
     rows: list[LegendRow] = []
     if ends is not None:
         ring, diamond = _marks([(0.0, 0.0), (0.0, 0.0)])
@@ -186,17 +243,23 @@ def _legend(
 
 
 def _legend_row(sample: str, text: str) -> LegendRow:
-    """Return the row of a sample and the text that explains it."""
+    """Return the row of a sample and the text that explains it: a function of x and y, in pixels, that gives its SVG.
+
+    `sample` : SVG elements about (0, 0), in pixels.
+    """
     return lambda x, y: (
         f'<g class="legend" transform="translate({x + 12:g} {y:g})">{sample}<text x="22" y="4">{text}</text></g>'
     )
 
 
 def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
-    """Return the SVG of the pathgraph: chains as lines, nodes as dots.
+    """Return the SVG of the pathgraph: chains as lines, then nodes as dots, an element each.
+
+    Their coordinates are in squares, y to the north: they belong into a group that is scaled and turned over.
 
     Parameters
     ----------
+    screen : the screen whose pathgraph is drawn.
     pixel : the size of a pixel, in squares.
     """
     parts = []
@@ -210,7 +273,11 @@ def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
 
 
 def without_straight_points(points: Floats) -> Floats:
-    """Return a polyline (n, 2) without the points on straight stretches."""
+    """Return a polyline (n, 2) without the points between two equal steps; the first and last point stay.
+
+    A polyline of fewer than three points is returned itself. Steps in one direction of different lengths do not count
+    as equal.
+    """
     if len(points) < 3:
         return points
     step = np.diff(points, axis=0)
@@ -220,7 +287,10 @@ def without_straight_points(points: Floats) -> Floats:
 
 
 def rectangles_of(mask: Bools) -> str:
-    """Return SVG path data of the horizontal runs of a mask."""
+    """Return SVG path data of the horizontal runs of True squares of a mask (rows, columns): a rectangle for each run.
+
+    In squares, with x along columns and y along rows (row 0 at y = 0 to 1). Empty text for an empty mask.
+    """
     edges = np.diff(np.pad(mask.astype(np.int8), ((0, 0), (1, 1))), axis=1)
     starts, ends = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1).tolist()
     return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for (row, a), (_, b) in zip(starts, ends, strict=True))

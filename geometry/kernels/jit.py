@@ -20,13 +20,19 @@ PROGRESS_INTERVAL = 5.0  # seconds between two lines of progress; a convention
 
 
 class Kernel(Generic[Arguments, Returned]):
-    """A function that compiles itself when it is first called.
+    """A function that compiles itself when it is first called; called like the function, it returns the same.
+
+    Parameters
+    ----------
+    function : the Python function, plain loops over arrays and numbers.
+    counts_references : whether the compiled code counts references to arrays, which it must when it makes new arrays.
 
     Attributes
     ----------
-    function : the Python function.
+    function : the Python function, which runs uncompiled.
     call_unchecked : the compiled function for callers whose arguments always have the very types of its first call. It
-        does not look at types again, which takes most of the time of short, frequent calls.
+        does not look at types again, which takes most of the time of short, frequent calls. Other types are not noticed
+        and lead to undefined results.
     """
 
     def __init__(self, function: Callable[Arguments, Returned], counts_references: bool) -> None:
@@ -40,7 +46,10 @@ class Kernel(Generic[Arguments, Returned]):
         self._numba: Callable[Arguments, Returned] | None = None
 
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
-        """Call the kernel; compile it first if this is its first call."""
+        """Call the kernel and return what its function returns; compile it first if this is its first call.
+
+        Arguments of other types than before make numba compile it once more, for these.
+        """
         if self._compiled is None:
             dispatcher = self.dispatcher()
             _compile(dispatcher, args)
@@ -48,7 +57,11 @@ class Kernel(Generic[Arguments, Returned]):
         return self._compiled(*args, **kwargs)
 
     def dispatcher(self) -> Callable[Arguments, Returned]:
-        """Return numba's dispatcher, or the Python function itself if numba is told not to compile."""
+        """Return numba's dispatcher, the object that picks compiled code by the types of arguments.
+
+        It is made when first asked for. When numba is told not to compile (NUMBA_DISABLE_JIT=1) the Python function
+        itself is returned.
+        """
         if self._numba is None:
             self._numba = _dispatcher(self.function, self._counts_references)
             if not hasattr(self._numba, "overloads"):
@@ -56,14 +69,18 @@ class Kernel(Generic[Arguments, Returned]):
         return self._numba
 
     def _first_unchecked(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
-        """Compile for the types of these arguments, replace `call_unchecked` by the result, and call it."""
+        """Compile for the types of these arguments, put the result in place of `call_unchecked`, and call it.
+
+        Returns what it returns.
+        """
         self.call_unchecked = self.entry(*args, **kwargs)
         return self.call_unchecked(*args, **kwargs)
 
     def entry(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Callable[Arguments, Returned]:
-        """Compile for the types of these arguments, without running, and return the machine code for them.
+        """Compile for the types of these arguments, without running, and return the machine code as a function.
 
-        It does not look at types again: later arguments must have the very same types.
+        It does not look at types again: later arguments must have the very same types. When numba is told not to
+        compile, the Python function is returned.
         """
         dispatcher: Any = self.dispatcher()
         _compile(dispatcher, args)
@@ -74,12 +91,15 @@ class Kernel(Generic[Arguments, Returned]):
 
 
 def compiled(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
-    """Decorate a kernel. Its arguments are arrays and numbers; it may call other kernels, also of other modules."""
+    """Decorate a function: return the kernel that stands for it and compiles itself when first called.
+
+    Its arguments are arrays and numbers; it may make arrays and call other kernels, also of other modules.
+    """
     return Kernel(function, True)
 
 
 def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]:
-    """Decorate a kernel that makes no arrays but views, returns none, and calls only such kernels.
+    """Decorate a function that makes no arrays but views, returns none, and calls only such kernels; return its kernel.
 
     Numba then counts no references to arrays, which in kernels of many small calls takes most of the time.
     """
@@ -87,7 +107,10 @@ def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]
 
 
 def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool) -> Callable[Arguments, Returned]:
-    """Return numba's dispatcher of a function, set up for caching, linking and notices."""
+    """Return numba's dispatcher of a function, set up for the cache on disk, linking to other kernels and notices.
+
+    With NUMBA_DISABLE_JIT=1 that is the function itself. `counts_references` is as for `Kernel`.
+    """
     import numba
 
     _skip_blas_lookup()
@@ -108,8 +131,8 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
 def _skip_blas_lookup() -> None:
     """Import numba's array functions without its search for BLAS, which would import scipy where that is installed.
 
-    Kernels multiply no matrices, and that import takes as long as all else of a cold start. Code that multiplies
-    matrices with numba still finds scipy at that time.
+    Nothing happens when they are imported already. Kernels multiply no matrices, and that import takes as long as all
+    else of a cold start. Code that multiplies matrices with numba still finds scipy at that time.
     """
     if "numba.np.arraymath" in sys.modules:
         return
@@ -124,7 +147,10 @@ def _skip_blas_lookup() -> None:
 
 
 def _load_without_compiler(dispatcher: Any) -> None:
-    """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it."""
+    """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it.
+
+    The dispatcher is changed in place; nothing happens with versions of numba that lack the methods used here.
+    """
     store = dispatcher._cache
     if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
         return
@@ -139,7 +165,10 @@ def _load_without_compiler(dispatcher: Any) -> None:
 
 
 def _widen_integers(dispatcher: Any) -> None:
-    """Make a dispatcher compile one copy for all whole numbers, else each constant and each width would get its own."""
+    """Make a dispatcher, in place, compile one copy for all whole numbers, as int64.
+
+    Else each constant and each width would get a copy of its own.
+    """
     from numba.core import types
 
     compile_exactly = dispatcher.compile
@@ -151,7 +180,17 @@ def _widen_integers(dispatcher: Any) -> None:
 
 
 def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> None:
-    """Make a dispatcher link to other kernels, and print a notice when compiling takes long, if it is not cached."""
+    """Make a dispatcher, in place, link to other kernels before it compiles, and count and report what it compiles.
+
+    When compiling takes longer than a second, a notice is printed on the standard error stream. None of this happens
+    when the code comes from the cache.
+
+    Parameters
+    ----------
+    dispatcher : numba's dispatcher of a kernel.
+    module_globals : the names of the module that defines the kernel, with their values; kernels among them are
+        replaced by their dispatchers.
+    """
     compiler = dispatcher._compiler
     compile_now = compiler.compile
 
@@ -170,27 +209,30 @@ def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> Non
 
 
 def _link(module_globals: dict[str, Any]) -> None:
-    """Replace kernels among a module's globals by their dispatchers, the only ones that numba resolves there."""
+    """Replace kernels among a module's globals (name to value) by their dispatchers, in place.
+
+    Numba resolves no other objects there.
+    """
     for name, value in list(module_globals.items()):
         if isinstance(value, Kernel):
             module_globals[name] = value.dispatcher()
 
 
 def _compile(dispatcher: Any, args: tuple[Any, ...]) -> None:
-    """Compile for the types of these arguments, without running."""
+    """Compile for the types of these arguments, without running; do nothing when given a plain function."""
     if hasattr(dispatcher, "typeof_pyval"):
         dispatcher.compile(tuple(dispatcher.typeof_pyval(value) for value in args))
 
 
 class CompilingProgress:
-    """The kernels that this process has compiled, reported on a terminal every few seconds.
+    """The kernels that this process has compiled, reported on a terminal (standard error) every few seconds.
 
     Attributes
     ----------
-    dispatchers : numba's dispatchers of all kernels that were called.
-    has_cache : whether there is a directory to keep kernels in.
-    compiled_count : number of kernels compiled.
-    started_at : when the reports began, in seconds of time.monotonic; None before.
+    dispatchers : numba's dispatchers of all kernels called so far, in the order of their first calls.
+    has_cache : whether there is a directory to keep compiled kernels in.
+    compiled_count : how many times this process has compiled a kernel, not counting those read from the cache.
+    started_at : time.monotonic(), in seconds, when reports began; None before, and nothing is reported then.
     notice_delay : seconds of compiling one kernel after which the user is informed.
     interval : seconds between two lines of progress.
     """
@@ -214,7 +256,10 @@ class CompilingProgress:
         self.notice_delay, self.interval = NOTICE_DELAY, PROGRESS_INTERVAL
 
     def step(self) -> None:
-        """Count one more compiled kernel, and report progress if it is time to."""
+        """Count one more compiled kernel; report progress when reports have begun and it is time for one.
+
+        Nothing is printed unless standard error is a terminal.
+        """
         self.compiled_count += 1
         now = time.monotonic()
         if (
@@ -231,7 +276,7 @@ class CompilingProgress:
         )
 
     def begin(self) -> None:
-        """Start reporting from now on."""
+        """Start reporting from now on; the first report comes no sooner than five seconds later."""
         self.started_at = self._reported_at = time.monotonic()
 
 
@@ -239,13 +284,17 @@ PROGRESS = CompilingProgress()
 
 
 def kernel_status() -> tuple[int, bool]:
-    """Return how many kernels this process can call, and whether they are cached on disk for the next process."""
+    """Return how many kernels this process has ready, compiled or read from disk, and whether there is a cache on disk.
+
+    The second value is True when compiled kernels are kept for the next process, False when no directory can be
+    written.
+    """
     return sum(bool(dispatcher.overloads) for dispatcher in PROGRESS.dispatchers), PROGRESS.has_cache
 
 
 @cache
 def announce_compiling() -> None:
-    """Print, once in a process, that kernels are being compiled; start the reports of progress."""
+    """Print on standard error, once in a process, that kernels are being compiled; start the reports of progress."""
     once = "once per installation"
     if not PROGRESS.has_cache:
         once = "they cannot be kept for the next run: set NUMBA_CACHE_DIR to a folder that can be written"

@@ -25,8 +25,12 @@ MAX_ALIGNMENTS = 4  # first legs for which the rest is planned; convention, for 
 def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS) -> list[Leg] | None:
     """Return legs of which the first aligns the body and the others go by whole squares; None when none are found.
 
+    An aligned body has its longest side along an axis and its first corner on whole squares. Of the plans found the one
+    with the fewest commands is returned.
+
     Parameters
     ----------
+    query : the body, the robot, the goal, and what is in the way.
     max_alignments : the number of first legs for which the rest is planned.
     """
     best: list[Leg] | None = None
@@ -39,7 +43,7 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
 
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
-    """Yield the legs that align the body, those with short walks first."""
+    """Yield the legs that align the body, at most one for each grasp, those with short walks first."""
     tilt = longest_edge_tilt(query.shape)
     for candidate in grasp_candidates(query):
         relative = query.grasp_offset(candidate.place)
@@ -54,7 +58,17 @@ def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
 
 
 def _aligning_motions(query: ManipulationQuery, utak: XY, degrees: float) -> tuple[Motion, ...]:
-    """Return the turn by `degrees` and the push that align the body; () when not free or nothing is to be done."""
+    """Return the turn by `degrees` and the push that align the body; () when not free or nothing is to be done.
+
+    Parameters
+    ----------
+    utak : (x, y) of the robot when it holds the body, squares, table frame; the turn is about it.
+    degrees : counter-clockwise positive; below MIN_ALIGNMENT, or nearly 90, there is no turn.
+
+    Returns
+    -------
+    Translate and Rotate in order, table frame, at most one of each; the turn comes first.
+    """
     motions: list[Motion] = []
     shape = query.shape
     if MIN_ALIGNMENT < abs(degrees) < 90.0 - MIN_ALIGNMENT:

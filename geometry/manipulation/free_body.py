@@ -14,7 +14,11 @@ MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a
 
 
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
-    """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too."""
+    """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too.
+
+    Its poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
+    "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
+    """
     middle = query.shape.centroid
     centred = shapely.transform(query.shape, lambda p: p - np.array([middle.x, middle.y]))
     goal = query.goal
@@ -32,13 +36,14 @@ def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
 
 
 def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
-    """Return the floor near a corner in which a body must lie to be in the corner.
+    """Return the floor near a corner in which a body must lie to be in the corner: shapely MultiPolygon, table frame.
 
-    A body that cannot be brought there cannot be in the corner.
+    A body that cannot be brought there cannot be in the corner. Empty if no floor comes near both walls.
     """
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
 
     def corner_box(across: float, up: float) -> Any:
+        """Return the box from the corner `across` squares along x and `up` squares along y into the floor."""
         x0, x1 = sorted([goal.x, goal.x - goal.sx * across])
         y0, y1 = sorted([goal.y, goal.y - goal.sy * up])
         return shapely.box(x0, y0, x1, y1)
@@ -50,7 +55,10 @@ def _corner_region(goal: InCorner, query: ManipulationQuery) -> Any:
 
 
 def _region_between_walls(goal: Between, query: ManipulationQuery) -> Any:
-    """Return the floor near two walls in which a body must lie to be within the slack of both."""
+    """Return the floor near two walls in which a body must lie to be within the slack of both.
+
+    shapely MultiPolygon, squares, table frame. `goal.slack` is the greatest gap to each wall. Empty without such floor.
+    """
     reach = 2.0 * shapely.minimum_bounding_radius(query.shape) + goal.slack
     parts = shapely.get_parts(query.workspace.floor_polygon.intersection(goal.about(reach)))
     return shapely.MultiPolygon([p for p in parts if p.area > 0.0 and max(goal.gaps(p)) <= goal.slack])

@@ -22,8 +22,8 @@ class GraspCandidate:
 
     Attributes
     ----------
-    place : (x, y) in squares, the centre of a square, or the robot's own place.
-    walk : squares to walk to it.
+    place : (x, y) in squares, table frame, the centre of a square, or the robot's own place.
+    walk : squares to walk to it, rounded down.
     taken : whether the robot is there and holds the body already.
     """
 
@@ -35,7 +35,8 @@ class GraspCandidate:
 def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
     """Return the present grasp if there is one, then those that the robot can walk to, nearest first.
 
-    Grasps that must be avoided are left out.
+    Each other candidate is the centre of a free square that shares a side or a corner with one that the body covers.
+    Grasps that must be avoided are left out. [] when there is none.
     """
     shape, utak = query.shape, query.utak
     rows, columns = query.walk.shape
@@ -61,13 +62,15 @@ def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
 def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Floats) -> tuple[bool, int, float, int, XY]:
     """Return a sort key for grasps: the most promising has the least.
 
-    Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall; the
-    distance of the body's furthest corner; the squares to walk; the place.
+    Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall, in
+    MAX_TRACK_SAMPLES poses; the distance of the body's furthest corner in squares; the squares to walk; the place.
 
     Parameters
     ----------
-    track : (n, 3) float64, a path of the body alone: x, y in squares and angle in radians of some point of it; may be
-        empty.
+    query : the body, the robot, and what is in the way.
+    candidate : the grasp.
+    track : (n, 3) float64, a path of the body alone: x, y in squares, table frame, and angle in radians of some point
+        of it; may be empty.
     """
     in_walls = 0
     if len(track):

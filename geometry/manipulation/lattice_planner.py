@@ -36,7 +36,7 @@ MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, f
 
 
 def _footprints_of(query: ManipulationQuery) -> tuple[Footprints, Footprints]:
-    """Return the footprints of the shape, and of the shape with its margin."""
+    """Return the footprints of the shape, and of the shape with its margin (the same object without a margin)."""
     shape = query.shape
     home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
     shape_near = shapely.transform(shape, lambda p: np.round(p - np.array(home), PLACE_DIGITS))
@@ -47,9 +47,14 @@ def _footprints_of(query: ManipulationQuery) -> tuple[Footprints, Footprints]:
 
 @lru_cache(maxsize=32)
 def _footprints_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tuple[Footprints, Footprints]:
-    """Return the footprints of a shape (WKB) whose centroid lies in the square (0, 0), without and with its margin.
+    """Return the footprints of a shape whose centroid lies in the square (0, 0), without and with its margin.
 
-    `own` is the robot's square relative to that square when it holds the shape, else None.
+    Parameters
+    ----------
+    wkb : well-known binary of a shapely Polygon, squares, table frame moved so that the square of the centroid is (0,
+        0).
+    margin : squares; with 0 both footprints are the same object.
+    own : (column, row) of the robot relative to that square when it holds the shape, else None.
     """
     shape = shapely.from_wkb(wkb)
     body = new_footprints(shape, own)
@@ -61,7 +66,7 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
     A robot that holds the shape off the centre of a square pushes it by whole squares all the same, as long as it does
     not turn it. Or it comes to the centre with its first push, or with one push more, where that takes fewer commands.
-    Both are cheaper than to release and grasp again.
+    Both are cheaper than to release and grasp again. The legs are in the order of execution; they are not verified.
     """
     if not query.held:
         return _cheapest_legs(query)
@@ -78,7 +83,7 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
-    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes."""
+    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None."""
     x, y = query.utak
     legs = _cheapest_legs(replace(query, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
     if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
@@ -90,9 +95,9 @@ def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def _nudges(query: ManipulationQuery) -> list[Translate]:
-    """Return the pushes that bring the robot to the centre of a square, shortest first.
+    """Return the pushes that bring the robot to the centre of a square, shortest first, MAX_NUDGES at most.
 
-    There is one of length 0 if the robot is at the centre.
+    Translate in squares, table frame. There is one of length 0 if the robot is at the centre.
     """
     x, y = (sorted((math.floor(v - 0.5) + 0.5 - v, math.floor(v - 0.5) + 1.5 - v), key=abs) for v in query.utak)
     x, y = ([0.0] if abs(near) <= CENTRE_TOLERANCE else [near, far] for near, far in (x, y))
@@ -101,22 +106,26 @@ def _nudges(query: ManipulationQuery) -> list[Translate]:
 
 
 def _may_begin(query: ManipulationQuery, leg: Leg) -> bool:
-    """Return whether the robot, holding the shape, can and may make the first motion of a leg."""
+    """Return whether the robot, holding the shape, can and may make the first motion of a leg.
+
+    For a leg without motions: whether it may pull.
+    """
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
     pushes = query.pull or only_pushes(query.shape, query.utak, [motion])
     return pushes and query.workspace.lets(query.shape, query.utak, motion)
 
 
 def _leg_cost(query: ManipulationQuery, legs: Sequence[Leg]) -> float:
-    """Return about how many commands legs take, each turn counted as the query says."""
+    """Return about how many commands legs take, each turn counted as query.turn commands."""
     turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
     return commands(legs) + (query.turn - 1.0) * turns
 
 
 def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | None = None) -> list[Leg] | None:
-    """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape.
+    """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape, or None.
 
-    A push with a bend may become one straight push, or two: both costs are tried, and the fewer commands taken.
+    A push with a bend may become one straight push, or two: both costs are tried, and the fewer commands taken. None
+    when none are found, or the centroid of the shape is off the table.
 
     Parameters
     ----------
@@ -135,7 +144,22 @@ def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | N
 
 
 class _LatticeSearch:
-    """A search on the state lattice: what does not depend on the cost of bends is made once."""
+    """A search on the state lattice: what does not depend on the cost of bends is made once.
+
+    Parameters
+    ----------
+    query, before_nudge : the query that is searched, and the one before the robot was pushed to the centre of a square.
+
+    Attributes
+    ----------
+    on_grid : whether the centroid of the shape is in a square of the table. If not, only this, `query`, `before_nudge`
+        and `body` are set.
+    body : the footprints of the shape.
+    grid, lattice : the numbering of squares, and the state lattice.
+    place : number, in `grid`, of the square of the centroid as the shape lies.
+    ends : (4, squares) int32, cost of ending at each pose, -1 off the goal.
+    first_costs : (grasps,) int32, cost of the first grasp at each of `body.holds`; -1 where the robot cannot.
+    """
 
     def __init__(self, query: ManipulationQuery, before_nudge: ManipulationQuery) -> None:
         self.query, self.before_nudge = query, before_nudge
@@ -156,7 +180,10 @@ class _LatticeSearch:
         self.first_costs = _first_grasp_costs(query, self.body, walk)
 
     def legs(self, bend_cost: int) -> list[Leg] | None:
-        """Return the cheapest legs, given the cost of another direction within one push; None when none are found."""
+        """Return the cheapest legs, given the cost of another direction within one push; None when none are found.
+
+        `bend_cost` : in the costs of the lattice, COMMAND_COST for a command.
+        """
         to_go = cost_to_go(self.lattice, self.ends, bend_cost)
         if not 0 <= to_go[0, NO_DIRECTION, self.place] < COST_UNREACHABLE:
             return None
@@ -172,7 +199,11 @@ class _LatticeSearch:
 
 
 def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) -> Costs:
-    """Return the cost of the first grasp at each place: 0 for the present one; any other needs a release first."""
+    """Return the cost of the first grasp at each of body.holds: 0 for the present one; any other needs a release first.
+
+    (grasps,) int32, COMMAND_COST for a command; -1 where no path leads or the grasp must be avoided. `walk` : the same
+    for a robot with empty hands.
+    """
     if not query.held:
         return walk
     first_costs = np.where(walk >= 0, walk + REGRASP_COST, -1).astype(np.int32)
@@ -181,7 +212,10 @@ def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) 
 
 
 def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
-    """Return the cost of a grasp at each place, -1 where it must be avoided."""
+    """Return the cost of a grasp at each of body.holds, -1 where it must be avoided.
+
+    (grasps,) int32: 0 beside the shape, CORNER_GRASP_COST across a corner of the robot's square.
+    """
     lying = {(int(x), int(y)) for x, y in body.lying}
     grips = []
     for x, y in body.holds.tolist():
@@ -192,7 +226,11 @@ def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
 
 
 def _allowed_pushes(query: ManipulationQuery, body: Footprints) -> Bools:
-    """Return in which directions the robot may push from each grasp in each quarter turn, (4, grasps, 8) bool."""
+    """Return in which directions the robot may push from each grasp in each quarter turn: (4, grasps, 8) bool.
+
+    The first axis is the quarter turn of the shape, the second the index in body.holds, the third the direction as in
+    PUSH_DIRECTIONS, table frame. All True where the robot may pull.
+    """
     allowed = np.ones((4, len(body.holds), 8), np.bool_)
     if query.pull:
         return allowed

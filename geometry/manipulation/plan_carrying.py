@@ -48,11 +48,12 @@ class CarryingPlan:
     status : "found"; "impossible": proved, the body cannot be moved there even by itself; "limit": not found, and not
         proved either.
     legs : what the robot does, in order; () unless found, or when the goal holds already.
-    pose : the end of the body: turned about its centroid by degrees, then moved by (x, y) squares, as in At; None
-        unless found.
-    polygon : the body as it ends; None unless found.
-    reason : when not found, what was in the way: "body" (the body by itself cannot pass), "hold" (it could, but the
-        robot with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such end); else "".
+    pose : the end of the body relative to how it lies: turned about its centroid by degrees, then moved by (x, y)
+        squares, as in At; None unless found.
+    polygon : shapely Polygon, table frame, the body as it ends; None unless found.
+    reason : when not found, what was in the way: "body" (the body by itself cannot pass, or was not found to), "hold"
+        (it could, but the robot with it was not found to), "start" (it overlaps a wall where it lies), "goal" (no such
+        end); else "".
     body : the motion plan of the body by itself, when that was planned; else None.
     held : whether the robot held the body when the plan was asked for. Unless the first leg goes on with that grasp
         (`Leg.taken`) it releases first.
@@ -68,12 +69,12 @@ class CarryingPlan:
 
     @property
     def goes_on(self) -> bool:
-        """Return whether the plan begins with the grasp that the robot has."""
+        """Return whether the plan begins with the grasp that the robot has; False without legs."""
         return len(self.legs) > 0 and self.legs[0].taken
 
     @property
     def commands(self) -> int:
-        """Return about how many commands the plan takes: walks, grasps, pushes, turns, releases."""
+        """Return about how many commands the plan takes: walks, grasps, pushes, turns, releases; 0 without legs."""
         lets_go_first = self.held and len(self.legs) > 0 and not self.goes_on
         return commands(self.legs) + int(lets_go_first)
 
@@ -86,13 +87,13 @@ class CarryingPlan:
         return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
 
     def shifted(self, dx: float, dy: float) -> "CarryingPlan":
-        """Return the same plan translated by (dx, dy) squares."""
+        """Return the same plan translated by (dx, dy) squares, table frame: its legs and its polygon; `body` stays."""
         polygon = None if self.polygon is None else Translate(dx, dy).carry(self.polygon)
         return replace(self, legs=tuple(shifted(leg, dx, dy) for leg in self.legs), polygon=polygon)
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """Return the neck that is too narrow for the body; None unless the plan is impossible because of one.
+        """Return the bottleneck that is too narrow for the body; None unless the plan is impossible because of one.
 
         Computed on first access.
         """
@@ -100,14 +101,14 @@ class CarryingPlan:
 
     @cached_property
     def opens(self) -> bool:
-        """Return whether widening the passage would be enough. Computed on first access."""
+        """Return whether widening the passage would be enough; False without one. Computed on first access."""
         return self.body is not None and self.body.opens
 
     @cached_property
     def missing(self) -> float:
-        """Return the width that the passage lacks, in squares (see MotionPlan.missing); nan unless there is a passage.
+        """Return the width that the passage lacks, in squares; nan without a passage.
 
-        Computed on first access.
+        inf if widening it would not be enough. Computed on first access (see MotionPlan.missing).
         """
         return math.nan if self.body is None else self.body.missing
 
@@ -132,17 +133,18 @@ def plan_carrying(
     shape : shapely Polygon where it lies, in squares, table frame.
     free : (rows, columns) bool, row 0 in the south: squares that nothing but the body may cover. All else, and all
         outside the array, is wall for the body and for the robot.
-    utak : (x, y) of the robot, in squares.
+    utak : (x, y) of the robot, in squares, table frame.
     goal : At(pose), Inside(polygons), InCorner(x, y, sx, sy) or Between(x, y, walls).
     margin : squares of clearance that pushes and turns of the body should keep from walls; kept where that needs no
         long detour.
     pull : False: every push must have a component from the robot towards the body's centroid.
-    avoid : offsets of grasps that must not be used, as in `Leg.hold`.
+    avoid : offsets (x, y) of grasps that must not be used, as in `Leg.hold`: the robot's place relative to the body's
+        centroid, squares.
     walk : (rows, columns) bool, where the robot may walk with empty hands, from square to square by their edges; None
         for `free`. The squares under the body are closed wherever it then lies; where it lay they open when it has
         gone.
-    walls : shapely geometry, the walls where they are known better than by squares; `free` are then the squares that
-        they leave whole. None for all that is not free.
+    walls : shapely geometry, squares, table frame, the walls where they are known better than by squares; `free` are
+        then the squares that they leave whole. None for all that is not free.
     held : whether the robot, where it stands, holds the body. The plan then goes on with that grasp where that costs no
         more than to release, walk and grasp; `taken` of its first leg says so, which begins at the robot's place. A
         grasp in `avoid` is released.
@@ -151,13 +153,13 @@ def plan_carrying(
 
     Returns
     -------
-    CarryingPlan
-        Every motion is free by exact first contact for body and robot as one, with its numbers as they are commanded.
+    CarryingPlan : its status is "found", "impossible" (proved for the body alone) or "limit". Every motion is free by
+        exact first contact for body and robot as one, with its numbers as they are commanded. When the goal holds
+        already it is "found" without legs.
 
     Raises
     ------
-    ValueError
-        When the body has no area, or shapes of arrays or numbers do not make sense.
+    ValueError : the body has no area, or shapes of arrays or numbers do not make sense.
     """
     free = np.ascontiguousarray(free, dtype=bool)
     _check(free, utak, margin, avoid, walk, turn)
@@ -217,7 +219,7 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners = OFF_L
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
-    """Raise ValueError for arguments that make no sense."""
+    """Raise ValueError for arguments of plan_carrying that make no sense; return None otherwise."""
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
     require_bounded([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
@@ -228,7 +230,7 @@ def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bool
 
 
 def _body(shape: Any) -> Any:
-    """Return the body as a valid polygon with an area, or raise ValueError."""
+    """Return the body as a valid shapely Polygon with an area, or raise ValueError."""
     body = valid_polygons(shape, "the body")
     if body is None or body.geom_type != "Polygon" or not len(boundary_edges(body)):
         raise ValueError("the body must be a polygon with an area")
@@ -236,7 +238,7 @@ def _body(shape: Any) -> Any:
 
 
 def _check_goal(goal: End) -> None:
-    """Raise ValueError for a goal that makes no sense."""
+    """Raise ValueError for a goal that makes no sense; return None otherwise."""
     if isinstance(goal, At):
         require_bounded(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
@@ -254,7 +256,10 @@ def _check_goal(goal: End) -> None:
 
 
 def _plan_of(query: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
-    """Return the plan of some legs when they are free and lead to the goal; else None."""
+    """Return the plan of some legs, status "found", when they are free and lead to the goal; else None.
+
+    `legs` : in order; None when a planner found none.
+    """
     shape = query.shape
     end = None if legs is None else verified(query.workspace, shape, legs)
     if legs is None or end is None or not is_goal_met(query.goal, shape, end):

@@ -18,8 +18,9 @@ from geometry.motion.se2 import Motion, Rotate, Translate
 def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> Sequence[Leg] | None:
     """Return legs after which the body lies in the corner, made from legs that bring it nearly there.
 
-    The last push is made longer, or another push is added. The legs stay the same where the goal is no corner with
-    `press`, where the body lies in the corner already, or where no such push is free.
+    The last push is made longer, or another push is added. The legs stay the same (None included) where the goal is no
+    corner with `press` (the squares that a body may be pressed on), where the body lies in the corner already, or where
+    no such push is free.
     """
     goal, shape = query.goal, query.shape
     if legs is None or not isinstance(goal, InCorner) or not goal.press or not (legs or query.held):
@@ -50,19 +51,25 @@ def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> S
 
 
 def _press_distances(goal: InCorner, gap: float) -> list[float]:
-    """Return how far to press on towards a wall at a distance `gap`: up to it, or else as far as the goal needs."""
+    """Return how far, in squares, to press on towards a wall at a distance `gap` (squares), in the order to try.
+
+    Up to the wall, or else as far as the goal needs; [0.0] where the gap is small enough, [] where it is too wide.
+    """
     if gap <= goal.slack:
         return [0.0]
     return [gap, gap - goal.slack] if gap <= goal.slack + goal.press + GOAL_TOLERANCE else []
 
 
 def _is_motion(motion: Motion) -> bool:
-    """Return whether a motion is not null."""
+    """Return whether a motion is not null; every turn counts as one."""
     return isinstance(motion, Rotate) or any(motion)
 
 
 def _last_leg_may_push(query: ManipulationQuery, legs: Sequence[Leg]) -> bool:
-    """Return whether no motion of the last leg pulls, where pulling is forbidden."""
+    """Return whether no motion of the last leg pulls, where pulling is forbidden; True where it is allowed.
+
+    `legs` : all legs from the shape of the query on, at least one.
+    """
     if query.pull:
         return True
     shape = query.shape

@@ -28,8 +28,8 @@ class ManipulationQuery:
     goal : where the shape shall end.
     margin : clearance that pushes and turns should keep.
     pull : whether the robot may pull; otherwise every push leads towards the body.
-    avoid : offsets of grasps that must not be used (see `Leg.hold`).
-    walk : (rows, columns) bool, squares where the robot may walk with empty hands.
+    avoid : offsets of grasps that must not be used (see `Leg.hold`): the robot's place relative to the body's centroid.
+    walk : (rows, columns) bool, row 0 in the south: squares where the robot may walk with empty hands.
     held : whether the robot holds the shape already, by a grasp that need not be avoided.
     turn : how many commands a turn counts for.
     """
@@ -47,25 +47,35 @@ class ManipulationQuery:
 
     @property
     def square(self) -> tuple[int, int]:
-        """Return (column, row) of the robot's square, clipped to the grid."""
+        """Return (column, row) of the robot's square, the nearest one of the table when it is outside."""
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
 
     def grasp_offset(self, place: XY) -> XY:
-        """Return a place relative to the centroid of the shape as it lies now, in squares: see `Leg.hold`."""
+        """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares.
+
+        It is an offset as in `Leg.hold`.
+        """
         return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
 
     def is_avoided(self, x: float, y: float) -> bool:
-        """Return whether a grasp must be avoided; x, y are its offset from the centroid of the shape as it lies now."""
+        """Return whether a grasp must be avoided: one at most GRASP_AVOID_DISTANCE squares from one of `avoid`.
+
+        `x`, `y` : its offset from the centroid of the shape as it lies now, squares.
+        """
         return any(math.dist((x, y), refuted) <= GRASP_AVOID_DISTANCE for refuted in self.avoid)
 
 
 def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
     """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same.
 
+    Grasp offsets in `avoid` turn with the shape; a goal pose becomes relative to where the shape then lies.
+
     Parameters
     ----------
+    query : the query before.
+    legs : in order; they are not verified.
     held : whether the robot still holds the shape at the end of the legs.
     """
     shape, utak = query.shape, query.utak
@@ -83,7 +93,12 @@ def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = Fals
 def join_legs(first: Sequence[Leg], following: Sequence[Leg]) -> list[Leg]:
     """Return legs followed by the legs of the query after them, with all grasp offsets in the frame of the first query.
 
-    Where the following legs go on with the grasp that the robot has, the legs on both sides become one.
+    Where the following legs go on with the grasp that the robot has (`taken`), the legs on both sides become one.
+
+    Parameters
+    ----------
+    first : legs of the first query.
+    following : legs of query_after(query, first), with grasp offsets in the frame of the shape as it lies then.
     """
     degrees = total_rotation(first)
     rest = [replace(leg, hold=_rotated_offset(leg.hold, -degrees)) for leg in following]
@@ -98,7 +113,13 @@ def total_rotation(legs: Sequence[Leg]) -> float:
 
 
 def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
-    """Return the same goal for a shape that has been moved."""
+    """Return the same goal for a shape that has been moved; only a goal pose changes, being relative to the shape.
+
+    Parameters
+    ----------
+    before, now : the shape (shapely Polygon, table frame) as it lay, and as it lies now.
+    degrees : by which it was turned, counter-clockwise positive.
+    """
     if not isinstance(goal, At):
         return goal
     there, here = shape_at_pose(before, goal.pose).centroid, now.centroid
@@ -106,6 +127,6 @@ def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
 
 
 def _rotated_offset(offset: XY, degrees: float) -> XY:
-    """Return a grasp offset rotated by an angle in degrees, counter-clockwise positive."""
+    """Return a grasp offset (x, y) in squares rotated by an angle in degrees, counter-clockwise positive."""
     x, y = turned(np.array([offset]), degrees)[0]
     return float(x), float(y)

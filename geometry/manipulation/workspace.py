@@ -21,16 +21,18 @@ class Workspace:
 
     Parameters
     ----------
-    free : (rows, columns) bool.
-    walls : shapely geometry, the walls among and around the squares; None for all that is not free. Where walls are
-        known better than by squares, `free` are those squares that they leave whole.
+    free : (rows, columns) bool, row 0 in the south; square (column, row) reaches from (column, row) to (column + 1, row
+        + 1) in the table frame.
+    walls : shapely geometry, squares, table frame, the walls among and around the squares; None for all that is not
+        free. Where walls are known better than by squares, `free` are those squares that they leave whole.
 
     Attributes
     ----------
-    free : (rows, columns) bool.
-    outer : shapely Polygon, the box to whose edge the surrounding wall reaches.
-    floor_polygon : shapely geometry, where a body may be.
-    walls : list of shapely Polygon.
+    free : the same array.
+    outer : shapely Polygon, the box to whose edge the surrounding wall reaches, OUTER_WALL_THICKNESS squares around the
+        array.
+    floor_polygon : shapely geometry, squares, table frame, where a body may be.
+    walls : list of shapely Polygon, squares, table frame: `outer` without the floor.
     obstacles : the walls, prepared for exact first contact.
     """
 
@@ -47,48 +49,71 @@ class Workspace:
 
     @cached_property
     def floor(self) -> ObstacleField:
-        """Return the walls prepared for plan_motion. Computed on first access."""
+        """Return the walls prepared for plan_motion, with the table as bounds. Computed on first access."""
         rows, columns = self.free.shape
         return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 
     def lets(self, shape: Any, utak: tuple[float, float], motion: Motion) -> bool:
-        """Return whether shape and robot as one rigid body can make a motion to its end."""
-        return self.is_free(ContactBody(shape, [utak]), motion)
-
-    def is_free(self, body: ContactBody, motion: Motion) -> bool:
-        """Return whether a body can make a motion to its end."""
-        return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
-
-    def far(self, body: ContactBody, vectors: Floats) -> Bools:
-        """Return which pushes a body can make to their ends, (n,) bool.
+        """Return whether shape and robot as one rigid body can make a motion to its end; touching walls is allowed.
 
         Parameters
         ----------
-        vectors : (n, 2) float64, the pushes (dx, dy) in squares.
+        shape : shapely Polygon where it lies, squares, table frame.
+        utak : (x, y) of the robot in the same frame.
+        motion : Translate or Rotate, table frame.
+        """
+        return self.is_free(ContactBody(shape, [utak]), motion)
+
+    def is_free(self, body: ContactBody, motion: Motion) -> bool:
+        """Return whether a body can make a motion (Translate or Rotate, table frame) to its end; it may touch walls."""
+        return self.obstacles.first_contact(body, motion).fraction >= FULL_MOTION
+
+    def far(self, body: ContactBody, vectors: Floats) -> Bools:
+        """Return which pushes a body can make to their ends, each from where it stands: (n,) bool.
+
+        Parameters
+        ----------
+        vectors : (n, 2) float64, the pushes (dx, dy) in squares, table frame.
         """
         free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
         return free
 
 
 def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
-    """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE."""
+    """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE.
+
+    Parameters
+    ----------
+    shape : shapely Polygon where it lies, squares, table frame.
+    utak : (x, y) of the robot in the same frame; it becomes a square.
+    margin : squares around the shape.
+    """
     return ContactBody(shapely.MultiPolygon(shapely.get_parts([padded_shape(shape, margin), clear_square(utak)])))
 
 
 def padded_shape(shape: Any, margin: float) -> Any:
-    """Return a shape with a margin (squares) around it, its corners kept sharp."""
+    """Return a shape with a margin (squares) around it, its corners kept sharp; the shape itself without a margin.
+
+    `shape` : shapely Polygon, any frame.
+    """
     return shape.buffer(margin, join_style="mitre") if margin > 0.0 else shape
 
 
 def clear_square(utak: tuple[float, float]) -> Any:
-    """Return the square about the robot that should stay free."""
+    """Return the square about the robot that should stay free: shapely Polygon, squares, table frame.
+
+    Its sides are ROBOT_CLEARANCE from the robot's place `utak` (x, y).
+    """
     return shapely.box(
         utak[0] - ROBOT_CLEARANCE, utak[1] - ROBOT_CLEARANCE, utak[0] + ROBOT_CLEARANCE, utak[1] + ROBOT_CLEARANCE
     )
 
 
 def _free_rectangles(free: Bools) -> Any:
-    """Return the free squares as few rectangles: runs along rows, joined with equal runs of the rows that follow."""
+    """Return the free squares as few rectangles: a list of shapely Polygons, squares, table frame.
+
+    Runs along rows, joined with equal runs of the rows that follow. `free` : (rows, columns) bool, row 0 in the south.
+    """
     rectangles = []
     growing: dict[tuple[int, int], int] = {}
     for row in range(len(free) + 1):
@@ -101,6 +126,6 @@ def _free_rectangles(free: Bools) -> Any:
 
 
 def _row_runs(line: Bools) -> set[tuple[int, int]]:
-    """Return the runs of True in a row as (first, stop)."""
+    """Return the runs of True in a row, (columns,) bool, as a set of (first column, column after the last)."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
     return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}

@@ -26,14 +26,19 @@ def new_moving_body(
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon in squares, drawn about the body's reference point (the origin).
-    points : (x, y) in the body's own frame, squares, that move rigidly with the shape.
-    pivot : (x, y) in the body's own frame that the body is turned about. None stands for the centre of the smallest
-        enclosing circle, where a turn moves the body least.
+    shape : shapely Polygon or MultiPolygon in squares, body frame: its reference point is the origin, not turned.
+    points : (x, y) in the body frame, squares, that move rigidly with the shape and must not enter obstacles either.
+    pivot : (x, y) in the body frame that the body is turned about. None stands for the centre of the smallest enclosing
+        circle, where a turn moves the body least.
+
+    Returns
+    -------
+    MovingBody : edges and discs in squares, body frame shifted so that the pivot is the origin ("centre"). It is cached
+        and shared: its arrays must not be written to.
 
     Raises
     ------
-    ValueError : the shape has no area, or a number is not finite.
+    ValueError : the shape has no area, or a number is not finite or too large.
     """
     at = None if pivot is None else (float(pivot[0]), float(pivot[1]))
     specks = tuple((float(x), float(y)) for x, y in points)
@@ -45,7 +50,22 @@ def new_moving_body(
 
 @lru_cache(maxsize=32)
 def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> MovingBody:
-    """Return the body of a polygon in WKB, cached: one body is planned for many times. Nothing writes to its arrays."""
+    """Return the body of a polygon in WKB, cached: one body is planned for many times. Nothing writes to its arrays.
+
+    Parameters
+    ----------
+    wkb : well-known binary of a shapely Polygon or MultiPolygon, squares, body frame.
+    points : (x, y) in that frame; each becomes a tiny square of half diagonal POINT_HALF_DIAGONAL.
+    pivot : (x, y) in that frame to turn about; None for the centre of the smallest enclosing circle.
+
+    Returns
+    -------
+    MovingBody : drawn about the pivot.
+
+    Raises
+    ------
+    ValueError : the polygon has no area.
+    """
     shape = shapely.from_wkb(wkb)
     specks = [shapely.Point(p).buffer(POINT_HALF_DIAGONAL, quad_segs=1) for p in points]
     whole = shapely.union_all([shape, *specks]) if specks else shape
@@ -64,9 +84,18 @@ def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Moving
 
 
 def _inscribed_discs(shape: Any, centre: Floats) -> Floats:
-    """Return discs within the shape that cover most of it, the largest first: (k, 3) rows x, y, r about `centre`.
+    """Return discs within a shape that cover most of it, the largest first.
 
     Method: of the candidates on a grid take the one with the most room, then the next that is not near a taken one.
+
+    Parameters
+    ----------
+    shape : shapely Polygon or MultiPolygon, squares, body frame.
+    centre : (2,) x, y in that frame that the result is relative to.
+
+    Returns
+    -------
+    (k, 3) float64 rows x, y, r in squares, x and y relative to `centre`; k is at most MAX_DISCS.
     """
     x0, y0, x1, y1 = shape.bounds
     step = max(x1 - x0, y1 - y0) / CANDIDATES_PER_SIDE
@@ -86,16 +115,17 @@ def _inscribed_discs(shape: Any, centre: Floats) -> Floats:
 
 
 def centre_pose(body: MovingBody, pose: Pose) -> Floats:
-    """Return the pose (x, y, radians) of the body's centre when its reference point is at `pose`.
+    """Return the pose of the body's centre, the point that it is turned about, when its reference point is at `pose`.
 
     Parameters
     ----------
-    body : body made by this module.
+    body : body made by new_moving_body.
     pose : pose of the reference point, table frame, squares and degrees.
 
     Returns
     -------
-    (3,) float64: x, y of the centre in squares, table frame; angle in radians, counter-clockwise positive.
+    (3,) float64: x, y of the centre in squares, table frame; angle in radians, counter-clockwise positive, the same
+    angle as that of `pose`.
     """
     angle = math.radians(pose.degrees)
     c, s = math.cos(angle), math.sin(angle)

@@ -21,12 +21,14 @@ class MovingBody(NamedTuple):
 
     Attributes
     ----------
-    edges : (m, 7) rows x0, y0, x1, y1, outward unit normal x and y, length.
-    probes : (k, 4) rows x, y, r, distance of (x, y) from the centre. The body covers the disc of radius r about (x, y);
-        first come the inscribed discs, the largest first, then the corners with r = 0.
+    edges : (m, 7) float64 rows x0, y0, x1, y1, outward unit normal x and y, length; ring after ring, interior on the
+        left.
+    probes : (k, 4) float64 rows x, y, r, distance of (x, y) from the centre. The body covers the disc of radius r about
+        (x, y); first come the inscribed discs, the largest first, then the corners with r = 0.
     radius : radius of the circle about the centre that encloses the body.
-    reference : (2,) x, y of the body's reference point, its own origin.
-    seeds : (parts, 2) one corner of each connected part.
+    reference : (2,) x, y of the body's reference point (the origin that its shape was given about), relative to the
+        centre.
+    seeds : (parts, 2) x, y of one corner of each connected part.
     """
 
     edges: Floats
@@ -39,6 +41,9 @@ class MovingBody(NamedTuple):
 class NearbyEdges(NamedTuple):
     """Obstacle edges looked up by place, and the bounds within which a body moves. Squares, table frame.
 
+    The raster divides the table into square pixels, row 0 in the south; blocks are squares of pixels, numbered row by
+    row from the raster's lower left corner: block = row of blocks * blocks in a row + column of blocks.
+
     Attributes
     ----------
     edges : (n, 7) edges of the united obstacles, as in MovingBody.
@@ -46,9 +51,9 @@ class NearbyEdges(NamedTuple):
     frame : (3,) x, y of the raster's lower left corner, side of a pixel.
     block_start : (blocks + 1,) where the list of each block begins in `block_edges`.
     block_edges : for each block of pixels the indices of the edges within reach of a body whose centre is there.
-    blocks : (2,) blocks in a row of blocks, pixels along the side of a block.
-    reach : edges further than this from the body may be missing in the block's list.
-    bounds : (4,) x0, y0, x1, y1 for the body's reference point.
+    blocks : (2,) number of blocks in a row of blocks, number of pixels along the side of a block.
+    reach : edges further than this from the body may be missing in the block's list; distances are known up to it.
+    bounds : (4,) x0, y0, x1, y1 that the body's reference point must not leave.
     """
 
     edges: Floats
@@ -65,7 +70,8 @@ class NearbyEdges(NamedTuple):
 def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, float]:
     """Return (signed distance to the obstacles at the pixel of (x, y), how far its centre is from there), in squares.
 
-    The true distance at (x, y) differs from the first by at most the second.
+    The distance is negative inside obstacles. The true distance at (x, y) differs from the first by at most the second.
+    (x, y) is in the table frame; outside the raster the nearest pixel is taken.
     """
     rows, columns = nearby.raster.shape
     pixel = nearby.frame[2]
@@ -78,7 +84,10 @@ def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, flo
 
 @bare
 def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
-    """Return the index of the block of pixels that (x, y) lies in, or the nearest one outside the raster."""
+    """Return the number of the block of pixels that (x, y) lies in, or of the nearest one outside the raster.
+
+    (x, y) is in squares, table frame. Blocks are numbered as in NearbyEdges.
+    """
     size = nearby.frame[2] * nearby.blocks[1]
     columns = nearby.blocks[0]
     rows = (len(nearby.block_start) - 1) // columns
@@ -89,7 +98,10 @@ def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
 
 @bare
 def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float:
-    """Return the squared distance, in squares squared, from the point (x, y) to edge number j."""
+    """Return the squared distance, in squares squared, from the point (x, y) to the segment that is row `j` of `edges`.
+
+    `edges` : (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length, in the frame of (x, y).
+    """
     px, py = x - edges[j, 0], y - edges[j, 1]
     nx, ny = edges[j, 4], edges[j, 5]
     along = nx * py - ny * px
@@ -100,7 +112,11 @@ def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float
 
 @bare
 def is_inside(x: float, y: float, edges: Floats) -> bool:
-    """Return whether (x, y) is inside closed rings, by counting crossings. On the boundary either answer may come."""
+    """Return whether (x, y) is inside closed rings, by counting crossings. On the boundary either answer may come.
+
+    `edges` : (n, 7) or (n, 4) rows that begin with x0, y0, x1, y1, all rings together (holes count as outside), in the
+        frame of (x, y). False without edges.
+    """
     odd = False
     for j in range(len(edges)):
         y0, y1 = edges[j, 1], edges[j, 3]
@@ -113,7 +129,13 @@ def is_inside(x: float, y: float, edges: Floats) -> bool:
 def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> float:
     """Return the distance in squares from (x, y) to the obstacles: negative inside them, capped at nearby.reach.
 
-    `block` is the block of the body's centre, and (x, y) a point of that body.
+    Without any edge in the block's list it is +nearby.reach, even inside an obstacle.
+
+    Parameters
+    ----------
+    x, y : a point of a placed body, squares, table frame.
+    nearby : the obstacle edges.
+    block : number of the block of pixels (see block_at) in which the centre of that body lies, not the point itself.
     """
     edges = nearby.edges
     best, side = nearby.reach * nearby.reach, 1e9
@@ -133,13 +155,13 @@ def signed_distance(x: float, y: float, nearby: NearbyEdges, block: int) -> floa
 def clearance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float) -> float:
     """Return the distance in squares between the placed body and the obstacles; -1.0 if they overlap.
 
-    Distances are capped at nearby.reach.
+    Distances are capped at nearby.reach; touching counts as 0.0. The bounds of the reference point are not looked at.
 
     Parameters
     ----------
     body, nearby : the body, and the obstacle edges prepared for its radius.
     x, y : place of the body's centre, table frame, squares.
-    c, s : cosine and sine of the body's angle.
+    c, s : cosine and sine of the body's angle, counter-clockwise from how it was drawn.
     """
     edges, body_edges = nearby.edges, body.edges
     best = nearby.reach * nearby.reach
@@ -164,7 +186,14 @@ def clearance_at(body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: f
 
 @bare
 def _edge_to_body(ax: float, ay: float, bx: float, by: float, length: float, body_edges: Floats) -> float:
-    """Return the squared distance from an edge (a to b) to the body, both in the body's frame; -1.0 if they overlap."""
+    """Return the squared distance from an obstacle's edge to the body, in squares squared; -1.0 if they overlap.
+
+    Parameters
+    ----------
+    ax, ay, bx, by : the ends a and b of the edge, squares, body frame.
+    length : of that edge, squares.
+    body_edges : (m, 7) MovingBody.edges, in the same frame.
+    """
     ux, uy = (bx - ax) / length, (by - ay) / length
     best, odd = 1e18, False
     before = ux * (body_edges[0, 1] - ay) - uy * (body_edges[0, 0] - ax)
@@ -194,7 +223,8 @@ def classify_cell(
 
     Parameters
     ----------
-    x, y, angle : the middle of the cell: squares, table frame; radians.
+    body, nearby : the body, and the obstacle edges prepared for its radius, with the bounds of its reference point.
+    x, y, angle : the middle of the cell, a pose of the body's centre: squares, table frame; radians.
     spread : greatest distance of a place in the cell from (x, y), in squares.
     half : half of the cell's interval of angles, in radians.
 
@@ -233,7 +263,16 @@ def classify_cell(
 def _in_bounds(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
-    """Return the cell's kind (FREE, CENTRE_FREE, UNDECIDED or BLOCKED) by the bounds of the reference point alone."""
+    """Return the cell's kind (FREE, CENTRE_FREE, UNDECIDED or BLOCKED) by the bounds of the reference point alone.
+
+    Parameters
+    ----------
+    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine of
+        the angle.
+    spread : greatest distance of a place in the cell from (x, y), squares.
+    swing : how far a point at distance 1 from the centre moves at most when the body turns from the middle of the
+        cell's angles to their end (a chord).
+    """
     ox, oy = body.reference[0], body.reference[1]
     rx, ry = x + c * ox - s * oy, y + s * ox + c * oy
     bounds = nearby.bounds
@@ -250,9 +289,10 @@ def _in_bounds(
 def _always_overlaps(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> bool:
-    """Return whether the body surely overlaps an obstacle at every pose of a cell.
+    """Return whether the body surely overlaps an obstacle at every pose of a cell; False proves nothing.
 
-    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing.
+    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing. Parameters as
+    in _in_bounds: the pose in the middle, how far places lie from it, and the chord of a turn per square of distance.
     """
     block = block_at(nearby, x, y)
     if _keeps_crossing(
@@ -296,9 +336,17 @@ def _keeps_crossing(
     spread: float,
     swing: float,
 ) -> bool:
-    """Return whether some edge of the body crosses one of an obstacle at every pose of a cell.
+    """Return whether some edge of the body crosses one of an obstacle at every pose of a cell; False proves nothing.
 
     Edges keep crossing while the ends of each stay on their sides of the other's line: the cell moves no end across it.
+
+    Parameters
+    ----------
+    body_edges : (m, 7) MovingBody.edges, body frame.
+    edges, block_edges, block_start : as in NearbyEdges, table frame.
+    block : number of the block of pixels that (x, y) lies in.
+    x, y, c, s, spread, swing : as in _in_bounds: the pose in the middle, how far places lie from it in squares, and the
+        chord of a turn per square of distance from the centre.
     """
     for k in range(block_start[block], block_start[block + 1]):
         j = block_edges[k]

@@ -43,8 +43,10 @@ class Contact(NamedTuple):
     ----------
     fraction : part of the motion that was travelled, 0 to 1; 1 when nothing stopped it.
     place : point of contact (x, y), squares, table frame, after the motion; None when nothing stopped it.
-    obstacle : index of the obstacle that stopped it; None when nothing stopped it.
-    normal : unit vector across the edges in contact, away from the obstacle; None when nothing stopped it.
+    obstacle : index of the obstacle that stopped it, in the sequence that `Obstacles` was made of; None when nothing
+        stopped it.
+    normal : unit vector (x, y), table frame, across the edges in contact, away from the obstacle; None when nothing
+        stopped it.
     """
 
     fraction: float
@@ -62,13 +64,15 @@ class ContactBody:
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon, or None. Squares, table frame.
+    shape : shapely Polygon or MultiPolygon, or None. Squares, table frame, where it stands before a motion.
     points : (x, y) pairs in the same frame that move with it, such as Utak.
 
     Attributes
     ----------
-    edges : (n, 7) edges of the shape with normals. points : (n, 2).
-    runs : what the kernels are asked, one after another: corners, edges, and whether all obstacles count as one.
+    edges : (n, 7) float64 rows x0, y0, x1, y1, outward unit normal x and y, length, of the shape; (0, 7) without one.
+    points : (n, 2) float64 x, y.
+    runs : what the kernels are asked, one after another: tuples of corners (an array whose rows begin with x, y), edges
+        (n, 7), and whether all obstacles count as one.
     """
 
     def __init__(self, shape: Any = None, points: Iterable[tuple[float, float]] = ()) -> None:
@@ -77,7 +81,7 @@ class ContactBody:
         )
 
     def _set_parts(self, edges: Floats, points: Floats) -> None:
-        """Set edges (n, 7), points (n, 2) and `runs`.
+        """Set `edges` (n, 7), `points` (n, 2) and `runs` of this body; squares, table frame.
 
         The shape meets the obstacles one by one. Points also meet all obstacles as one: in the seam of two flush
         obstacles, which is inside of their union, only each by itself stops them.
@@ -88,7 +92,7 @@ class ContactBody:
         self.runs: tuple[tuple[Floats, Floats, bool], ...] = (*solid, *loose)
 
     def after(self, motion: Motion) -> "ContactBody":
-        """Return the body as it lies after a motion."""
+        """Return a new body, this one as it lies after the whole of a motion, whether or not that motion is free."""
         moved = ContactBody()
         edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
         moved._set_parts(edges, np.ascontiguousarray(motion.points(self.points)))
@@ -102,6 +106,11 @@ class Obstacles:
     ----------
     polygons : shapely Polygons or MultiPolygons, holes allowed, squares, table frame. They may touch or overlap each
         other. A Contact names an obstacle by its index in this sequence.
+
+    Attributes
+    ----------
+    polygons : the same, as a tuple.
+    surface : their edges and skins, each obstacle by itself; what a shape meets.
     """
 
     def __init__(self, polygons: Sequence[Any]) -> None:
@@ -116,7 +125,8 @@ class Obstacles:
         """Return the surface that a point meets: the skin of all obstacles as one, so that no point slips into a seam.
 
         Between two obstacles that stand flush the skins would leave a gap of 2 SKIN_DEPTH: enough for a point, for no
-        body.
+        body. Its `hull` and `skin` are those of the union; its `edges` and `owner` those of the single obstacles.
+        Computed at first use.
         """
         one = shapely.union_all([shapely.orient_polygons(p) for p in self.polygons], grid_size=SKIN_DEPTH / 10)
         hull = with_normals(boundary_edges(one))
@@ -164,11 +174,11 @@ class Obstacles:
         Parameters
         ----------
         body : the body where it stands.
-        vectors : (n, 2) translations in squares.
+        vectors : (n, 2) translations dx, dy in squares, table frame; each from the same place.
 
         Returns
         -------
-        (n,) float64; 1 where the whole translation is free.
+        (n,) float64; 1 where the whole translation is free, 0 where it is stopped at once.
 
         Raises
         ------
@@ -188,11 +198,11 @@ class Obstacles:
         ----------
         body : the body where it stands.
         degrees : (n,) angles, counter-clockwise positive.
-        pivots : (n, 2) what the body is turned about, squares, table frame.
+        pivots : (n, 2) x, y that the body is turned about, squares, table frame.
 
         Returns
         -------
-        (n,) float64; 1 where the whole rotation is free.
+        (n,) float64; 1 where the whole rotation is free, 0 where it is stopped at once.
 
         Raises
         ------
@@ -207,7 +217,7 @@ class Obstacles:
 
 
 def _finite(numbers: npt.ArrayLike) -> Floats:
-    """Return numbers as a contiguous float array, or raise ValueError when one is not finite."""
+    """Return numbers as a contiguous float64 array of the same shape, or raise ValueError when one is not finite."""
     array = np.ascontiguousarray(numbers, dtype=float)
     if not np.isfinite(array).all():
         raise ValueError("motions must be finite")
@@ -219,11 +229,12 @@ def boundary_edges(shape: Any) -> Floats:
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon, or None.
+    shape : shapely Polygon or MultiPolygon, or None; other geometries have no edges.
 
     Returns
     -------
-    (n, 4) float64 rows x0, y0, x1, y1, ring after ring, in the units of the shape. Edges of no length are left out.
+    (n, 4) float64 rows x0, y0, x1, y1, ring after ring, in the units and the frame of the shape; each edge begins where
+    the one before ends, the last ends where the first begins. Edges of no length are left out. (0, 4) without any.
     """
     pieces = [np.empty((0, 4))]
     parts = [] if shape is None else shapely.get_parts(shapely.orient_polygons(shape))
@@ -234,7 +245,11 @@ def boundary_edges(shape: Any) -> Floats:
 
 
 def _ring_edges(points: Floats) -> Floats:
-    """Return the edges of an open ring (n, 2), without points that are within MIN_EDGE_LENGTH of the one before."""
+    """Return the edges of an open ring (n, 2), without points that are within MIN_EDGE_LENGTH of the one before.
+
+    (m, 4) float64 rows x0, y0, x1, y1 in the order of the points, the closing edge included; (0, 4) if fewer than two
+    points are left.
+    """
     step = np.hypot(*(points - np.roll(points, 1, axis=0)).T)
     if not (step > MIN_EDGE_LENGTH).all():
         points = _spaced(points)
@@ -242,7 +257,10 @@ def _ring_edges(points: Floats) -> Floats:
 
 
 def _spaced(points: Floats) -> Floats:
-    """Return the points of an open ring without those within MIN_EDGE_LENGTH of the last one kept."""
+    """Return the points (m, 2) of an open ring (n, 2) without those within MIN_EDGE_LENGTH of the last one kept.
+
+    The first point stays; points before the end that are as near to it are left out, too. n at least 1.
+    """
     line = points.tolist()
     kept = line[:1]
     for point in line[1:]:
@@ -254,7 +272,10 @@ def _spaced(points: Floats) -> Floats:
 
 
 def with_normals(edges: Floats) -> Floats:
-    """Return edges (n, 4) with their normals: (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length."""
+    """Return edges (n, 4) with their normals: (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length.
+
+    The interior lies on the left of an edge, so its outward normal points to the right. Edges must not be of length 0.
+    """
     along = edges[:, 2:4] - edges[:, :2]
     length = np.hypot(along[:, 0], along[:, 1])
     unit = along / length[:, None]
@@ -262,7 +283,7 @@ def with_normals(edges: Floats) -> Floats:
 
 
 def _offset_inward(edges: Floats, depth: float) -> Floats:
-    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred."""
+    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row."""
     shifted = edges.copy()
     next_edge = _next_on_ring(edges)
     normal, after = edges[:, 4:6], edges[next_edge, 4:6]
@@ -275,7 +296,10 @@ def _offset_inward(edges: Floats, depth: float) -> Floats:
 
 
 def _chunks(edges: Floats) -> Floats:
-    """Return ranges of EDGES_PER_CHUNK edges and their bounding boxes: (k, 6) rows first, stop, x0, y0, x1, y1."""
+    """Return ranges of EDGES_PER_CHUNK edges and their bounding boxes: (k, 6) rows first, stop, x0, y0, x1, y1.
+
+    `edges` : (n, 7), squares; range `first` to below `stop` are its rows. (0, 6) without edges.
+    """
     first = np.arange(0, len(edges), EDGES_PER_CHUNK)
     if len(first) == 0:
         return np.empty((0, 6))
@@ -286,7 +310,7 @@ def _chunks(edges: Floats) -> Floats:
 
 
 def _next_on_ring(edges: Floats) -> npt.NDArray[np.intp]:
-    """Return for every edge the index of the next one on its ring. Rings lie one after another."""
+    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another."""
     next_edge = np.arange(1, len(edges) + 1)
     start = 0
     for i in range(len(edges)):

@@ -18,7 +18,7 @@ class Pose(NamedTuple):
     Attributes
     ----------
     x, y : place of the reference point, squares, table frame.
-    degrees : rotation, counter-clockwise positive; 0 as the body was drawn.
+    degrees : rotation, counter-clockwise positive; 0 as the body was drawn. May exceed a whole turn.
     """
 
     x: float
@@ -26,7 +26,10 @@ class Pose(NamedTuple):
     degrees: float = 0.0
 
     def place(self, shape: Any) -> Any:
-        """Return a shapely geometry turned about its own origin by `degrees`, then moved by (x, y)."""
+        """Return a shapely geometry as it lies at this pose: from the body frame to the table frame, both in squares.
+
+        It is turned about its own origin by `degrees`, then moved by (x, y).
+        """
         return shapely.transform(shape, lambda p: turned(p, self.degrees) + np.array([self.x, self.y]))
 
 
@@ -35,14 +38,14 @@ class Translate(NamedTuple):
 
     Attributes
     ----------
-    dx, dy : displacement to the east and to the north, squares.
+    dx, dy : displacement to the east and to the north, squares, table frame.
     """
 
     dx: float
     dy: float
 
     def part(self, fraction: float) -> "Translate":
-        """Return the first part of this motion; `fraction` is from 0 to 1."""
+        """Return the first part of this motion; `fraction` of its length is from 0 to 1 (not checked)."""
         return Translate(self.dx * fraction, self.dy * fraction)
 
     def reversed(self) -> "Translate":
@@ -55,7 +58,11 @@ class Translate(NamedTuple):
         Parameters
         ----------
         onward : squares in the direction of this motion; may be negative.
-        left : squares to the left of this motion; may be negative.
+        left : squares to the left of this motion, seen along it; may be negative.
+
+        Returns
+        -------
+        Translate in the table frame; its length does not depend on the length of this one.
 
         Raises
         ------
@@ -66,12 +73,12 @@ class Translate(NamedTuple):
         return Translate(onward * x - left * y, onward * y + left * x)
 
     def points(self, points: Floats) -> Floats:
-        """Return points (n, 2) as they lie after the motion."""
+        """Return points (n, 2) x, y, squares, table frame, as they lie after the motion; a new array."""
         moved: Floats = points + np.array([self.dx, self.dy])
         return moved
 
     def carry(self, shape: Any) -> Any:
-        """Return a shapely geometry as it lies after the motion."""
+        """Return a shapely geometry (squares, table frame) as it lies after the motion."""
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
@@ -92,7 +99,7 @@ class Rotate(NamedTuple):
     about: tuple[float, float]
 
     def part(self, fraction: float) -> "Rotate":
-        """Return the first part of this motion; `fraction` is from 0 to 1."""
+        """Return the first part of this motion; `fraction` of its angle is from 0 to 1 (not checked)."""
         return Rotate(self.degrees * fraction, self.about)
 
     def reversed(self) -> "Rotate":
@@ -100,17 +107,17 @@ class Rotate(NamedTuple):
         return Rotate(-self.degrees, self.about)
 
     def points(self, points: Floats) -> Floats:
-        """Return points (n, 2) as they lie after the motion."""
+        """Return points (n, 2) x, y, squares, table frame, as they lie after the motion; a new array."""
         pivot = np.array(self.about)
         moved: Floats = turned(points - pivot, self.degrees) + pivot
         return moved
 
     def carry(self, shape: Any) -> Any:
-        """Return a shapely geometry as it lies after the motion."""
+        """Return a shapely geometry (squares, table frame) as it lies after the motion."""
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
-        """Return the pose, after the motion, of what was at `pose` before it."""
+        """Return the pose, after the motion, of what was at `pose` before it; degrees add up, beyond a whole turn."""
         x, y = self.points(np.array([[pose.x, pose.y]]))[0]
         return Pose(float(x), float(y), pose.degrees + self.degrees)
 
@@ -119,7 +126,7 @@ Motion = Translate | Rotate
 
 
 def turned(points: Floats, degrees: float) -> Floats:
-    """Return points (n, 2) rotated counter-clockwise about the origin; exact at quarter turns."""
+    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns."""
     cosine, sine = direction(degrees)
     x, y = points[:, 0], points[:, 1]
     return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])

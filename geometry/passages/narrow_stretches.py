@@ -13,11 +13,11 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
     """Return the squares (column, row) between lines from wall to wall that are nearly as short as a passage is wide.
 
     The floor is followed from the mouths of the passage in both directions, as long as such lines are at most `spare`
-    squares longer than the passage is wide.
+    squares longer than the passage is wide. The set is empty when the passage is none of this floor.
 
     Parameters
     ----------
-    walls : the triangulated floor.
+    walls : the floor as a triangulation of its walls' corners.
     passage : the passage from which the floor is followed.
     spare : in squares.
 
@@ -46,13 +46,20 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
 
 def _edge_keys(mouth: Segment) -> list[tuple[int, ...]]:
-    """Return a mouth as the corners of an edge, in both directions."""
+    """Return a mouth as the corners of an edge, in both directions: two tuples x, y, x, y of whole numbers.
+
+    The unit and the frame are those of the mouth: squares from the screen's south-west corner.
+    """
     (a, b), (c, d) = mouth
     return [(int(a), int(b), int(c), int(d)), (int(c), int(d), int(a), int(b))]
 
 
 def _touched_squares(area: shapely.Geometry) -> set[tuple[int, int]]:
-    """Return the squares (column, row) of which a part lies in an area between corners of squares."""
+    """Return the squares (column, row) of which a part lies in an area between corners of squares.
+
+    `area` is a shapely Polygon or MultiPolygon, in squares from the screen's south-west corner; of an empty one an
+    empty set is returned. Mere contact does not count.
+    """
     if area.is_empty:
         return set()
     x0, y0, x1, y1 = (int(v) for v in area.bounds)

@@ -28,15 +28,19 @@ SQUARED_WIDTH_TOLERANCE = 1e-9  # square units; rounding by which squared widths
 class Passage(NamedTuple):
     """A neck of the floor, or a doorway of several equally narrow necks; all measures in squares.
 
+    A neck is a straight line from wall to wall that is shorter than all beside it. Points are (x, y) in squares from
+    the south-west corner of the screen, or of the frame into which it was shifted. The first side is that whose gate
+    lies further south, or further west if both are in one row; it comes first in every pair. Left and right are those
+    of a robot that goes from the first side to the second.
+
     Attributes
     ----------
     width : from wall to wall at its narrowest.
-    sides : the greatest clearance on either side, before any neck that is narrower.
+    sides : the greatest clearance (half the width of the floor) on either side, before any neck that is as narrow.
     mouths : the two straight lines on the floor, from wall to wall, where it opens to either side; the same line twice
-        where it has no depth. Each begins with the end on the left of a robot that goes from the first side to the
-        second.
+        where it has no depth. Each begins with its left end.
     gates : the centres of free squares just beyond the mouths, (x, y).
-    between : the squares (column, row) whose centres lie between the mouths, or on them.
+    between : the squares (column, row) whose centres lie between the mouths, or on them; by row, then by column.
     """
 
     width: float
@@ -47,23 +51,33 @@ class Passage(NamedTuple):
 
     @property
     def a(self) -> XY:
-        """Return its left end, halfway between the mouths, (x, y) in squares."""
+        """Return its left end, halfway between the left ends of the mouths, (x, y) in squares.
+
+        Left as seen by a robot that goes from the first side to the second.
+        """
         return _halfway(self.mouths[0][0], self.mouths[1][0])
 
     @property
     def b(self) -> XY:
-        """Return its right end, halfway between the mouths, (x, y) in squares."""
+        """Return its right end, halfway between the right ends of the mouths, (x, y) in squares.
+
+        Right as seen by a robot that goes from the first side to the second.
+        """
         return _halfway(self.mouths[0][1], self.mouths[1][1])
 
     @property
     def place(self) -> XY:
-        """Return the midpoint between both ends, (x, y) in squares."""
+        """Return the midpoint between its left and its right end, (x, y) in squares."""
         return _halfway(self.a, self.b)
 
     def shifted(self, columns: int, rows: int) -> "Passage":
-        """Return the same passage in a frame whose origin lies that many squares further west and south."""
+        """Return the same passage in a frame whose origin lies that many squares further west and south.
+
+        `columns` is added to every x and column, `rows` to every y and row.
+        """
 
         def there(point: XY) -> XY:
+            """Return a point (x, y) in that frame."""
             return point[0] + columns, point[1] + rows
 
         (a, b), (c, d) = self.mouths
@@ -73,19 +87,22 @@ class Passage(NamedTuple):
 
 
 def _halfway(one: XY, other: XY) -> XY:
-    """Return the midpoint of two points."""
+    """Return the midpoint of two points (x, y)."""
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 
 class _Mouth(NamedTuple):
     """An end of a doorway.
 
+    A doorway is made of necks of one width that hang together; a neck is a straight line from wall to wall that is
+    shorter than all beside it.
+
     Attributes
     ----------
-    edge : the neck, an edge of the triangulation.
-    side : the side of the neck on which the floor is wide, 0 or 1.
-    room : the squared width of that floor, in squared squares.
-    floor : the triangles of that floor.
+    edge : the number of the neck, an edge of the triangulation (`Walls.edges`).
+    side : the side of the neck on which the floor is wide, 0 or 1: an index in `Walls.sides`.
+    room : the squared width of that floor, in square squares.
+    floor : the numbers of the triangles of that floor (`Walls.triangles`).
     """
 
     edge: int
@@ -95,7 +112,13 @@ class _Mouth(NamedTuple):
 
 
 class _Doorway(NamedTuple):
-    """Two mouths, and the squares (column, row) between them."""
+    """Two mouths, and the squares (column, row) whose centres lie between them.
+
+    Attributes
+    ----------
+    one, two : the mouths, in no particular order.
+    between : the squares (column, row), by row.
+    """
 
     one: _Mouth
     two: _Mouth
@@ -103,12 +126,16 @@ class _Doorway(NamedTuple):
 
 
 def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
-    """Return all passages, ordered by place: row, then column.
+    """Return all passages, ordered by place: row (from the south), then column; an empty list when there are none.
+
+    A passage is a neck, a straight line from wall to wall that is shorter than all beside it, or several equally narrow
+    necks with no wide floor between. Only those are returned with wide floor on both sides.
 
     Parameters
     ----------
-    walls : the triangulated floor.
-    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1.
+    walls : the floor as a triangulation of its walls' corners.
+    pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1. The default gives
+        doors.
     """
     floor = _Floor(walls)
     found: list[_Doorway] = []
@@ -128,14 +155,17 @@ def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
 class _Floor:
     """The parts of the floor between necks that are still closed: a union-find over triangles.
 
+    The representative of a part is one of its triangles. Widths are squared, in square squares.
+
     Attributes
     ----------
-    members : by representative, the triangles of its part.
-    room : by representative, the squared width of the floor in its part.
+    members : by triangle; at a representative, the numbers of the triangles of its part, else an empty list.
+    room : by triangle; at a representative, the squared width of the widest floor in its part, else of no meaning.
     widest : the squared width of the widest part of all.
     """
 
     def __init__(self, walls: Walls) -> None:
+        """Join the triangles of `walls` over all edges that are no necks."""
         number = len(walls.triangles)
         self._parent = list(range(number))
         self.members = [[k] for k in range(number)]
@@ -146,14 +176,14 @@ class _Floor:
             self.join(one, other)
 
     def of(self, triangle: int) -> int:
-        """Return the representative of the part in which a triangle lies."""
+        """Return the representative of the part in which a triangle lies: the number of a triangle."""
         parent = self._parent
         while parent[triangle] != triangle:
             parent[triangle] = triangle = parent[parent[triangle]]
         return triangle
 
     def join(self, one: int, other: int) -> None:
-        """Join the parts of two triangles."""
+        """Join the parts in which two triangles lie, given by number; no change when they are one part already."""
         a, b = self.of(one), self.of(other)
         if a == b:
             return
@@ -166,7 +196,10 @@ class _Floor:
 
 
 def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
-    """Yield the necks in groups of equal width, widest first."""
+    """Yield the necks in groups of equal width, widest first; each is a list of numbers of edges of `walls`.
+
+    A neck is a straight line from wall to wall that is shorter than all beside it.
+    """
     necks = np.flatnonzero(walls.neck)
     order = necks[np.argsort(-walls.length[necks], kind="stable")].tolist()
     for _, group in groupby(order, key=lambda edge: int(walls.length[edge])):
@@ -176,7 +209,15 @@ def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
 def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
     """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor.
 
-    `least` is the squared width from which on floor counts as wide.
+    Clusters with fewer than two mouths are left out. A mouth is a neck seen from floor that is wide; a part of the
+    narrower floor is given by its representative in `floor`.
+
+    Parameters
+    ----------
+    walls : the floor as a triangulation of its walls' corners.
+    floor : its parts, while these necks and all narrower ones are still closed.
+    edges : numbers of the necks, all of one width.
+    least : the squared width from which on floor counts as wide, in square squares.
     """
     ends = {edge: [floor.of(triangle) for triangle in walls.sides[edge].tolist()] for edge in edges}
     meeting: dict[int, list[int]] = defaultdict(list)
@@ -207,6 +248,12 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
     """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each.
 
     Where three or more meet, the floor between them is floor like any other.
+
+    Parameters
+    ----------
+    walls : the floor as a triangulation of its walls' corners.
+    mouths : two or more, of necks of one width.
+    between : the squares (column, row) whose centres lie on the narrower floor between them.
     """
     if len(mouths) == 2:
         one, two = mouths
@@ -219,7 +266,14 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 
 
 def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
-    """Return the passage of a doorway; `taken` are the squares (column, row) between the mouths of any doorway."""
+    """Return the passage of a doorway, with the side whose gate is further south, then west, as the first.
+
+    Parameters
+    ----------
+    walls : the floor as a triangulation of its walls' corners.
+    doorway : two mouths, and the squares between them.
+    taken : the squares (column, row) between the mouths of any doorway: no gate lies there.
+    """
     gates = [(_gate(walls, mouth, taken), mouth) for mouth in (doorway.one, doorway.two)]
     (here, one), (there, two) = sorted(gates, key=lambda way: way[0][::-1])
     return Passage(
@@ -232,7 +286,11 @@ def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Pa
 
 
 def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
-    """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it."""
+    """Return the ends of a mouth, first that on the left, then that on the right of a robot that enters by it.
+
+    It enters from the wide floor. Each end is (x, y) in squares from the screen's south-west corner. `walls` is the
+    triangulated floor, of which the mouth is an edge.
+    """
     p, q = walls.corners[walls.edges[mouth.edge]].tolist()
     x, y = walls.opposite(mouth.edge, mouth.side).tolist()
     leftward = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) > 0
@@ -241,7 +299,17 @@ def _mouth_ends(walls: Walls, mouth: _Mouth) -> Segment:
 
 
 def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
-    """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to."""
+    """Return the centre of the square beyond a mouth that is nearest to its midpoint, in the floor it opens to.
+
+    It is (x, y) in squares from the screen's south-west corner. When no square's centre lies there, that of the square
+    that begins just beyond the midpoint is returned.
+
+    Parameters
+    ----------
+    walls : the floor as a triangulation of its walls' corners.
+    mouth : the mouth.
+    taken : squares (column, row) that are no gates: those between the mouths of any doorway.
+    """
     (ax, ay), (bx, by) = _mouth_ends(walls, mouth)
     x, y = (ax + bx) / 2, (ay + by) / 2
     mask, west, south = _centre_mask(walls.corners[walls.triangles[list(mouth.floor)]])
@@ -259,26 +327,37 @@ def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
 
 
 def _squares_of(walls: Walls, triangles: Iterable[int]) -> tuple[tuple[int, int], ...]:
-    """Return the squares whose centres lie in some triangles, or on their edges."""
+    """Return the squares (column, row) whose centres lie in some triangles, or on their edges; by row.
+
+    The triangles are given by their numbers in `walls`.
+    """
     return _centres(walls.corners[walls.triangles[list(triangles)]])
 
 
 def _squares_on(walls: Walls, edge: int) -> tuple[tuple[int, int], ...]:
-    """Return the squares whose centres lie on an edge."""
+    """Return the squares (column, row) whose centres lie on an edge, given by its number in `walls`; by row."""
     return _centres(walls.corners[walls.edges[edge][[0, 1, 1]]][None])
 
 
 def _centres(triangles: Longs) -> tuple[tuple[int, int], ...]:
-    """Return the squares (column, row) whose centres lie in triangles (n, 3, 2), or on their edges; by row."""
+    """Return the squares (column, row) whose centres lie in triangles, or on their edges; by row.
+
+    `triangles` is (n, 3, 2) int64: the corners (x, y) of each, in squares. Empty without triangles.
+    """
     mask, west, south = _centre_mask(triangles)
     rows, columns = np.nonzero(mask)
     return tuple(zip((columns + west).tolist(), (rows + south).tolist(), strict=True))
 
 
 def _centre_mask(triangles: Longs) -> tuple[Bools, int, int]:
-    """Return a mask of the squares whose centres lie in triangles (n, 3, 2), or on their edges, and its corner.
+    """Return a mask of the squares whose centres lie in triangles, or on their edges, and its corner.
 
-    The mask is (rows, columns) bool; its square [0, 0] is that in column `west` and row `south`, which are returned.
+    The mask is (rows, columns) bool, row 0 in the south; its square [0, 0] is that in column `west` and row `south`,
+    which are returned after it. Without triangles it is empty, and its corner (0, 0).
+
+    Parameters
+    ----------
+    triangles : (n, 3, 2) int64, the corners (x, y) of each, in squares.
     """
     if not len(triangles):
         return np.zeros((0, 0), np.bool_), 0, 0
@@ -290,7 +369,14 @@ def _centre_mask(triangles: Longs) -> tuple[Bools, int, int]:
 
 @compiled
 def mark_centres(triangles: Longs, mask: Bools) -> None:
-    """Set `mask` at the squares whose centres lie in triangles (n, 3, 2), given in half squares, or on their edges."""
+    """Set `mask` at the squares whose centres lie in triangles, or on their edges.
+
+    Parameters
+    ----------
+    triangles : (n, 3, 2) int64, the corners (x, y) of each in half squares, even numbers, from the south-west corner of
+        the mask.
+    mask : (rows, columns) bool, changed; row 0 in the south. It must cover the triangles.
+    """
     for n in range(triangles.shape[0]):
         (ax, ay), (bx, by), (cx, cy) = triangles[n, 0], triangles[n, 1], triangles[n, 2]
         for row in range(min(ay, by, cy) // 2, max(ay, by, cy) // 2):

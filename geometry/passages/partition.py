@@ -10,15 +10,16 @@ from geometry.passages.necks import Passage
 
 
 def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
-    """Return the number of each square's part, (rows, columns) int, from 1 in the order of the parts' first squares.
+    """Return the number of each square's part, from 1 in the order of the parts' first squares.
 
-    It is 0 on blocked squares, on squares whose centres lie on a mouth, and on the floor between two mouths of a
-    passage with all that can be reached from there alone, unless another passage leads there.
+    The numbers are (rows, columns) int32, row 0 in the south; the first square of a part is the westernmost of its
+    southernmost row. It is 0 on blocked squares, on squares whose centres lie on a mouth, and on the floor between two
+    mouths of a passage with all that can be reached from there alone, unless another passage leads there.
 
     Parameters
     ----------
-    free : (rows, columns) bool.
-    passages : the passages along whose mouths the floor is cut.
+    free : (rows, columns) bool, row 0 in the south.
+    passages : the passages along whose mouths the floor is cut, in the frame of `free`; they may reach beyond it.
     """
     some = list(passages)
     label = cut_floor(np.pad(free, 1), some)[0]
@@ -42,14 +43,15 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
     Parameters
     ----------
     floor : (rows + 2, columns + 2) bool, with a frame that is not floor.
-    passages : the passages along whose mouths the floor is cut.
+    passages : the passages along whose mouths the floor is cut, in squares from the south-west corner of the floor
+        without its frame.
 
     Returns
     -------
-    label : (rows + 2, columns + 2) int, the number of the piece, from 1; 0 off the floor and on squares whose centres
-        lie on a mouth.
-    closed : (2, rows + 2, columns + 2) bool, the steps from each cell to the east (0) and to the north (1). Two cells
-        have one label exactly when steps that are not closed lead from one to the other.
+    label : (rows + 2, columns + 2) int32, the number of the piece, from 1 in the order of their first cells; 0 off the
+        floor and on squares whose centres lie on a mouth.
+    closed : (2, rows + 2, columns + 2) bool, True where the step from each cell to the east (0) or to the north (1) is
+        cut. Two cells have one label exactly when steps that are not closed lead from one to the other.
     """
     closed, whole = np.zeros((2, *floor.shape), np.bool_), floor.copy()
     for mouth in dict.fromkeys(mouth for passage in passages for mouth in passage.mouths):
@@ -65,7 +67,13 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
 
 
 def block_centres(floor: Bools, a: tuple[float, float], b: tuple[float, float]) -> None:
-    """Block the squares of a framed floor whose centres lie on a line a-b between corners of squares."""
+    """Block the squares of a framed floor whose centres lie on a line a-b between corners of squares.
+
+    Parameters
+    ----------
+    floor : (rows + 2, columns + 2) bool; set False at these squares.
+    a, b : (x, y) in squares, whole numbers, from the south-west corner of the floor without its frame.
+    """
     (ax, ay), (bx, by) = a, b
     west, south, east, north = (int(v) for v in (min(ax, bx), min(ay, by), max(ax, bx), max(ay, by)))
     rows, columns = np.mgrid[south:north, west:east]
@@ -79,8 +87,9 @@ def close_crossed_steps(closed: Bools, line: Floats) -> None:
 
     Parameters
     ----------
-    closed : (2, rows + 2, columns + 2) bool, steps to the east (0) and to the north (1).
-    line : (n, 2) points (x, y), in squares.
+    closed : (2, rows + 2, columns + 2) bool, steps from each cell to the east (0) and to the north (1); set True at
+        these steps, else unchanged.
+    line : (n, 2) points (x, y) of a polyline, in squares from the south-west corner of the floor without its frame.
     """
     low_x = high_x = line[0, 0]
     low_y = high_y = line[0, 1]
@@ -105,14 +114,20 @@ def close_crossed_steps(closed: Bools, line: Floats) -> None:
 
 @compiled
 def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
-    """Return whether the segments a-b and p-q cross."""
+    """Return whether the segments a-b and p-q cross; an end that lies on the other's line counts as right of it.
+
+    The numbers are x and y of the four ends, in one unit. Segments on one line do not cross.
+    """
     apart = (orientation(ax, ay, bx, by, px, py) > 0) != (orientation(ax, ay, bx, by, qx, qy) > 0)
     return apart and (orientation(px, py, qx, qy, ax, ay) > 0) != (orientation(px, py, qx, qy, bx, by) > 0)
 
 
 @compiled
 def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> float:
-    """Return a positive number when c lies left of the ray from a through b, negative when right."""
+    """Return a positive number when c lies left of the ray from a through b, negative when right, 0 on its line.
+
+    It is twice the signed area of the triangle a b c, of which x and y are given in one unit.
+    """
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
@@ -120,12 +135,15 @@ def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
 def number_parts(free: Bools, closed: Bools, label: Labels, stack: Ints) -> int:
     """Write the number of each padded free cell's part to `label`, from 1, and return how many parts there are.
 
+    Numbers follow the parts' first cells, row by row from the south-west. Parts are connected over edges.
+
     Parameters
     ----------
-    free : (rows + 2, columns + 2) bool.
-    closed : (2, rows + 2, columns + 2) bool, the steps that are cut.
-    label : (rows + 2, columns + 2) int, 0 at first.
-    stack : (cells,) scratch.
+    free : (rows + 2, columns + 2) bool, False on the frame.
+    closed : (2, rows + 2, columns + 2) bool, the steps that are cut: from each cell to the east (0) and to the north
+        (1).
+    label : (rows + 2, columns + 2) int32, 0 at first; stays 0 on cells that are not free.
+    stack : (cells,) int32, scratch.
     """
     width = free.shape[1]
     open_cells, labels = free.reshape(-1), label.reshape(-1)

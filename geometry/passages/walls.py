@@ -1,5 +1,7 @@
 """The floor as triangles between the corners of its walls, and the widths that follow from them.
 
+Points are (x, y) in squares from the screen's south-west corner; widths are in squares.
+
 # Strategy: a circle among the walls is locally largest when corners of walls hold it on all sides: it is the
 circumcircle of a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall
 is shorter than all lines beside it when no corner lies in the circle over it: it is an edge with acute angles on both
@@ -18,15 +20,19 @@ from geometry.kernels.arrays import Bools, Floats, Longs
 class Walls(NamedTuple):
     """The floor as a triangulation of the corners of its walls.
 
+    Corners, triangles and edges are numbered from 0: their numbers are their indices in these arrays.
+
     Attributes
     ----------
-    corners : (n, 2) int, the corners of blocked squares that touch free ones, (x, y) in squares.
-    triangles : (m, 3) numbers of corners; together they are the free squares.
-    room : (m,) the squared width of the floor about each triangle: 0 where that is greatest elsewhere.
-    edges : (k, 2) numbers of the corners at the ends of each edge that two triangles share.
-    sides : (k, 2) these two triangles.
-    length : (k,) the squared length of each edge.
-    neck : (k,) whether all lines from wall to wall beside the edge are longer.
+    corners : (n, 2) int64, the corners of blocked squares that touch free ones, (x, y) in squares from the screen's
+        south-west corner.
+    triangles : (m, 3) int64, numbers of corners; together they are the free squares.
+    room : (m,) float64, the squared width of the floor about each triangle (the diameter of the largest circle there),
+        in square squares: 0 where that is greatest elsewhere.
+    edges : (k, 2) int64, numbers of the corners at the ends of each edge that two triangles share, the lower first.
+    sides : (k, 2) int64, the numbers of these two triangles.
+    length : (k,) int64, the squared length of each edge, in square squares.
+    neck : (k,) bool, whether all lines from wall to wall beside the edge are longer.
     """
 
     corners: Longs
@@ -38,7 +44,15 @@ class Walls(NamedTuple):
     neck: Bools
 
     def opposite(self, edge: int, side: int) -> Longs:
-        """Return the corner (x, y) of one of the two triangles of an edge that is not on the edge."""
+        """Return the corner of one of the two triangles of an edge that is not on the edge.
+
+        It is (2,) int64, (x, y) in squares from the screen's south-west corner.
+
+        Parameters
+        ----------
+        edge : the number of the edge.
+        side : 0 or 1: which of its triangles.
+        """
         ends = self.edges[edge]
         (other,) = (c for c in self.triangles[self.sides[edge, side]].tolist() if c not in ends)
         point: Longs = self.corners[other]
@@ -50,7 +64,7 @@ def find_walls(free: Bools) -> Walls:
 
     Parameters
     ----------
-    free : (rows, columns) bool.
+    free : (rows, columns) bool, row 0 in the south; at least one True.
     """
     floor = np.pad(free, 1)
     corners, triangles = _triangulate(floor)
@@ -64,7 +78,17 @@ def find_walls(free: Bools) -> Walls:
 
 
 def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
-    """Return the corners of walls and the triangles between them; `floor` are the free squares in a blocked frame."""
+    """Return the corners of walls and the triangles between them, those over blocked squares included.
+
+    Parameters
+    ----------
+    floor : (rows + 2, columns + 2) bool, the free squares in a blocked frame.
+
+    Returns
+    -------
+    corners : (n, 2) int64, (x, y) in squares from the south-west corner of the squares without the frame, by row.
+    triangles : (m, 3) int64, numbers of corners.
+    """
     around = [floor[:-1, :-1], floor[:-1, 1:], floor[1:, :-1], floor[1:, 1:]]
     on_wall = np.logical_or.reduce(around) & ~np.logical_and.reduce(around)
     corners = np.argwhere(on_wall)[:, ::-1].astype(np.int64)
@@ -76,7 +100,12 @@ def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
 
 
 def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
-    """Return the edges that two triangles share: their ends, these triangles, and the corners opposite."""
+    """Return the edges that two triangles share: their ends, these triangles, and the corners opposite.
+
+    `triangles` are (m, 3) numbers of corners. The three arrays returned are (k, 2) int64: the two corners at each
+    edge's ends, ascending; the numbers of its two triangles, ascending; and the third corners of these, in the same
+    order.
+    """
     ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     owner, tip = np.tile(np.arange(len(triangles)), 3), np.concatenate([triangles[:, k] for k in (2, 0, 1)])
     order = np.lexsort((owner, ends[:, 1], ends[:, 0]))
@@ -87,10 +116,12 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
 
 
 def _widths(points: Longs) -> Floats:
-    """Return the squared width of the floor about triangles with corners (m, 3, 2); 0 about obtuse ones.
+    """Return the squared width of the floor about triangles, (m,) float64, in square squares; 0 about obtuse ones.
 
-    Walls go straight on between corners that are one square apart, so they come nearer to the centre than these corners
-    by what such a chord cuts off: 1 is subtracted from four times the squared radius.
+    They are squared diameters of the circles through the triangles' corners, less 1. For walls go straight on between
+    corners that are one square apart, so they come nearer to the centre than these corners by what such a chord cuts
+    off: 1 is subtracted from four times the squared radius. `points` (m, 3, 2) int64 are the corners (x, y), in
+    squares.
     """
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c
@@ -103,6 +134,6 @@ def _widths(points: Longs) -> Floats:
 
 
 def _dot(u: Longs, v: Longs) -> Longs:
-    """Return the inner products of (n, 2) vectors, (n,)."""
+    """Return the inner products of (n, 2) vectors, pair by pair, (n,) int64."""
     product: Longs = u[:, 0] * v[:, 0] + u[:, 1] * v[:, 1]
     return product

@@ -20,13 +20,13 @@ def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]
 
     Parameters
     ----------
-    free : (rows, columns) bool, True where a point may be.
-    start, goal : (x, y) in squares, in free squares.
+    free : (rows, columns) bool, True where a point may be; row 0 in the south.
+    start, goal : (x, y) in squares from the south-west corner of `free`, in free squares.
 
     Returns
     -------
     (n, 2) float64 or None
-        The points of the path, in squares, both ends included.
+        The points (x, y) of the path, in squares: start, centres of squares, goal.
 
     Raises
     ------
@@ -58,7 +58,10 @@ def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]
 
 
 def octile_distance(a: Square, b: Square) -> float:
-    """Return the length of the shortest path between two squares on an empty grid, in squares."""
+    """Return the length of the shortest path between two squares on an empty grid, in squares.
+
+    Steps lead to the eight neighbours, a diagonal one is the root of 2 long. Squares are (column, row).
+    """
     dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
     return max(dx, dy) + (DIAGONAL - 1.0) * min(dx, dy)
 
@@ -66,7 +69,16 @@ def octile_distance(a: Square, b: Square) -> float:
 def points_of_path(
     came_from: dict[Square, Square], square: Square, start: tuple[float, float], goal: tuple[float, float]
 ) -> Floats:
-    """Return the path to a square: start, centres of squares, goal, (n, 2) in squares."""
+    """Return the path to a square: start, centres of squares, goal, (n, 2) float64 of (x, y) in squares.
+
+    The centres of the first and of the last square are among them, unless start or goal lies there.
+
+    Parameters
+    ----------
+    came_from : by square (column, row), the square before it on its path; the first square is missing.
+    square : the last square.
+    start, goal : (x, y) in squares from the screen's south-west corner.
+    """
     squares = [square]
     while square in came_from:
         square = came_from[square]

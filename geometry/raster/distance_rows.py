@@ -29,13 +29,18 @@ MAX_COLUMN_STEPS = 67  # squares: column distances are capped here, lest 16 bits
 class RowWindow(NamedTuple):
     """Scratch memory for measuring rows of a padded width, one after another from the north.
 
+    The padded width is columns + 2: one blocked column on either side.
+
     Attributes
     ----------
-    gap : (width,) steps to the nearest blocked square in each column of the row last measured.
-    own : (2 ROW_PADDING + width,) squared distances to those, in half squares, between walls.
-    value : (width,) squared distances of the row.
-    reach : (width / COLUMNS_PER_STRETCH, rounded up) for each stretch how many columns its values make one look aside.
-    sites, heights : (width + 1,) of an envelope.
+    gap : (width,) int16, steps to the nearest blocked square in each column of the row last measured; 0 on blocked
+        ones.
+    own : (2 ROW_PADDING + width,) int16, squared distances to those, in half squares squared; it holds column j at
+        ROW_PADDING + j, and 0, as of walls, on both sides.
+    value : (width,) int16, squared distances of the row to the nearest blocked square at all, in half squares squared.
+    reach : (width / COLUMNS_PER_STRETCH, rounded up) int32: for each stretch of 128 columns how many columns its values
+        make one look aside in the next row.
+    sites, heights : (width + 1,) int64, of an envelope of parabolas (see distance_transform.lower_envelope).
     """
 
     gap: ColumnSteps
@@ -47,7 +52,7 @@ class RowWindow(NamedTuple):
 
 
 def new_row_window(width: int) -> RowWindow:
-    """Return scratch memory for rows of a padded width, as it is north of all rows."""
+    """Return scratch memory for rows of a padded width (columns + 2), in the state that it has north of all rows."""
     own, reach = np.zeros(width + 2 * ROW_PADDING, np.int16), np.zeros(-(-width // COLUMNS_PER_STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
     return RowWindow(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
@@ -57,13 +62,18 @@ def new_row_window(width: int) -> RowWindow:
 def fill_distance_rows(square: SquaredDistances, steps: ColumnSteps, south: int, north: int, window: RowWindow) -> bool:
     """Fill rows of squared distances from `north` down to `south`, inclusive; return whether their type holds them all.
 
+    A squared distance is that from the centre of a square to the nearest point of a blocked square, in half squares
+    squared; 0 on blocked squares. When False is returned, those that are too large were capped at the type's greatest
+    value.
+
     Parameters
     ----------
-    square : (rows + 2, columns + 2) output, half squares squared, padded.
-    steps : (rows + 2, columns + 2 or more) steps to the nearest blocked square to the south. It may lie in the same
-        memory as `square`, row by row.
-    south, north : padded rows.
-    window : scratch, as the row north of `north` left it.
+    square : (rows + 2, columns + 2) int16 or int32, output, padded by one blocked square on each side.
+    steps : (rows + 2, columns + 2 or more) int16, steps to the nearest blocked square to the south (see
+        count_steps_south). It may lie in the same memory as `square`, row by row: each row is read before it is
+        written.
+    south, north : padded rows, from 1 to rows; row 1 is the southernmost of the floor.
+    window : scratch, as the row north of `north` left it; left as row `south` makes it.
     """
     width, roof, fits = square.shape[1], largest_value_of(square), True
     gap, own, value, reach, sites, heights = window
@@ -90,7 +100,16 @@ def fill_distance_rows(square: SquaredDistances, steps: ColumnSteps, south: int,
 
 @bare
 def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps) -> None:
-    """Update `gap` for the next row to the south, and write the squared column distances, in half squares, to `own`."""
+    """Update `gap` for the next row to the south, and write the squared distances along columns to `own`.
+
+    Parameters
+    ----------
+    steps : (width or more,) int16, steps to the nearest blocked square to the south, of this row.
+    gap : (width,) int16, steps to the nearest blocked square of the column, of the row to the north; overwritten with
+        this row's.
+    own : (width,) int16, output: squared distance along the column to that square's edge, in half squares squared; 0 on
+        blocked squares, capped where it is more than 67 steps away.
+    """
     count_steps_to_nearest(steps, gap)
     for j in range(gap.shape[0]):
         nearest = gap[j]
@@ -100,9 +119,17 @@ def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps)
 
 @bare
 def minimise_over_sites(own: ColumnSteps, value: ColumnSteps, steps: int) -> None:
-    """Fill `value` with the least squared distance over the sites up to `steps` columns off.
+    """Fill `value` with the least squared distance (half squares squared) over all sites up to `steps` columns off.
 
-    `own` starts ROW_PADDING columns before `value`.
+    A site is the nearest blocked square of a column. Looking further than `steps`, up to a multiple of four, does no
+    harm.
+
+    Parameters
+    ----------
+    own : (len(value) + 2 ROW_PADDING,) int16, squared distances along columns; it starts ROW_PADDING columns before
+        `value`.
+    value : (n,) int16, output, all overwritten.
+    steps : at most MAX_SITE_STEPS (60).
     """
     here = own[ROW_PADDING:]
     for j in range(value.shape[0]):
@@ -113,9 +140,14 @@ def minimise_over_sites(own: ColumnSteps, value: ColumnSteps, steps: int) -> Non
 
 @bare
 def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: ColumnSteps) -> None:
-    """Lower `value` by the sites t to t + 3 columns off.
+    """Lower `value`, in place, by the sites (nearest blocked squares of columns) t to t + 3 columns off on either side.
 
-    `west` starts t + 3 columns before `value`, `east` t columns behind it.
+    Parameters
+    ----------
+    west, east : squared distances along columns, int16, half squares squared; `west` starts t + 3 columns before
+        `value`, `east` t columns behind its start.
+    t : number of columns, 1 or more.
+    value : (n,) int16, least squared distances so far, half squares squared.
     """
     a, b = np.int16((2 * t - 1) ** 2), np.int16((2 * t + 1) ** 2)
     c, d = np.int16((2 * t + 3) ** 2), np.int16((2 * t + 5) ** 2)
@@ -132,7 +164,7 @@ def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: Colu
 
 @bare
 def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
-    """Copy the values to `out` and return the largest."""
+    """Copy the values (n,) to `out` (n,), which may be of a wider type; return the largest, 0 if none is above 0."""
     largest = np.int16(0)
     for j in range(value.shape[0]):
         out[j] = value[j]
@@ -142,7 +174,7 @@ def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
 
 @bare
 def largest_distance(out: SquaredDistances) -> int:
-    """Return the largest of some squared distances."""
+    """Return the largest of some squared distances (n,), one or more, in their own unit (half squares squared)."""
     largest = 0 * out[0]
     for j in range(out.shape[0]):
         largest = out[j] if out[j] > largest else largest
@@ -151,7 +183,11 @@ def largest_distance(out: SquaredDistances) -> int:
 
 @bare
 def steps_needed_for(largest: int) -> int:
-    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared."""
+    """Return how many columns to either side matter to squared distances up to `largest`, in half squares squared.
+
+    Sites (nearest blocked squares of columns) further aside are no nearer than that. Rounded up to whole columns; 0 for
+    0 and 1.
+    """
     return int(np.ceil(0.5 * np.sqrt(float(largest)) - 0.5))
 
 
@@ -159,7 +195,20 @@ def steps_needed_for(largest: int) -> int:
 def fill_by_envelope(
     gap: ColumnSteps, out: SquaredDistances, first: int, last: int, done: int, roof: int, sites: Sites, heights: Sites
 ) -> int:
-    """Measure by envelopes the runs that meet columns first..last, but for columns below `done`; return their end."""
+    """Measure by envelopes the runs of free squares of one row that meet columns `first` to `last` (exclusive).
+
+    Returns the column behind the last one measured: runs are filled to their ends, also beyond `last`; or `done` if
+    that is greater.
+
+    Parameters
+    ----------
+    gap : (width,) int16, steps to the nearest blocked square in each column; 0 on blocked squares, and at both ends.
+    out : (width,) int16 or int32, output, half squares squared; 0 on blocked squares.
+    first, last : padded columns.
+    done : columns below this one are filled already and left alone.
+    roof : values above it are capped there, half squares squared.
+    sites, heights : (width + 1,) int64, scratch.
+    """
     column = first if first > done else done
     while column < last:
         if gap[column] == 0:

@@ -20,14 +20,17 @@ GEODESIC_STEP, GEODESIC_DIAGONAL = (
 def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
     """Return the length of the shortest path from a start to every square, in fifths of squares.
 
+    A step to one of the four edge neighbours costs 5, a diagonal step 7; the latter needs both squares beside it free.
+
     Parameters
     ----------
-    free : (rows, columns) bool.
+    free : (rows, columns) bool, True where a path may lead; row 0 in the south.
     column, row : the start, which must be free.
 
     Returns
     -------
-    (rows, columns) int32; GEODESIC_UNREACHED (-1) where no path leads.
+    (rows, columns) int32, fifths of squares; 0 at the start, GEODESIC_UNREACHED (-1) where no path leads and on squares
+    that are not free.
 
     Raises
     ------
@@ -47,8 +50,15 @@ def reach(free: NDArray[np.bool_], column: int, row: int) -> NDArray[np.int32]:
 
 
 @compiled
-def _fill_distances(free, column, row, distance):  # type: ignore[no-untyped-def]
-    """Fill `distance`, all GEODESIC_UNREACHED before, with the lengths of shortest paths in fifths of squares."""
+def _fill_distances(free: NDArray[np.bool_], column: int, row: int, distance: NDArray[np.int32]) -> None:
+    """Fill `distance` with the lengths of shortest paths over the eight neighbours, in fifths of squares.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool.
+    column, row : the start, a free square.
+    distance : (rows, columns) int32, all GEODESIC_UNREACHED (-1) before; squares that no path reaches stay so.
+    """
     rows, columns = free.shape
     ring = GEODESIC_DIAGONAL + 1
     first = np.full(ring, -1, np.int64)  # per distance modulo the ring: the last entry that was put there

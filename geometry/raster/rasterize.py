@@ -28,14 +28,15 @@ def squares(shape: Any, width: int, height: int) -> npt.NDArray[np.bool_]:
     Parameters
     ----------
     shape : shapely geometry
-        Polygon or MultiPolygon (holes allowed), in squares, table frame. Other geometries have no area and cover
-        nothing.
+        Polygon or MultiPolygon (holes allowed), in squares, table frame: x to the east, y to the north, (0, 0) at the
+        table's south-west corner. Other geometries have no area and cover nothing.
     width, height : int
         Size of the table in squares.
 
     Returns
     -------
-    (height, width) bool array, row 0 in the south: True where the shape covers an area of the square above 1e-9.
+    (height, width) bool array, row 0 in the south: True where the shape covers an area of the square above 1e-9 squares
+    squared, so that mere contact does not count. What lies off the table is left out.
 
     Examples
     --------
@@ -51,13 +52,16 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon, in squares, table frame.
-    motions : each is applied to the shape as given; they do not follow each other.
+    shape : shapely Polygon or MultiPolygon, in squares, table frame: x to the east, y to the north, (0, 0) at the
+        table's south-west corner.
+    motions : each (of motion.se2) is applied to the shape as given; they do not follow each other, and only where each
+        one ends counts, not what lies on the way.
     width, height : size of the table in squares.
 
     Returns
     -------
-    (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion.
+    (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion. All False without a
+    motion; what lies off the table is left out.
     """
     edges, covered = _boundary_edges(shape), np.zeros((height, width), np.bool_)
     if not len(edges) or not len(motions):
@@ -76,11 +80,12 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
 
 
 def covered_areas(shape: Any, width: int, height: int) -> Floats:
-    """Return the area that a shape covers in every square of a table: (height, width) float64, squares squared.
+    """Return the area that a shape covers in every square of a table: (height, width) float64, from 0 to 1 square.
 
     Parameters
     ----------
-    shape : shapely Polygon or MultiPolygon, in squares, table frame.
+    shape : shapely Polygon or MultiPolygon, in squares, table frame: x to the east, y to the north, (0, 0) at the
+        table's south-west corner. Other geometries cover nothing.
     width, height : size of the table in squares.
 
     Returns
@@ -91,14 +96,24 @@ def covered_areas(shape: Any, width: int, height: int) -> Floats:
 
 
 def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
-    """Return the area to the left of closed rings of edges (n, 4) in every square: (height, width)."""
+    """Return the area to the left of closed rings of edges in every square: (height, width) float64, squares squared.
+
+    Parameters
+    ----------
+    edges : (n, 4) rows x0, y0, x1, y1 in squares, from the south-west corner of square [0, 0]; in any order. They may
+        lie outside the raster.
+    width, height : numbers of columns and rows.
+    """
     sums = np.zeros((2, height, width + 2))
     _accumulate(edges, sums)
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
 def _boundary_edges(shape: Any) -> Floats:
-    """Return all boundary edges of a shape, the interior on their left: (n, 4) rows x0, y0, x1, y1."""
+    """Return all boundary edges of a shape, the interior on their left: (n, 4) float64, rows x0, y0, x1, y1.
+
+    They are in the unit and frame of the shape, a shapely geometry; (0, 4) when it has no polygon.
+    """
     rings = []
     for part in shapely.get_parts(shapely.orient_polygons(shape)):
         if part.geom_type == "Polygon" and not part.is_empty:
@@ -110,9 +125,17 @@ def _boundary_edges(shape: Any) -> Floats:
 
 @compiled
 def _accumulate(edges: Floats, sums: Floats) -> None:
-    """Add what every edge covers in its own squares to sums[0], and what it hands on to the next squares to sums[1].
+    """Add to `sums` the signed areas between every edge and what lies east of it; edges to the south count positive.
 
-    Each edge is cut at all grid lines that lie strictly between its ends; `sums` is (2, rows, columns + 2).
+    Each edge is cut at all grid lines that lie strictly between its ends, so that a piece lies in one square. It covers
+    a part of that square, east of it, and its whole height in every square further east.
+
+    Parameters
+    ----------
+    edges : (n, 4) float64, rows x0, y0, x1, y1, in squares from the south-west corner of square [0, 0].
+    sums : (2, rows, columns + 2) float64, changed: sums[0, row, column] gets what a piece covers in its own square,
+        sums[1, row, column + 1] how much more it covers in each square from the next one on, so that cumulative sums
+        along a row are the areas.
     """
     height, width = sums.shape[1], sums.shape[2] - 2
     for n in range(len(edges)):
@@ -143,10 +166,14 @@ def _accumulate(edges: Floats, sums: Floats) -> None:
 def _cut_at(
     x0: float, y0: float, x1: float, y1: float, start: float, stop: float, number: int, lines: int
 ) -> tuple[float, float]:
-    """Return where an edge meets number `number` of the `lines` grid lines that it crosses in order.
+    """Return the point (x, y) where an edge meets number `number` of the `lines` grid lines that it crosses in order.
 
-    Numbers 0 and lines + 1 stand for its ends. `start`, `stop` : the coordinate, at its ends, that is whole on these
-    lines.
+    Parameters
+    ----------
+    x0, y0, x1, y1 : the ends of the edge, in squares.
+    start, stop : the coordinate (x or y), at its ends, that is whole on these lines.
+    number : counted from its first end; 0 stands for that end, lines + 1 for the last.
+    lines : how many grid lines of this direction lie strictly between the ends.
     """
     if number == 0:
         return x0, y0

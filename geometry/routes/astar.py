@@ -1,9 +1,9 @@
 """A* over the pathgraph, and exact distances to the goal.
 
-A query adds two nodes to the n of the pathgraph: the start (n) and the goal (n + 1). An arc is coded as 2 chain + 1
-when walked backwards, 2 chain when forwards. With m chains, 2m and 2m + 1 lead from the start to the ends of its chain,
-2m + 2 and 2m + 3 from the ends of the goal's chain to the goal, and 2m + 4 from the start to the goal along a chain
-that they share.
+The edges of the pathgraph are called chains. A query adds two nodes to the n of the pathgraph: the start (n) and the
+goal (n + 1). An arc is a chain walked in one direction, coded as 2 chain + 1 when walked backwards, 2 chain when
+forwards. With m chains, 2m and 2m + 1 lead from the start to the ends of its chain, 2m + 2 and 2m + 3 from the ends of
+the goal's chain to the goal, and 2m + 4 from the start to the goal along a chain that they share.
 """
 
 from typing import NamedTuple
@@ -20,18 +20,20 @@ PATH_SLACK = 1.05  # factor on the lower bound in biased searches; on random squ
 
 
 class RouteQuery(NamedTuple):
-    """The nodes, arcs and closed chains that one query adds to the pathgraph.
+    """The nodes, arcs and closed chains that one query adds to the pathgraph of n nodes and m chains.
 
     Attributes
     ----------
-    joint : (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come.
-    cost : (5,) the lengths of the five arcs, in squares; infinite where there is none.
-    sight : (2, landmarks) the goal's distances from the landmarks, and the start's, in squares.
-    line : (4,) a point of the straight line from start to goal, and the line's normal, scaled: an arc's cost grows by
-        the share that the product of this normal and the offset of the arc's head from the point gives; 0 for no bias.
+    joint : (4,) the nodes to which the start's two arcs lead, and those from which the goal's two arcs come; -1 for
+        none.
+    cost : (5,) the lengths of the five arcs (see the module's description), in squares; infinite where there is none.
+    sight : (2, landmarks) the goal's distances from the landmarks (row 0), and the start's (row 1), in squares.
+    line : (4,) a point (x, y) of the straight line from start to goal, in squares, and the line's normal, scaled: an
+        arc's cost grows by the share that the product of this normal and the offset of the arc's head from the point
+        gives; a normal of 0 for no bias.
     closed : (m,) 0 for chains that may be walked from end to end; bit 0: closed on request, bit 1: split by an end.
-    closed_steps : (b, 2) chain and position of the steps that may not be taken: each from that position to the next
-        one.
+    closed_steps : (b, 2) chain and position of the steps that may not be taken: each from the cell at that position on
+        the chain, counted from 0, to the next one.
     """
 
     joint: Ints
@@ -47,16 +49,16 @@ class Search(NamedTuple):
 
     Attributes
     ----------
-    best : (n + 2,) the cost of the cheapest path found so far to each node.
-    arrival : (n + 2,) the arc by which that path arrives.
+    best : (n + 2,) the cost of the cheapest path found so far to each node: its length in squares, unless biased.
+    arrival : (n + 2,) the code of the arc by which that path arrives; -1 at the node where the search began.
     seen : (n + 2,) mark of `best` and `arrival`.
     node_ban : (n + 2,) mark of nodes that the present search must not enter.
-    arc_ban : (2m + 5,) mark of arcs that the present search must not use from its origin.
+    arc_ban : (2m + 5,) mark, by code, of arcs that the present search must not use from its origin.
     goal_distance : (n + 2,) exact distances to the goal, in squares, when filled.
     nodes : (n + 2,) the nodes of the path from which deviations are sought.
     key : (2m + 8,) heap: lower bounds of costs.
     node : (2m + 8,) heap: nodes.
-    stamp : (2,) the current stamp; whether `goal_distance` is filled.
+    stamp : (2,) the current stamp, which grows from search to search; whether `goal_distance` is filled (1 or 0).
     """
 
     best: Floats
@@ -72,7 +74,7 @@ class Search(NamedTuple):
 
 
 def new_search(nodes: int, chains: int) -> Search:
-    """Return scratch for a pathgraph of that many nodes and chains."""
+    """Return scratch for a pathgraph of that many nodes and chains (its edges)."""
     return Search(
         np.empty(nodes + 2),
         np.empty(nodes + 2, np.int32),
@@ -92,10 +94,18 @@ def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, o
     """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`.
 
     Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
-    arcs costlier: then its cost is at most PATH_SLACK times the least.
+    arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal. A
+    chain is an edge of the pathgraph, with its cells.
 
     This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
     handing it on, costs more than the arc for which it is used.
+
+    Parameters
+    ----------
+    landmarks : the arcs of the pathgraph and the distances from its landmarks.
+    query : the start's and the goal's arcs, the bias, and which chains are closed.
+    search : `best`, `arrival`, `seen` and `node_ban` are written, the heap is scratch.
+    origin : the number of the node from which to search; the number of nodes, n, is the start.
     """
     arc, head, step, place, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.place, landmarks.sight
     joint, extra, line, goal = query.joint, query.cost, query.line, query.sight
@@ -151,8 +161,15 @@ def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, o
 def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
     """Return a lower bound of the path length from a node to the goal (end 0) or to the start (end 1), in squares.
 
-    It is the best triangle inequality over the landmarks. `sight` are the nodes' distances from them, `ends` the
-    query's.
+    It is the best triangle inequality over the landmarks; 0 when they say nothing, infinite when one of them shows that
+    no path leads there.
+
+    Parameters
+    ----------
+    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
+    ends : (2, landmarks) the goal's distances from them, and the start's.
+    end : 0 for the goal, 1 for the start.
+    node : the number of the node.
     """
     least = 0.0
     for k in range(sight.shape[1]):
@@ -166,7 +183,15 @@ def landmark_bound(sight: Floats, ends: Floats, end: int, node: int) -> float:
 def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search, limit: float) -> None:
     """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
 
-    Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity.
+    Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity. The second entry of
+    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    landmarks : the arcs of the pathgraph and the distances from its landmarks.
+    query : the start's and the goal's arcs, and which chains are closed.
+    search : changed; its heap is scratch.
+    limit : in squares; infinite for all nodes.
     """
     arc, head, step, sight = landmarks.arc, landmarks.head, landmarks.step, landmarks.sight
     joint, cost, ends, closed = query.joint, query.cost, query.sight, query.closed

@@ -19,11 +19,15 @@ def routes_to_area(
 ) -> list[Route]:
     """Return at most k routes to squares of a set, each the shortest of its class, shortest first.
 
+    Empty when the body cannot be at the start, or no square of the set can be reached.
+
     Parameters
     ----------
     queries : the layer that is asked.
-    start : (x, y) in squares.
-    goal : (rows, columns) bool. Squares in which the body cannot be do not count.
+    start : (x, y) in squares from the screen's south-west corner.
+    goal : (rows, columns) bool, True on squares of the set, row 0 in the south. Squares in which the body cannot be do
+        not count.
+    k : how many routes at most.
     avoid : passages through which no route may lead.
     """
     if not queries.admits(start):
@@ -44,18 +48,32 @@ SetRoute = tuple[Route, int, int]  # a route, the number of the part of the set 
 class GoalArea:
     """A goal set and the searches for routes to it.
 
+    Points are (x, y) in squares from the screen's south-west corner. A cell is a square given by its index in the flat
+    padded grid, (row + 1) * width + column + 1.
+
     Attributes
     ----------
     queries : the layer that is asked.
+    layer : the same, without the scratch of searches.
+    width : columns of the padded grid.
     start : (x, y) in squares.
     avoid : passages through which no route may lead.
     goal : (rows, columns) bool, the squares of the set in which the body may be.
     barrier : the floor cut along the passages to avoid; None when there are none.
     regions : the connected parts of the set.
-    region_of : by padded cell, the number of its part.
+    region_of : by cell of the set, the number of its part: its index in `regions`.
     """
 
     def __init__(self, queries: LayerQueries, start: XY, goal: Bools, avoid: tuple[Passage, ...]) -> None:
+        """Find the parts of a goal set.
+
+        Parameters
+        ----------
+        queries : the layer that is asked.
+        start : (x, y) in squares from the screen's south-west corner.
+        goal : (rows, columns) bool, True on squares of the set; those in which the body cannot be do not count.
+        avoid : passages through which no route may lead; may be empty.
+        """
         self.queries, self.start, self.avoid = queries, start, avoid
         self.layer = queries.layer
         self.width: int = self.layer.square.shape[1]
@@ -65,7 +83,7 @@ class GoalArea:
         self.region_of = {cell: number for number, region in enumerate(self.regions) for cell in region.vertex}
 
     def to_nearest_square(self) -> list[SetRoute]:
-        """Return the route to the nearest square of all, if there is one, as a list.
+        """Return the route to the nearest square of all as a list of one; an empty list when none can be reached.
 
         Squares are tried in the order of their straight distances, as long as these are less than the best length.
         """
@@ -93,7 +111,15 @@ class GoalArea:
         return [] if route is None else [(route, self.region_of[best], best)]
 
     def to_representatives(self, k: int) -> list[SetRoute]:
-        """Return routes to the representatives of all parts, cut where they enter the set, and then shortened."""
+        """Return routes to the representatives of all parts, cut where they enter the set, and then shortened.
+
+        The representative of a part is its cell of greatest clearance. The routes stand part by part, not by length;
+        several may be of one class.
+
+        Parameters
+        ----------
+        k : how many routes are wanted in the end; of each part at most k + EXTRA_PATHS are tried.
+        """
         found: list[SetRoute] = []
         for region in self.regions:
             centre = self.queries.centre(region.cell)
@@ -104,8 +130,19 @@ class GoalArea:
     def cut_at_set(self, route: Route, region: GoalRegion) -> tuple[Ints, int]:
         """Return the word of a route to a representative up to the first cell of the set, and that cell.
 
-        The whole word is returned where the path from square to square, unlike the route, leads through a passage to
-        avoid.
+        The whole word, and the representative, are returned where the path from square to square, unlike the route,
+        leads through a passage to avoid.
+
+        Parameters
+        ----------
+        route : a route from the start to the representative of the part.
+        region : the part of the set.
+
+        Returns
+        -------
+        word : (n,) int32, reduced: the signed portals (index plus 1, negative when crossed southwards) from the start's
+            strip to that of the cell.
+        cell : index in the flat padded grid, (row + 1) * width + column + 1.
         """
         strips, goal = self.layer.runs, self.queries.centre(region.cell)
         word = word_of_line(strips, route.points.tolist())
@@ -116,7 +153,16 @@ class GoalArea:
         return join_words(word_of_cells(strips, cells[:size], self.width)), cells[size - 1]
 
     def shortened(self, word: Ints, cell: int) -> SetRoute:
-        """Return the route of a word to a cell, with its end moved on within the set as long as that shortens it."""
+        """Return the route of a word to a cell, with its end moved on within the set as long as that shortens it.
+
+        The end moves from square to square. With the route come the number of the part of the set and the last cell.
+
+        Parameters
+        ----------
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : a cell of the set, an index in the flat padded grid, (row + 1) * width + column + 1.
+        """
         tight = self.to_cell(word, cell)
         while True:
             nearer = [self.moved_end(word, cell, step) for step in (1, self.width, -1, -self.width)]
@@ -129,6 +175,13 @@ class GoalArea:
         """Return the route, word and cell with the end moved by a step; None when the end may not move so.
 
         The new cell must be in the set, and the step must not be cut.
+
+        Parameters
+        ----------
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : the cell at which the route ends, an index in the flat padded grid, (row + 1) * width + column + 1.
+        step : what is added to it: 1 east, width north, -1 west, -width south.
         """
         other = cell + step
         if other not in self.region_of or (self.barrier is not None and self.barrier.is_closed(cell, other)):
@@ -137,7 +190,17 @@ class GoalArea:
         return self.to_cell(longer, other), longer, other
 
     def to_cell(self, word: Ints, cell: int) -> Route:
-        """Return the tight route of a word to the centre of a cell."""
+        """Return the tight route from the start to the centre of a cell, of the class of a word.
+
+        Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A chain is an
+        edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        word : the reduced word of signed portals (index plus 1, negative when crossed southwards) from the start to the
+            cell.
+        cell : index in the flat padded grid, (row + 1) * width + column + 1.
+        """
         end = self.queries.centre(cell)
         tight = tight_route(self.layer, (*self.queries.snap(self.start), *end), word, nan, ())
         return self.queries.with_ends(tight, self.start, end)

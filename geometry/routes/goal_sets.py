@@ -18,18 +18,18 @@ from geometry.passages.partition import number_parts
 
 
 class GoalRegion(NamedTuple):
-    """One connected part of a goal set, in padded cells.
+    """One connected part of a goal set, in padded cells: indices in the flat padded grid.
 
     A part may go round walls, and the end of a route may move round them as well. So the part is folded: its rows of
     squares are vertices, and what leads through one portal to the same strip is one vertex. Read backwards from its
     end, the word of a route is taken back as far as it runs within the part. What is left, and the vertex where that
-    ends, name the class (Stallings 1983).
+    ends, name the class (Stallings 1983). A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
     Attributes
     ----------
-    cell : its representative, the cell of greatest clearance.
-    vertex : the vertex of each of its cells.
-    step : by vertex and signed portal, the vertex beyond.
+    cell : its representative, the cell of greatest clearance; of several, the last.
+    vertex : the number of the vertex of each of its cells.
+    step : by vertex and signed portal (negative when crossed southwards), the vertex beyond.
     """
 
     cell: int
@@ -37,7 +37,18 @@ class GoalRegion(NamedTuple):
     step: dict[tuple[int, int], int]
 
     def class_of(self, word: Ints, cell: int) -> tuple[int, ...]:
-        """Return a name for the class of a reduced word to one of the cells, whose end may be moved within the part."""
+        """Return a name for the class of a reduced word to one of the cells, whose end may be moved within the part.
+
+        Names are equal exactly when the classes are: first a vertex, then what is left of the word. They hold within
+        one part.
+
+        Parameters
+        ----------
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to that of
+            the cell.
+        cell : a cell of the part, an index in the flat padded grid, (row + 1) * width + column + 1; KeyError for any
+            other.
+        """
         symbols, here = word.tolist(), self.vertex[cell]
         while symbols and (here, -symbols[-1]) in self.step:
             here = self.step[here, -symbols.pop()]
@@ -47,15 +58,19 @@ class GoalRegion(NamedTuple):
 def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int]) -> Bools | None:
     """Return the squares of a goal set, (rows, columns) bool, or None when the goal is a point.
 
+    The values of a point are not checked.
+
     Parameters
     ----------
-    goal : (x, y), or (rows, columns) array of bool, or set of squares (column, row).
+    goal : (x, y) in squares from the screen's south-west corner, or (rows, columns) array of bool, row 0 in the south,
+        or set of squares (column, row).
     shape : (rows, columns) of the screen.
 
     Raises
     ------
     ValueError
-        When it is neither a point nor an array of bool of the screen's shape nor a set of (column, row).
+        When it is neither a point nor an array of bool of the screen's shape nor a set of (column, row), or a square of
+        the set lies outside the screen.
     """
     if isinstance(goal, set | frozenset):
         squares = np.zeros(shape, np.bool_)
@@ -75,13 +90,16 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
 
 
 def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Bools) -> list[GoalRegion]:
-    """Return the connected parts of a goal set where a body may be.
+    """Return the parts of a goal set where a body may be, connected over edges; an empty list when there is none.
+
+    They are ordered by their first cell, row by row from the south-west.
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) int, squared clearances in half squares.
-    level : the least squared clearance of a cell where the body may be, in half squares.
-    goal : (rows, columns) bool.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
+    level : the least squared clearance of a cell where the body may be, in squared half squares.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    goal : (rows, columns) bool, the squares of the set; those where the body cannot be do not count.
     """
     inside = np.zeros(square.shape, np.bool_)
     inside[1:-1, 1:-1] = goal & (square[1:-1, 1:-1] >= level)
@@ -92,7 +110,17 @@ def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Boo
 
 
 def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number: int) -> GoalRegion:
-    """Return the part with a number in `label`, (rows + 2, columns + 2)."""
+    """Return the part with a number in `label`, folded.
+
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    label : (rows + 2, columns + 2) int, the number of the part of each padded cell.
+    number : one that occurs in `label`.
+    """
     width = square.shape[1]
     cells = np.flatnonzero(label == number)
     heights = square.reshape(-1)[cells]
@@ -113,14 +141,23 @@ def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number:
 def fold(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict[tuple[int, int], int]]:
     """Return the vertex that stands for each one, and the steps, once no two steps of one name lead apart.
 
+    Where two steps from one vertex with the same signed portal lead to two vertices, these are made one. A signed
+    portal is a portal's index plus 1, negative when it is crossed southwards.
+
     Parameters
     ----------
     edges : (vertex, signed portal, vertex beyond), in both directions.
-    count : the number of vertices.
+    count : the number of vertices, which are numbered from 0.
+
+    Returns
+    -------
+    vertex : for each vertex the number of the one that stands for it, the least of those made one.
+    step : by (vertex, signed portal) the vertex beyond; all of them vertices that stand for others.
     """
     vertex = list(range(count))
 
     def standing_for(v: int) -> int:
+        """Return the vertex that stands for vertex v, and shorten the way to it in `vertex`."""
         while vertex[v] != v:
             vertex[v] = vertex[vertex[v]]
             v = vertex[v]
@@ -143,11 +180,15 @@ def fold(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict
 def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: int) -> list[int]:
     """Return the padded cells of a goal set among which the nearest is: those beside a cell outside it, and the start.
 
-    A path to the centre of any other cell passes a cell of the set whose centre is as near to where it goes on.
+    The start is among them only when it lies in the set. A path to the centre of any other cell passes a cell of the
+    set whose centre is as near to where it goes on. Cells are indices in the flat padded grid, (row + 1) * width +
+    column + 1, ascending.
 
     Parameters
     ----------
-    goal : (rows, columns) bool.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
+    level : the least squared clearance of a cell where the body may be, in squared half squares.
+    goal : (rows, columns) bool, the squares of the set.
     start : the padded cell of the start.
     """
     inside, free = np.pad(goal, 1), square >= level
@@ -162,6 +203,16 @@ def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: in
 
 
 def word_of_cells(strips: Strips, cells: list[int], width: int) -> Ints:
-    """Return the signed portals crossed from cell to cell, not reduced."""
+    """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other.
+
+    A step within a row crosses no portal. A signed portal is a portal's index plus 1, negative when it is crossed
+    southwards.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    cells : indices in the flat padded grid, (row + 1) * width + column + 1, each an edge neighbour of the one before.
+    width : columns of the padded grid.
+    """
     symbols = [symbol_between(strips.row, strips.up, strips.left, a, b, width) for a, b in pairwise(cells)]
     return np.array([s for s in symbols if s], np.int32)

@@ -23,9 +23,10 @@ class Layer(NamedTuple):
 
     Attributes
     ----------
-    square : (rows + 2, columns + 2) int, squared clearances in half squares, padded by one cell on each side.
-    state : (rows + 2, columns + 2) uint8, links and flags of the skeleton (see skeleton.py).
-    chains : the chains of the pathgraph.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares, padded by one cell on each side; 0
+        on blocked cells.
+    state : (rows + 2, columns + 2) uint8, links and flags of the skeleton, 0 off the skeleton (see skeleton.py).
+    chains : the chains of the pathgraph: its edges, with their cells.
     runs : the strips and portals of the free space.
     landmarks : words and lengths of the chains, and distances from landmark nodes.
     body : False for a point, which may use whole squares; True for a body, whose centre keeps to the lines of centres.
@@ -42,10 +43,17 @@ class Layer(NamedTuple):
 def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[States, Words]:
     """Return a skeleton `state` of that padded shape, and the same memory as words of eight cells.
 
+    Fresh memory is 0; memory that is given keeps its values.
+
     Parameters
     ----------
     shape : (rows + 2, columns + 2).
-    words : memory to use, uint64; None for fresh memory.
+    words : memory to use, uint64, of at least an eighth as many entries as there are cells; None for fresh memory.
+
+    Returns
+    -------
+    state : (rows + 2, columns + 2) uint8, a view of the words.
+    words : ((cells + 7) // 8 or more,) uint64.
     """
     cells = shape[0] * shape[1]
     if words is None:
@@ -54,7 +62,18 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
 
 
 def find_pathgraph(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
-    """Return the pathgraph of the cells whose squared clearance is at least `level` (half squares); fill `state`."""
+    """Return the pathgraph of the cells whose squared clearance is at least `level`; fill `state`.
+
+    The pathgraph has the junctions and ends of the skeleton as nodes, and the chains of cells between them, which never
+    branch, as edges. A chain is such an edge. Without a cell at that level there are none.
+
+    Parameters
+    ----------
+    square : (rows + 2, columns + 2) int, padded squared clearances in squared half squares.
+    level : the least squared clearance, in squared half squares.
+    state : (rows + 2, columns + 2) uint8, written: links and flags of the skeleton, 0 elsewhere.
+    words : the memory of `state` as words of eight cells.
+    """
     grow_all(square, level, state, words)
     return contract(square, state, words)
 
@@ -62,19 +81,23 @@ def find_pathgraph(square: SquaredDistances, level: int, state: States, words: W
 def build_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
     """Return the layer of a pathgraph: find its strips and landmarks.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
-    square : (rows + 2, columns + 2) int, squared clearances in half squares.
-    level : the least squared clearance of a cell where the body may be, in half squares.
+    square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
+    level : the least squared clearance of a cell where the body may be, in squared half squares.
     body : True for a body, False for a point.
-    state, chains : the skeleton and the chains of its pathgraph.
+    state, chains : the skeleton (as of `find_pathgraph`) and the chains of its pathgraph.
     """
     runs = find_strips(square, level)
     return Layer(square, state, chains, runs, compute_landmarks(square, chains, runs, body), body)
 
 
 def least_squared_clearance(radius: float) -> int:
-    """Return the least squared clearance, in half squares, of a cell at whose centre a body of that radius may be.
+    """Return the least squared clearance, in squared half squares, of a cell at whose centre a body may be.
+
+    It is 1 or more, 1 for a point, and at most MAX_LEVEL, which no cell reaches.
 
     The centres of squares decide for all places between them: seen from one coordinate, the distance to a blocked
     square only grows, only falls or is 0 between two neighbouring centres, because walls stand on whole numbers. So on
@@ -82,7 +105,7 @@ def least_squared_clearance(radius: float) -> int:
 
     Parameters
     ----------
-    radius : in squares; 0 for a point.
+    radius : of the body, in squares; 0 for a point.
 
     Raises
     ------

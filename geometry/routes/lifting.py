@@ -1,5 +1,9 @@
 """Lifting: from the word of a route to its path over the skeleton, that is, its chains and its least clearance.
 
+A path is a list of cells, each an edge neighbour of the one before; a link is an entry of that list. Cells are indices
+in the flat padded grid, (row + 1) * width + column + 1. A cell is higher than another when its clearance is greater, or
+as great and its index greater.
+
 # Strategy: every class of paths holds exactly one path over the skeleton that never turns back. It is found by raising
 any path of the class, cell by cell. From a cell, the paths to the higher cells of one group (see skeleton.py) can be
 deformed into each other over higher cells only, so a step up to a cell of a group becomes the step to the group's
@@ -30,8 +34,8 @@ class Lifted(NamedTuple):
 
     Attributes
     ----------
-    lowest : the least squared clearance on it, its ends included, in half squares.
-    chains : the chains that it follows, in order.
+    lowest : the least squared clearance on it, its ends included, in squared half squares.
+    chains : the numbers of the chains (edges of the pathgraph) that it follows, in order; empty when it follows none.
     """
 
     lowest: int
@@ -43,11 +47,12 @@ class Trail(NamedTuple):
 
     Attributes
     ----------
-    cell : (room,) the padded cell of each link, or DROPPED.
-    before : (room,) the link before, or DROPPED.
-    after : (room,) the link after, or DROPPED.
-    queue : (room,) links to examine.
-    queued : (room,) whether a link is in the queue.
+    cell : (room,) the padded cell of each link (index in the flat padded grid, (row + 1) * width + column + 1), or
+        DROPPED.
+    before : (room,) the number of the link before, DROPPED at the start.
+    after : (room,) the number of the link after, DROPPED at the goal.
+    queue : (room,) numbers of links to examine.
+    queued : (room,) 1 when a link is in the queue, else 0.
     counts : (2,) how many links were ever made, and how many are in the queue.
     """
 
@@ -70,9 +75,11 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 
     Parameters
     ----------
-    ends : x and y of the start, x and y of the goal, in squares; both in squares where the body may be.
-    word : signed portals from the start's strip to the goal's.
-    trail : scratch from an earlier call.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in squares
+        where the body may be.
+    word : signed portals from the start's strip to the goal's, negative when crossed southwards.
+    trail : scratch from an earlier call; None for new scratch.
 
     Returns
     -------
@@ -88,7 +95,17 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 
 
 def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
-    """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal."""
+    """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal.
+
+    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last.
+
+    Parameters
+    ----------
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    word : signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's; need
+        not be reduced.
+    """
     trail = new_trail(4 * len(word) + 1024)
     while write_cells_of_word(layer.runs, ends, word, layer.square.shape[1], trail) == TRAIL_OVERFLOW:
         trail = new_trail(4 * len(trail.cell))
@@ -102,7 +119,19 @@ def lift_word(
 ) -> int:
     """Write the least squared clearance and the chains of a word's path over the skeleton to the trail's queue.
 
-    Returns how many numbers these are, or TRAIL_OVERFLOW when there is no room.
+    Return how many numbers these are (the clearance first, then the numbers of the chains in order), or TRAIL_OVERFLOW
+    when there is no room. A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an
+    edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    states : (cells,) links and flags of the skeleton, 0 off it.
+    width : columns of the padded grid.
+    chains, strips : those of the layer.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
+    trail : scratch; the answer stands at the beginning of its `queue`.
     """
     if (
         write_cells_of_word(strips, ends, word, width, trail) == TRAIL_OVERFLOW
@@ -129,7 +158,11 @@ def lift_word(
 
 @bare
 def direction_of(step: int) -> int:
-    """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south."""
+    """Return the direction of an index step between edge neighbours: 0 east, 1 north, 2 west, 3 south.
+
+    `step` is the difference of their indices in the flat padded grid, (row + 1) * width + column + 1: 1, the grid's
+    width, or one of these negated.
+    """
     if step == 1 or step == -1:
         return 1 - step
     return 1 if step > 0 else 3
@@ -139,8 +172,16 @@ def direction_of(step: int) -> int:
 def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
     """Write the cells of a path with this word as a linked list, and return the number of links.
 
-    The path goes along each strip to the nearest square of the next portal. Returns TRAIL_OVERFLOW when there is no
-    room.
+    The path goes along each strip to the nearest square of the next portal. Return TRAIL_OVERFLOW when there is no
+    room. All links are queued.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
+    width : columns of the padded grid.
+    trail : written.
     """
     cell, before, after, queue, queued, counts = trail
     left, right = strips.left, strips.right
@@ -177,7 +218,16 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 
 @bare
 def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
-    """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more."""
+    """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more.
+
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+
+    Parameters
+    ----------
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    width : columns of the padded grid.
+    trail : the path, with all its links queued; changed, its queue is empty afterwards.
+    """
     cell, before, after, queue, queued, counts = trail
     while counts[1] > 0:
         counts[1] -= 1
@@ -200,7 +250,17 @@ def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
 def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
     """Lead the step from a link to a higher one over the highest edge neighbour of its group.
 
-    `forward` says whether `next_link` comes after `link` on the path.
+    A group is a connected part of the higher cells on the ring of a cell's eight neighbours. Nothing changes when the
+    other link is not higher, or is that highest neighbour. A cell's index is (row + 1) * width + column + 1, with width
+    = columns + 2.
+
+    Parameters
+    ----------
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    width : columns of the padded grid.
+    trail : the path; links are inserted and queued.
+    link, next_link : numbers of two links that follow each other.
+    forward : whether `next_link` comes after `link` on the path.
     """
     cell = trail.cell
     here, there = 0 + cell[link], 0 + cell[next_link]
@@ -232,7 +292,15 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
 
 @bare
 def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
-    """Put a cell between two links of a path and return its link."""
+    """Put a cell between two links of a path, queue it, and return the number of its link.
+
+    Parameters
+    ----------
+    trail : the path; changed.
+    cell : index in the flat padded grid, (row + 1) * width + column + 1.
+    last, next_link : numbers of the two links.
+    forward : whether `next_link` comes after `last` on the path.
+    """
     new = 0 + trail.counts[0]
     trail.counts[0] += 1
     trail.cell[new], trail.queued[new] = cell, 0
@@ -246,7 +314,11 @@ def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: boo
 
 @bare
 def drop_spur(trail: Trail, link: int) -> None:
-    """Drop a link that is left as it was reached, with one of its two neighbours, which are the same cell."""
+    """Drop a link that is left as it was reached, with one of its two neighbours, which are the same cell.
+
+    `trail` is changed: both cells become DROPPED, and the links that then meet are queued. Start and goal are never
+    dropped: when they are the two neighbours, they become the whole path. `link` is the number of the link.
+    """
     cell, before, after = trail.cell, trail.before, trail.after
     first, last = 0 + before[link], 0 + after[link]
     cell[link] = DROPPED
@@ -267,7 +339,7 @@ def drop_spur(trail: Trail, link: int) -> None:
 
 @bare
 def enqueue(trail: Trail, link: int) -> None:
-    """Put a link into the queue of links to examine, unless it is there."""
+    """Put a link, by number, into the trail's queue of links to examine, unless it is there."""
     if not trail.queued[link]:
         trail.queued[link] = 1
         trail.queue[trail.counts[1]] = link

@@ -1,5 +1,7 @@
 """Loops: closed paths over the pathgraph that wind once about given blocked squares.
 
+A chain is an edge of the pathgraph, with its cells; a position on it is the index of a cell, from 0 at its first.
+
 # Strategy: a ray from one of those squares to the screen's edge is crossed by some chains. A closed path winds as often
 as it crosses the ray, so the search runs on nodes times windings. Paths that never turn back on a chain are the classes
 of loops; the shortest are found by A* with exact distances.
@@ -24,10 +26,10 @@ class Arc(NamedTuple):
 
     Attributes
     ----------
-    head : the node to which it leads.
-    length : in squares.
+    head : the number of the node to which it leads.
+    length : in squares; of a part, in proportion to its cells.
     turns : crossings of the ray from east to west, minus those from west to east.
-    chain : the chain.
+    chain : the number of the chain.
     begin : position on the chain at which it begins.
     end : position on the chain at which it ends.
     """
@@ -48,13 +50,15 @@ def closed_paths(layer: Layer, start: Anchor, around: Bools, wanted: int) -> lis
 
     Parameters
     ----------
-    start : the anchor of the start on the pathgraph.
-    around : (rows, columns) bool, the blocked squares.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
+    around : (rows, columns) bool, the blocked squares of one object, row 0 in the south; at least one.
+    wanted : how many paths at most.
 
     Returns
     -------
     list of list of Arc
-        Shortest first.
+        The arcs of each path, in the order in which they are walked; shortest path first. Empty when there is none.
     """
     arcs, origin = build_arcs(layer, start, ray_crossings(layer, around))
     to_origin = distances_to_origin(arcs, origin)
@@ -77,12 +81,15 @@ def closed_paths(layer: Layer, start: Anchor, around: Bools, wanted: int) -> lis
 
 
 def turns_back(last: Arc, arc: Arc) -> bool:
-    """Return whether an arc is the last arc walked backwards."""
+    """Return whether an arc is the last arc, the one walked just before, walked backwards."""
     return (arc.chain, arc.begin, arc.end) == (last.chain, last.end, last.begin)
 
 
 def arcs_of_trail(trail: tuple[Arc, object] | None) -> list[Arc]:
-    """Return the arcs of a trail, first to last; a trail is the last arc and the trail before it."""
+    """Return the arcs of a trail, first to last; a trail is the last arc and the trail before it.
+
+    None is the trail without arcs, and gives an empty list.
+    """
     path: list[Arc] = []
     while trail is not None:
         path.append(trail[0])
@@ -91,10 +98,17 @@ def arcs_of_trail(trail: tuple[Arc, object] | None) -> list[Arc]:
 
 
 def ray_crossings(layer: Layer, around: Bools) -> Ints:
-    """Return for each chain cell how often its chain has crossed the ray up to there, (cells,).
+    """Return for each chain cell how often its chain has crossed the ray up to there, (cells,) int32.
 
-    The ray goes north from the last of the squares `around`, between its column and the column to the west. Crossings
-    from east to west count 1, those from west to east -1.
+    The ray goes north from the last of the squares `around` (the eastern one of the northernmost row), between its
+    column and the column to the west. Crossings from east to west count 1, those from west to east -1. The sum goes on
+    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph,
+    with its cells.
+
+    Parameters
+    ----------
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    around : (rows, columns) bool, row 0 in the south; at least one True.
     """
     width, cells = layer.square.shape[1], layer.chains.cells
     row, column = (int(v[-1]) for v in np.nonzero(around))
@@ -109,7 +123,21 @@ def ray_crossings(layer: Layer, around: Bools) -> Ints:
 
 
 def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]:
-    """Return all arcs out of each node, and the start's node: a node of its own if the start lies inside a chain."""
+    """Return all arcs out of each node, and the start's node: a node of its own if the start lies inside a chain.
+
+    That node's number is the number of the pathgraph's nodes; its chain is replaced by the two parts beside it.
+
+    Parameters
+    ----------
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
+    crossings : (cells,) as of `ray_crossings`: for each chain cell, crossings of the ray up to there.
+
+    Returns
+    -------
+    arcs : by node, the list of arcs that leave it.
+    origin : the number of the start's node.
+    """
     chains, origin = layer.chains, start.node
     arcs: Arcs = [[] for _ in range(len(chains.node) + 1)]
     for chain, (a, b) in enumerate(chains.ends.tolist()):
@@ -124,7 +152,18 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
 
 
 def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[int, int], two: tuple[int, int]) -> None:
-    """Add a stretch of a chain in both directions; each end is a node and its position on the chain."""
+    """Add a stretch of a chain to `arcs`, in both directions.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    arcs : by node, the arcs that leave it; extended.
+    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+    crossings : (cells,) for each chain cell, crossings of the ray up to there.
+    chain : the number of the chain.
+    one, two : the stretch's ends, each a node and its position on the chain; that of `one` is the lower.
+    """
     first = int(layer.chains.start[chain])
     steps = int(layer.chains.start[chain + 1]) - first - 1
     length = float(layer.landmarks.length[chain]) * (two[1] - one[1]) / steps
@@ -134,7 +173,16 @@ def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[i
 
 
 def distances_to_origin(arcs: Arcs, origin: int) -> dict[tuple[int, int], float]:
-    """Return, by node and windings still to make, the length of the shortest path to the origin, in squares."""
+    """Return, by node and windings still to make, the length of the shortest path to the origin, in squares.
+
+    Keys are (node, windings): how often the ray is still to be crossed from east to west, net, from -MAX_WINDINGS to
+    MAX_WINDINGS. Where no path leads there is no key.
+
+    Parameters
+    ----------
+    arcs : by node, the arcs that leave it; each has its reverse among them.
+    origin : the number of the node to which paths lead.
+    """
     best = {(origin, 0): 0.0}
     heap = [(0.0, origin, 0)]
     while heap:
@@ -150,7 +198,16 @@ def distances_to_origin(arcs: Arcs, origin: int) -> dict[tuple[int, int], float]
 
 
 def cells_of_path(chains: Chains, path: list[Arc]) -> list[int]:
-    """Return the padded cells of a path, from its origin back to it."""
+    """Return the padded cells of a path, from its origin back to it: indices in the flat padded grid.
+
+    The first and the last cell are the same. An empty path gives an empty list. A cell's index is (row + 1) * width +
+    column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    chains : the chains of the pathgraph.
+    path : arcs, in the order in which they are walked.
+    """
     cells: list[int] = []
     for arc in path:
         first = int(chains.start[arc.chain])

@@ -41,7 +41,10 @@ NO_CLOSED_STEPS: Ints = np.zeros((0, 2), np.int32)
 
 
 def compile_route_kernels() -> None:
-    """Compile the routing kernels, which take longest, for the array types of screens, before there is a screen."""
+    """Compile the routing kernels, which take longest, for the array types of screens, before there is a screen.
+
+    Nothing is returned: the machine code is kept by numba.
+    """
     ints, ends_of, none = np.zeros(1, np.int32), np.full((1, 4), -1, np.int32), np.full((1, 4), -1, np.int16)
     chains = Chains(ints, ends_of, np.empty((0, 2), np.int32), ints, ints, ints[:0])  # one node, no chain
     strips = find_strips(none, 1)
@@ -57,17 +60,27 @@ def compile_route_kernels() -> None:
 class LayerQueries:
     """A layer with the scratch of its searches, which grows as needed.
 
-    Points are (x, y) in squares. A body moves between centres of squares; its routes begin and end with straight lines
-    from and to its true ends.
+    Points are (x, y) in squares from the screen's south-west corner. A body moves between centres of squares; its
+    routes begin and end with straight lines from and to its true ends. A cell is a square given by its index in the
+    flat padded grid, (row + 1) * width + column + 1. A word is an array of signed portals, negative when crossed
+    southwards (see strips.py).
 
     Attributes
     ----------
     layer : the layer that is asked.
-    level : the least squared clearance of a cell where the body may be, in half squares.
+    level : the least squared clearance of a cell where the body may be, in squared half squares.
     radius : of the body, in squares; 0 for a point.
     """
 
     def __init__(self, layer: Layer, level: int, radius: float) -> None:
+        """Take a layer, and make no scratch yet.
+
+        Parameters
+        ----------
+        layer : the free space of a body of one radius: skeleton, pathgraph and strips.
+        level : the least squared clearance of a cell where the body may be, in squared half squares; that of the layer.
+        radius : of the body, in squares; 0 for a point.
+        """
         self.layer = layer
         self.level = level
         self.radius = radius
@@ -81,17 +94,20 @@ class LayerQueries:
         self._barrier: tuple[tuple[Passage, ...], Barrier] | None = None
 
     def admits(self, point: XY) -> bool:
-        """Return whether the body may be at a point, at the centre of its square, and on the line between them."""
+        """Return whether the body may be at a point, at the centre of its square, and on the line between them.
+
+        The point is (x, y) in squares from the screen's south-west corner and must lie on the screen.
+        """
         if self.layer.square.item(int(point[1]) + 1, int(point[0]) + 1) < self.level:
             return False
         return not self.layer.body or disc_stays_clear(self.layer.square, point, self.snap(point), self.radius)
 
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...] = ()) -> list[Route]:
-        """Return at most k routes between two points, shortest first.
+        """Return at most k routes between two points, shortest first; an empty list when they are not connected.
 
         Parameters
         ----------
-        start, goal : (x, y) in squares, where `admits` holds.
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         k : how many routes at most.
         avoid : passages through which no route may lead.
         """
@@ -104,7 +120,7 @@ class LayerQueries:
         return [self.with_ends(route, start, goal) for route in routes]
 
     def _candidate_count(self, k: int) -> int:
-        """Return how many paths over the pathgraph are pulled tight for k routes."""
+        """Return how many paths over the pathgraph are pulled tight for k routes: 1 for one route, else some more."""
         return (
             1
             if k == 1
@@ -112,7 +128,17 @@ class LayerQueries:
         )
 
     def _search(self, ends: Ends, wanted: int, closed_steps: Ints) -> tuple[RouterBuffers, int]:
-        """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number."""
+        """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number.
+
+        The routes stand in `answers` of the buffers, in the order of their paths over the pathgraph; the next search
+        overwrites them. A chain is an edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+        wanted : how many paths at most; for one, up to three routes are found, of which the shortest is meant.
+        closed_steps : (b, 2) chain and position of steps that may not be taken.
+        """
         found, room = ROUTER_OVERFLOW, 0
         while found == ROUTER_OVERFLOW:
             buffers = self._router_buffers(wanted, room)
@@ -128,7 +154,14 @@ class LayerQueries:
         return buffers, found
 
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY, k: int) -> list[Route]:
-        """Return the routes, preceded by the shortest path of all if none of them is of its class."""
+        """Return at most k routes: those given, preceded by the shortest path of all if none of them is of its class.
+
+        Parameters
+        ----------
+        routes : routes from start to goal, shortest first; at least one.
+        start, goal : (x, y) in squares from the screen's south-west corner.
+        k : how many routes at most.
+        """
         first = routes[0].length - LENGTH_TOLERANCE
         if first <= hypot(goal[0] - start[0], goal[1] - start[1]):
             return routes
@@ -136,19 +169,34 @@ class LayerQueries:
         return routes if length >= first else [self._polyanya_route(length, (*start, *goal)), *routes][:k]
 
     def with_skeleton_path(self, route: Route) -> Route:
-        """Return the same route with the clearance and the chains of its class's path over the skeleton."""
+        """Return the same route with the clearance and the chains of its class's path over the skeleton.
+
+        The clearance is in squares; the chains are numbers of edges of the pathgraph, in the order of the route.
+        """
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
         found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
         return Route(route.points, route.length, 0.5 * found.lowest**0.5, route.signature, found.chains)
 
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
-        """Return the floor cut along some passages; the last barrier is kept."""
+        """Return the floor cut along some passages, so that no route leads through them.
+
+        The last barrier is kept, and returned again when `avoid`, the passages, is the same.
+        """
         if self._barrier is None or self._barrier[0] != avoid:
             self._barrier = avoid, build_barrier(self.layer, self.level, avoid)
         return self._barrier[1]
 
     def _avoiding(self, start: XY, goal: XY, k: int, barrier: Barrier) -> list[Route]:
-        """Return at most k routes between two points that lead through no passage of a barrier, shortest first."""
+        """Return at most k routes between two points that lead through no passage of a barrier, shortest first.
+
+        The list is empty when the barrier separates the points.
+
+        Parameters
+        ----------
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
+        k : how many routes at most.
+        barrier : the floor cut along the passages.
+        """
         first, last = self.cell(start), self.cell(goal)
         if barrier.separates(first, last):
             return []
@@ -175,7 +223,16 @@ class LayerQueries:
         return routes[:k]
 
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
-        """Return the route of a reduced word between two points."""
+        """Return the tight route of a reduced word between two points, with its clearance and chains.
+
+        A chain is an edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
+            goal's.
+        """
         ends = (*self.snap(start), *self.snap(goal))
         found = self._lifted(ends, word)
         route = tight_route(self.layer, ends, word, 0.5 * found.lowest**0.5, found.chains)
@@ -184,7 +241,13 @@ class LayerQueries:
     def shortest_length(self, start: XY, goal: XY, limit: float = inf) -> float:
         """Return the length of the shortest path of all, in squares; infinite when none is shorter than the limit.
 
-        The path itself is left in the scratch.
+        The path is that of a point over the whole squares of the layer. It is left in the scratch. When both ends lie
+        in one strip, its length is returned whatever the limit.
+
+        Parameters
+        ----------
+        start, goal : (x, y) in squares from the screen's south-west corner, in free squares.
+        limit : in squares.
         """
         strips = self.layer.runs
         if self._polyanya is None:
@@ -196,12 +259,25 @@ class LayerQueries:
         return inf if self._polyanya.sizes[0] == NO_PATH else float(length)
 
     def shortest(self, start: XY, goal: XY) -> Route | None:
-        """Return the shortest route of all, at any angle, or None. Its clearance and chains are not known."""
+        """Return the shortest route of all, at any angle; None when start and goal are not connected.
+
+        Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares from
+        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph, with its cells.
+        """
         length = self.shortest_length(start, goal)
         return None if length == inf else self._polyanya_route(length, None)
 
     def _polyanya_route(self, length: float, ends: Ends | None) -> Route:
-        """Return the route left in the scratch, lifted to the skeleton when its ends are given."""
+        """Return the route left in the scratch, lifted to the skeleton when its ends are given.
+
+        A chain is an edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        length : of the route, in squares.
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; with None the
+            clearance is nan and there are no chains.
+        """
         polyanya = cast(PolyanyaSearch, self._polyanya)
         size, corners = polyanya.sizes.tolist()
         points, word = polyanya.line[:corners].copy(), polyanya.word[:size]
@@ -213,19 +289,29 @@ class LayerQueries:
         return Route(points, length, clearance, crossings_of(self.layer.runs, word), chains)
 
     def _lifted(self, ends: Ends, word: Ints) -> Lifted:
-        """Return the path over the skeleton of a reduced word."""
+        """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
+
+        A chain is an edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+        word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the
+            goal's.
+        """
         found, self._trail_scratch = lift_to_skeleton(self.layer, ends, word, self._trail_scratch)
         return found
 
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
         """Return at most k closed tight routes that wind once, counter-clockwise, about blocked squares.
 
-        They stand shortest first.
+        They stand shortest first; the list is empty when there are none.
 
         Parameters
         ----------
-        start : (x, y) in squares, where every loop begins and ends.
-        around : (rows, columns) bool, the blocked squares.
+        start : (x, y) in squares from the screen's south-west corner, where every loop begins and ends.
+        around : (rows, columns) bool, the blocked squares of one object, row 0 in the south.
+        k : how many loops at most.
         """
         cell = (int(start[1]) + 1) * self._width + int(start[0]) + 1
         data, strips, chains = self._data, self.layer.runs, self.layer.chains
@@ -238,7 +324,14 @@ class LayerQueries:
         return sorted(routes, key=lambda route: route.length)[:k]
 
     def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
-        """Return the tight loop of a closed path over the pathgraph."""
+        """Return the tight loop of a closed path over the pathgraph.
+
+        Parameters
+        ----------
+        start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
+        rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
+        path : the arcs of the closed path, in the order in which they are walked.
+        """
         cells = cells_of_path(self.layer.chains, path)
         word = join_words(rise, word_of_cells(self.layer.runs, cells, self._width), -rise[::-1])
         lowest = min(int(self.layer.square.reshape(-1)[cells].min()), self._squared_clearance(start))
@@ -248,7 +341,11 @@ class LayerQueries:
         return self.with_ends(route, start, start)
 
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
-        """Return scratch for that many routes, with room for words of at least that many symbols."""
+        """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
+
+        It is kept for each number of routes, and made anew when it has too little room. A signed portal is a portal's
+        index plus 1, negative when it is crossed southwards.
+        """
         buffers = self._buffers_of.get(wanted)
         if buffers is None or len(buffers.start) < room:
             nodes, landmark_distances = self.layer.landmarks.sight.shape
@@ -259,11 +356,23 @@ class LayerQueries:
         return buffers
 
     def snap(self, point: XY) -> XY:
-        """Return the point at which a tight path ends: for a body the centre of the point's square, else the point."""
+        """Return the point at which a tight path ends: for a body the centre of the point's square, else the point.
+
+        Both are (x, y) in squares from the screen's south-west corner.
+        """
         return (int(point[0]) + 0.5, int(point[1]) + 0.5) if self.layer.body else point
 
     def with_ends(self, route: Route, start: XY, goal: XY) -> Route:
-        """Return a body's route extended to its true ends, if they are not centres of squares."""
+        """Return a body's route extended to its true ends, if they are not centres of squares.
+
+        Within one square it becomes the straight line if that leaves room for the body. The length is that of the whole
+        line; clearance, signature and chains stay. A chain is an edge of the pathgraph, with its cells.
+
+        Parameters
+        ----------
+        route : a route between the centres of the ends' squares.
+        start, goal : the true ends, (x, y) in squares from the screen's south-west corner.
+        """
         line = [(x, y) for x, y in route.points.tolist()]
         if len(line) == 1 and disc_stays_clear(self.layer.square, start, goal, self.radius):
             line = [start, goal]  # within one square
@@ -276,14 +385,21 @@ class LayerQueries:
         return Route(points, polyline_length(points), route.clearance, route.signature, route.chains)
 
     def cell(self, point: XY) -> int:
-        """Return the index, in the flat padded grid, of the cell of a point's square."""
+        """Return the index, in the flat padded grid, of the cell of a point's square.
+
+        The point is (x, y) in squares from the screen's south-west corner and must lie on the screen: this is not
+        checked. A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+        """
         return (int(point[1]) + 1) * self._width + int(point[0]) + 1
 
     def centre(self, cell: int) -> XY:
-        """Return the centre (x, y), in squares, of a cell given by its index in the flat padded grid."""
+        """Return the centre (x, y), in squares, of a cell given by its index in the flat padded grid.
+
+        A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
+        """
         return cell % self._width - 0.5, cell // self._width - 0.5
 
     def _squared_clearance(self, point: XY) -> int:
-        """Return the squared clearance of a point's square, in half squares."""
+        """Return the squared clearance of a point's square, in squared half squares; 0 when it is blocked."""
         height: int = self.layer.square.reshape(-1)[self.cell(point)].item()
         return height

@@ -17,13 +17,15 @@ class Route:
 
     Attributes
     ----------
-    points : (n, 2) float64, corners in squares, start and goal included.
+    points : (n, 2) float64, corners (x, y) in squares from the screen's south-west corner, start and goal included;
+        read-only.
     length : in squares.
     clearance : the radius of the largest body that can follow this route over the skeleton, from square to square, in
         squares; nan when the path over the skeleton is not known (from `shortest` alone).
-    signature : signed crossing numbers of the portals crossed (see strips.py); empty for the class without any.
-    chains : the chains of the pathgraph that the route follows, in order (its ends may lie inside the first and last);
-        empty when not known.
+    signature : signed crossing numbers of the portals crossed, from start to goal, negative when crossed southwards
+        (see strips.py); empty for the class without any.
+    chains : the numbers of the chains (edges of the pathgraph) that the route follows, in order (its ends may lie
+        inside the first and last); empty when not known.
     """
 
     points: Floats
@@ -34,7 +36,14 @@ class Route:
 
 
 def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
-    """Return at most `most` of the first `found` routes in a router's answers, shortest first."""
+    """Return at most `most` of the first `found` routes in a router's answers, shortest first.
+
+    Parameters
+    ----------
+    answers : the routes as arrays, in the order in which they were found.
+    found : how many of them are filled in.
+    most : how many routes to return at most.
+    """
     bounds = answers.bounds[: found + 1].tolist()
     lengths, lowest = answers.length[:found].tolist(), answers.lowest[:found].tolist()
     corners, crossings, chains = bounds[found]
@@ -50,5 +59,5 @@ def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Rout
 
 
 def polyline_length(points: Floats) -> float:
-    """Return the length of a polyline, (n, 2), in the unit of its points."""
+    """Return the length of a polyline, (n, 2) points (x, y), in the unit of its points; 0 for one point."""
     return float(np.hypot(*np.diff(points, axis=0).T).sum())

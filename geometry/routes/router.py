@@ -21,12 +21,13 @@ class RouteAnswers(NamedTuple):
 
     Attributes
     ----------
-    bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`.
-    corners : (size, 2) corners of the routes, in squares.
-    crossings : (size,) signed crossing numbers.
-    chains : (size,) chains of the pathgraph.
-    length : (room,) in squares.
-    lowest : (room,) the least squared clearance on the path over the skeleton, in half squares.
+    bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`: those of route k are from bounds[k] to
+        bounds[k + 1], excluded.
+    corners : (size, 2) corners (x, y) of the routes, in squares from the screen's south-west corner.
+    crossings : (size,) signed crossing numbers (see strips.py).
+    chains : (size,) numbers of the chains of the pathgraph.
+    length : (room,) of each route, in squares.
+    lowest : (room,) the least squared clearance on each route's path over the skeleton, in squared half squares.
     """
 
     bounds: Ints
@@ -47,10 +48,12 @@ class RouterBuffers(NamedTuple):
     store : the paths over the pathgraph.
     funnel : scratch for pulling a path tight.
     answers : the routes found.
-    start : (room,) word from the start up to the skeleton.
+    start : (room,) word (signed portals: index plus 1, negative when crossed southwards) from the start up to the
+        skeleton.
     goal : (room,) word from the goal up to the skeleton.
     whole : (room,) word from start to goal.
-    stretch : (n + 2, 3) the chains that a path follows, and the positions between which.
+    stretch : (n + 2, 3) the chains that a path follows, each with the positions (indices of its cells) between which; n
+        is the number of nodes.
     """
 
     query: RouteQuery
@@ -69,12 +72,15 @@ def new_router_buffers(
 ) -> RouterBuffers:
     """Return scratch for a query.
 
+    A chain is an edge of the pathgraph, with its cells.
+
     Parameters
     ----------
     nodes, chains, landmark_count : the numbers of nodes, chains and landmarks of the pathgraph.
-    wanted : the number of routes.
-    room : symbols of the longest word.
-    closed_steps : (b, 2) chain and position of steps that may not be taken.
+    wanted : the number of routes, at least 1.
+    room : symbols (signed portals: index plus 1, negative when crossed southwards) of the longest word.
+    closed_steps : (b, 2) chain and position of steps that may not be taken: each from the cell at that position on the
+        chain to the next.
     """
     query = RouteQuery(
         np.empty(4, np.int32),
@@ -118,9 +124,9 @@ class RoutingData(NamedTuple):
 
     Attributes
     ----------
-    heights : (cells,) squared clearances in half squares.
-    states : (cells,) links and flags of the skeleton.
-    width : columns of the padded grid.
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    states : (cells,) links and flags of the skeleton, 0 off it.
+    width : columns of the padded grid; a cell's index is (row + 1) * width + column + 1.
     chains, strips, landmarks, body : those of the layer.
     """
 
@@ -134,7 +140,7 @@ class RoutingData(NamedTuple):
 
 
 def routing_data(layer: Layer) -> RoutingData:
-    """Return what the kernels read of a layer; the arrays are views."""
+    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views."""
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
     return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
 
@@ -144,12 +150,15 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
     """Fill the answers with up to `wanted` tight routes and return their number, or ROUTER_OVERFLOW.
 
     The routes stand in the order of their paths over the pathgraph, shortest first. When one is wanted, up to three are
-    found: the best paths for several biases, of which the shortest is meant. ROUTER_OVERFLOW says that some scratch is
-    too small.
+    found: the best paths for several biases, of which the shortest is meant. Return 0 when goal and start are not
+    connected. ROUTER_OVERFLOW says that some scratch is too small.
 
     Parameters
     ----------
-    ends : x and y of the start, x and y of the goal, in squares, in free squares.
+    data : the layer's arrays.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
+    wanted : how many routes at most, at least 1; the number for which the buffers were made.
+    buffers : scratch; the routes are left in `buffers.answers`.
     """
     heights, states, width, chains, strips, landmarks, body = data
     query, store = buffers.query, buffers.store
@@ -196,7 +205,17 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 
 @bare
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
-    """Close the chains that start and goal split (flag 2), or open them again (flag 0)."""
+    """Close the chains that start and goal split (flag 2), or open them again (flag 0).
+
+    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph,
+    with its cells.
+
+    Parameters
+    ----------
+    closed : (m,) of the query, by chain; changed.
+    start, goal : where the ends meet the pathgraph.
+    flag : 2 or 0.
+    """
     if start.node < 0:
         closed[start.chain] = closed[start.chain] & 1 | flag
     if goal.node < 0:
@@ -207,7 +226,15 @@ def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> 
 def set_bias(line: Floats, ends: Ends, bias: float) -> None:
     """Set the query's line so that arcs far from the straight line cost more.
 
-    The cost grows by `bias` times the distance of the arc's head from the straight line, in lengths of that line.
+    The cost grows by the share `bias` times the distance of the arc's head from the straight line, in lengths of that
+    line.
+
+    Parameters
+    ----------
+    line : (4,) of the query, written: the start (x, y) in squares from the screen's south-west corner, and the scaled
+        normal of the straight line.
+    ends : x and y of the start, x and y of the goal, in squares.
+    bias : 0 for none.
     """
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
     square = dx * dx + dy * dy
@@ -219,9 +246,17 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
 
 @bare
 def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
-    """Set the ends and the lengths of the query's five arcs.
+    """Set the ends and the lengths of the query's five arcs (see astar.py).
 
-    `ends`, `starts` and `length` are those of the chains.
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    query : `joint` and `cost` are written (squares; infinite for arcs that there are not), `closed_steps` is read.
+    start, goal : where the ends meet the pathgraph.
+    ends : (m, 2) the first and the last node of each chain.
+    starts : (m + 1,) where the cells of each chain begin.
+    length : (m,) of the chains, in squares.
     """
     joint, cost, closed_steps = query.joint, query.cost, query.closed_steps
     for k in range(2):
@@ -247,7 +282,18 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
 
 @bare
 def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
-    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step."""
+    """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    closed_steps : (b, 2) chain and position of steps that may not be taken, each to the next position.
+    starts : (m + 1,) where the cells of each chain begin.
+    length : (m,) of the chains, in squares.
+    chain : the number of the chain.
+    begin, end : positions on it, indices of its cells from 0, in either order.
+    """
     low, high = (begin, end) if begin < end else (end, begin)
     for k in range(closed_steps.shape[0]):
         if closed_steps[k, 0] == chain and low <= closed_steps[k, 1] < high:
@@ -257,7 +303,14 @@ def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int,
 
 @bare
 def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) -> None:
-    """Write the distances of goal and start from the landmarks to `out`, (2, landmarks), in squares."""
+    """Write the distances of goal and start from the landmarks to `out`, in squares.
+
+    Parameters
+    ----------
+    joint, cost : (4,) and (5,) the nodes and the lengths of the query's arcs.
+    sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
+    out : (2, landmarks) written: the goal's (row 0) and the start's (row 1); infinite where no arc leads to a node.
+    """
     for k in range(sight.shape[1]):
         for end in range(2):
             least = np.inf
@@ -271,7 +324,20 @@ def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) ->
 def write_stretches(
     ends: Ints, starts: Ints, arcs: Ints, row: int, size: int, start: Anchor, goal: Anchor, out: Ints
 ) -> int:
-    """Write the chains that a path follows and the positions between which, and return their number."""
+    """Write the chains that a path follows and the positions between which, and return their number.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    ends : (m, 2) the first and the last node of each chain.
+    starts : (m + 1,) where the cells of each chain begin.
+    arcs : (room, longest) arc codes of paths (2 chain, plus 1 when walked backwards; see astar.py).
+    row, size : the path's row there, and its number of arcs.
+    start, goal : where the ends meet the pathgraph.
+    out : (n, 3) written from row 0 on: chain, first and last position, in the order of the path; positions are indices
+        of the chain's cells from 0. Arcs without length, at an end that lies at a node, are left out.
+    """
     first, used = 2 * ends.shape[0], 0
     for k in range(size):
         code = arcs[row, k]
@@ -298,7 +364,17 @@ def write_stretches(
 
 @bare
 def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
-    """Return whether a path follows the same chains as one of the routes written."""
+    """Return whether a path follows the same chains, in the same order, as one of the routes written.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    bounds, chains : of the answers: which chains the routes follow.
+    written : the number of routes written.
+    stretch : (n, 3) the path's chains, in column 0.
+    steps : how many rows of `stretch` count.
+    """
     for route in range(written):
         first = bounds[route, 2]
         same = steps == bounds[route + 1, 2] - first
@@ -313,7 +389,19 @@ def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: 
 def lowest_square_on(
     starts: Ints, cells: Ints, neck: Ints, heights: Heights, stretch: Ints, steps: int, lowest: int
 ) -> int:
-    """Return the least squared clearance on a path, at most `lowest`, in half squares."""
+    """Return the least squared clearance on a path, at most `lowest`, in squared half squares.
+
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
+    with its cells.
+
+    Parameters
+    ----------
+    starts, cells, neck : of the chains: where the cells of each begin, the cells, and the index of its lowest cell.
+    heights : (cells,) squared clearances in squared half squares, flat and padded.
+    stretch : (n, 3) the path's chains, and the positions between which, in either order.
+    steps : how many rows of `stretch` count.
+    lowest : the least squared clearance elsewhere, at the ends; returned when no cell of the path is lower.
+    """
     for k in range(steps):
         chain = stretch[k, 0]
         low, high = stretch[k, 1], stretch[k, 2]
@@ -341,11 +429,17 @@ def write_word(
 ) -> int:
     """Write the reduced word of a path from start to goal, and return its size.
 
+    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph, with
+    its cells.
+
     Parameters
     ----------
+    starts : (m + 1,) where the cells of each chain begin.
+    landmarks : the words of the chains.
     rise, risen : the word from the start up to the skeleton, and its size.
-    stretch, steps : the chains that the path follows, and their number.
+    stretch, steps : the chains that the path follows and the positions between which, (n, 3), and their number.
     fall, fallen : the word from the goal up to the skeleton, and its size.
+    word : written: signed portals, negative when crossed southwards.
     """
     symbol, words, spelt = landmarks.symbol, landmarks.word, landmarks.spelt
     size = add_word(rise, 0, risen, False, word, 0)
@@ -371,7 +465,21 @@ def write_route(
     answers: RouteAnswers,
     k: int,
 ) -> bool:
-    """Pull a word tight and write it as the k-th route; return False when there is no room."""
+    """Pull a word tight and write it as the k-th route; return False when there is no room.
+
+    A chain is an edge of the pathgraph, with its cells.
+
+    Parameters
+    ----------
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
+    body : True for a body, which keeps to the lines between centres of squares; False for a point.
+    word, size : signed portals (index plus 1, negative when crossed southwards) from start to goal, and their number.
+    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
+    funnel : scratch.
+    stretch, steps : the chains that the path follows, in column 0, and their number.
+    answers : written, but for `lowest`: corners, crossings, chains and length of route k, and the bounds behind it.
+    k : the number of the route, from 0; those before it must be written.
+    """
     bounds, line, crossings, chains = answers.bounds, answers.corners, answers.crossings, answers.chains
     corner, crossing, chain = bounds[k, 0], bounds[k, 1], bounds[k, 2]
     room, needed = line.shape[0] - corner, 4 * size + 8

@@ -38,7 +38,15 @@ MAX_UNKNOWN_RIM = 2  # squares; how far a whole shape may reach into unknown squ
 def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
     """Return the best shape of a class with whole corners and sides along the axes, and how many squares are wrong.
 
-    The number is infinite when there is no such shape.
+    Parameters
+    ----------
+    kind : one of the classes of misfit (SQUARE_CLASS ... DISC_CLASS).
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
+
+    Returns
+    -------
+    (PARAMETER_COUNT,) float64, the numbers of the shape as in misfit, in squares of the image and radians; and the
+    count of known squares that it gets wrong. Zeros and infinity when there is no such shape, as for every disc.
     """
     best, at = math.inf, np.zeros(PARAMETER_COUNT)
     if kind == DISC_CLASS:
@@ -60,7 +68,11 @@ def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
 @compiled
 def _extent(image: Image, state: int) -> tuple[int, int, int, int]:
-    """Return south, north, west, east of the squares of one state: first, and one beyond the last."""
+    """Return south, north, west, east of the squares of one state: first, and one beyond the last.
+
+    Rows and columns of the image, row 0 in the south. 1000000, -1000000, 1000000, -1000000 when no square has the
+    state.
+    """
     south, north, west, east = 10**6, -(10**6), 10**6, -(10**6)
     for row in range(image.shape[0]):
         for column in range(image.shape[1]):
@@ -76,7 +88,15 @@ def _whole_rectangles(
 ) -> tuple[Floats, float]:
     """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong.
 
-    All four directions are tried.
+    All four directions are tried. The numbers of the shape are as in misfit. If none gets fewer than `limit` squares
+    wrong: zeros, and infinity or, for an L, `limit`.
+
+    Parameters
+    ----------
+    kind : SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS or HORSESHOE_CLASS.
+    image : the image.
+    west, south, east, north : sides of the rectangle, squares of the image.
+    limit : number of wrong squares to be beaten.
     """
     best, at = limit, np.zeros(PARAMETER_COUNT)
     width, height = east - west, north - south
@@ -102,8 +122,15 @@ def _whole_uneven_ell(
 ) -> tuple[Floats, float]:
     """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
 
-    Its notch is at least MIN_NOTCH squares long and wide: the image of a turned rectangle may lack a square or two of a
-    row at a corner.
+    Otherwise `shape` and `limit` are returned. Its notch is at least MIN_NOTCH squares long and wide: the image of a
+    turned rectangle may lack a square or two of a row at a corner.
+
+    Parameters
+    ----------
+    image : the image.
+    west, south, east, north : sides of the rectangle, squares of the image.
+    limit : number of squares that `shape` gets wrong, to be beaten.
+    shape : numbers of a shape, as in misfit.
     """
     best, at = limit, shape
     for quarter in range(4):
@@ -123,7 +150,14 @@ def _whole_uneven_ell(
 def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, limit: float) -> tuple[Floats, float]:
     """Return the best triangle with a side on a rectangle's side and a whole corner on the opposite one.
 
-    Right-angled ones are tried first, then those with two equal sides, then the rest.
+    Right-angled ones are tried first, then those with two equal sides, then the rest; of equally good ones the first is
+    returned, with the number of squares that it gets wrong. Zeros and infinity if none gets fewer than `limit` wrong.
+
+    Parameters
+    ----------
+    image : the image.
+    west, south, east, north : sides of the rectangle, squares of the image.
+    limit : number of wrong squares to be beaten.
     """
     best, at = limit, np.zeros(PARAMETER_COUNT)
     for turn in range(3):
@@ -147,7 +181,18 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 
 @compiled
 def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
-    """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong."""
+    """Return the best shape of a class at any place and angle that descents find, and how many squares are wrong.
+
+    Parameters
+    ----------
+    kind : one of the classes of misfit.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south; a square must be occupied.
+
+    Returns
+    -------
+    (PARAMETER_COUNT,) numbers as in misfit, and a count of squares, one more for a shape that is no proper one of its
+    class.
+    """
     free, starts = initial_steps(kind), _starts(kind, image)
     at, best = _best_descended(kind, starts, free, image)
     if kind == ELL_CLASS and best > 0.0:  # perhaps with arms of two widths
@@ -161,7 +206,18 @@ def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
 @compiled
 def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tuple[Floats, float]:
-    """Return the best shape that descents from the best starts reach, and how many squares are wrong."""
+    """Return the best shape that descents from the best starts reach, and how many squares are wrong.
+
+    Parameters
+    ----------
+    kind, image : class of the shape, and the image.
+    starts : (n, PARAMETER_COUNT) numbers of shapes as in misfit, n at least 1.
+    free : (PARAMETER_COUNT,) how far each number is moved at first; 0 where it stays.
+
+    Returns
+    -------
+    (PARAMETER_COUNT,) numbers, and a count, one more for a shape that is no proper one of its class.
+    """
     losses = np.empty(len(starts))
     for k in range(len(starts)):
         losses[k] = disagreement(kind, starts[k], image)
@@ -188,7 +244,13 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
     """Return the disc near one, at places and radii in fine steps, with the fewest wrong squares, and their number.
 
     The disc of least disagreement may get several squares wrong by very little, because the rim of a wide disc passes
-    many corners of squares.
+    many corners of squares. Of equally good discs that of least disagreement is returned.
+
+    Parameters
+    ----------
+    disc : (PARAMETER_COUNT,) centre x, y and radius, in squares of the image.
+    wrong : number of squares that it gets wrong.
+    image : the image.
     """
     best, at, least = wrong, disc, disagreement(DISC_CLASS, disc, image)
     for i in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
@@ -208,7 +270,10 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
 
 @compiled
 def initial_steps(kind: int) -> Floats:
-    """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays."""
+    """Return how far each number of a class is moved at first in a descent, (PARAMETER_COUNT,); 0 where it stays.
+
+    In squares, of an angle in radians. `kind` : one of the classes of misfit.
+    """
     if kind == DISC_CLASS:
         return np.array([0.3, 0.3, 0.3, 0.0, 0.0, 0.0, 0.0])
     if kind == TRIANGLE_CLASS:
@@ -223,7 +288,10 @@ def initial_steps(kind: int) -> Floats:
 
 @compiled
 def _starts(kind: int, image: Image) -> Floats:
-    """Return the shapes from which descents may begin, (n, PARAMETER_COUNT)."""
+    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), numbers as in misfit.
+
+    One for each of some angles and thicknesses; a single one for discs. `kind` : one of the classes of misfit.
+    """
     if kind == DISC_CLASS:
         return _start_disc(image)
     thickness_count = 3 if kind >= ELL_CLASS and kind <= HORSESHOE_CLASS else 1
@@ -238,7 +306,10 @@ def _starts(kind: int, image: Image) -> Floats:
 
 @compiled
 def _start_disc(image: Image) -> Floats:
-    """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT)."""
+    """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT).
+
+    Centre x, y and radius in squares of the image, then zeros. At least one square must be occupied.
+    """
     x = y = 0.0
     count = 0
     for row in range(image.shape[0]):
@@ -259,6 +330,13 @@ def _write_start(kind: int, image: Image, angle: float, thickness: float, out: F
 
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.
+
+    Parameters
+    ----------
+    kind : any class but DISC_CLASS.
+    image : the image, with an occupied square.
+    angle : direction in radians, counter-clockwise from the east.
+    thickness : of the arms, squares; written even for classes without arms, but not for triangles.
     """
     c, s = math.cos(angle), math.sin(angle)
     u0, u1, v0, v1, tip = 1e9, -1e9, 1e9, -1e9, 0.0

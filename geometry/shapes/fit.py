@@ -45,14 +45,16 @@ class Fit:
     ----------
     shape : "square", "brick", "l_shape", "t_shape", "u_shape", "triangle" or "disc".
     misfit : number of squares wrong: occupied and not covered, or free and covered.
-    polygon : shapely Polygon, in squares, origin at the corner of the image's square (0, 0).
+    polygon : shapely Polygon, in squares, origin at the lower left corner of square (0, 0) of the array fitted to, x
+        along its columns, y along its rows.
     whole : whether all sides lie along the axes, or all corners on whole squares, and the shape was found exhaustively.
     width : in squares, of the rectangle that holds the shape, in the shape's own frame; of a disc the diameter, of a
         triangle the longest side.
     height : in squares, of that rectangle; of a disc the diameter, of a triangle the height on its longest side.
     thick : in squares, of the arms or walls; 0 where there are none; of an L with arms of two widths that of its foot,
         the arm as long as the rectangle is wide.
-    degrees : the angle by which the shape is turned, 0 to 360, counter-clockwise.
+    degrees : the angle by which the shape is turned, 0 to below 360, counter-clockwise; of a triangle the direction of
+        its longest side, of a disc 0.
     """
 
     shape: str
@@ -103,7 +105,16 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
 
 class _Candidate(NamedTuple):
-    """The best shape of a class for an image, as in misfit.py, and the number of squares that it gets wrong."""
+    """The best shape of a class for an image, and the number of squares that it gets wrong.
+
+    Attributes
+    ----------
+    name : as Fit.shape.
+    kind : the class as misfit numbers it.
+    shape : (PARAMETER_COUNT,) its numbers, as in misfit, in squares of the image.
+    wrong : count of known squares that it gets wrong.
+    whole : whether it has whole corners, as Fit.whole.
+    """
 
     name: str
     kind: int
@@ -113,7 +124,10 @@ class _Candidate(NamedTuple):
 
 
 def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
-    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong."""
+    """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong.
+
+    `name`, `kind` : the class by name and by number.
+    """
     shape, wrong = best_whole_shape(kind, image)
     if wrong > 0:
         other, worse = best_turned_shape(kind, image)
@@ -125,7 +139,13 @@ def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
 def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_Candidate]:
     """Return shapes that agree equally well, whole ones first, then by likelihood.
 
-    A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class.
+    A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class. A disc comes first
+    where the first whole shape is an L with a slight notch and no square is unknown.
+
+    Parameters
+    ----------
+    ties : the shapes, of different classes, all with the same number of wrong squares.
+    image : the image that they are fitted to.
     """
     whole = [one for one in ties if one.whole]
     others = [one for one in ties if not one.whole]
@@ -138,14 +158,34 @@ def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_C
 
 
 def _is_cut_square(candidate: _Candidate) -> bool:
-    """Return whether a shape is an L with a notch as slight as the image of a small disc has."""
+    """Return whether a shape is an L with a notch as slight as the image of a small disc has.
+
+    Its notch is less than MAX_SLIGHT_NOTCH of both sides.
+    """
     width, height, thickness = candidate.shape[3:6]
     notch = max((width - misfit.stem_of(candidate.shape)) / width, (height - thickness) / height)
     return candidate.kind == misfit.ELL_CLASS and bool(notch < MAX_SLIGHT_NOTCH)
 
 
 def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, int]:
-    """Return the image cut to the squares that may be the object and a rim, and the column and row of its corner."""
+    """Return the image cut to the squares that may be the object and a rim, and the column and row of its corner.
+
+    Parameters
+    ----------
+    occupied, possible : as in fit_shapes: (rows, columns) bool, squares that are and that may be the object; None for
+        none.
+
+    Returns
+    -------
+    image : (rows, columns) int8 of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south, with a rim of RIM
+        free squares.
+    west, south : column and row, in `occupied`, of the image's square (0, 0); below 0 when the rim reaches out of the
+        array.
+
+    Raises
+    ------
+    ValueError : no square is occupied, or the arrays differ in shape.
+    """
     occupied = np.asarray(occupied, bool)
     unknown = np.zeros_like(occupied) if possible is None else np.asarray(possible, bool)
     if occupied.ndim != 2 or unknown.shape != occupied.shape or not occupied.any():
@@ -162,7 +202,10 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, 
 
 
 def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
-    """Return a candidate in the squares of the whole array; `west` and `south` are those of the image's corner."""
+    """Return a candidate as a Fit, in the squares of the whole array.
+
+    `west`, `south` : column and row there of the image's square (0, 0).
+    """
     polygon = shapely.Polygon(outline(candidate.kind, candidate.shape) + np.array([west, south], float))
     width, height, thickness = _sizes(candidate.kind, candidate.shape, polygon)
     degrees = 0.0 if candidate.kind == misfit.DISC_CLASS else _rotation(candidate.kind, candidate.shape)
@@ -170,7 +213,16 @@ def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
 
 
 def outline(kind: int, shape: Floats) -> Floats:
-    """Return the corners (n, 2) of a shape, in order, in squares of the image."""
+    """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated.
+
+    Origin at the lower left corner of the image's square (0, 0). A disc becomes DISC_CORNERS corners on its rim. A
+    triangle has its corners in the order of its numbers; all else is counter-clockwise.
+
+    Parameters
+    ----------
+    kind : one of the classes of misfit.
+    shape : (PARAMETER_COUNT,) the numbers of the shape, as in misfit.
+    """
     if kind == misfit.TRIANGLE_CLASS:
         return shape[:6].reshape(3, 2)
     if kind == misfit.DISC_CLASS:
@@ -187,9 +239,13 @@ def outline(kind: int, shape: Floats) -> Floats:
 
 
 def _corners(kind: int, width: float, height: float, thickness: float, stem: float) -> list[tuple[float, float]]:
-    """Return the corners of a shape made of rectangles, not turned, lower left at the origin.
+    """Return the corners (x, y) of a shape made of rectangles, not turned, lower left at the origin, counter-clockwise.
 
-    `stem` is the width of an L's stem.
+    Parameters
+    ----------
+    kind : any class but TRIANGLE_CLASS and DISC_CLASS.
+    width, height, thickness : of the rectangle that holds it, and of its arms, squares.
+    stem : the width of an L's stem, squares; the other classes do not use it.
     """
     if kind <= misfit.BRICK_CLASS:
         return [(0, 0), (width, 0), (width, height), (0, height)]
@@ -212,7 +268,13 @@ def _corners(kind: int, width: float, height: float, thickness: float, stem: flo
 
 
 def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
-    """Return the width, height and thickness of a shape, in squares."""
+    """Return the width, height and thickness of a shape, in squares, as in Fit; thickness 0.0 without arms.
+
+    Parameters
+    ----------
+    kind, shape : the class, and the numbers of the shape as in misfit.
+    polygon : its shapely Polygon; only the area of a triangle is read.
+    """
     if kind == misfit.DISC_CLASS:
         return 2 * float(shape[2]), 2 * float(shape[2]), 0.0
     if kind == misfit.TRIANGLE_CLASS:
@@ -224,7 +286,10 @@ def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]
 
 
 def _rotation(kind: int, shape: Floats) -> float:
-    """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side."""
+    """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side.
+
+    From 0 to below 360, counter-clockwise from the east. Not for discs.
+    """
     if kind != misfit.TRIANGLE_CLASS:
         return math.degrees(float(shape[0])) % 360.0
     corners = shape[:6].reshape(3, 2)

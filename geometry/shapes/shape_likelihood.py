@@ -42,8 +42,10 @@ class ParameterVolume(NamedTuple):
 
     Attributes
     ----------
-    mean : (PARAMETER_COUNT,), the mean of the shapes that agree.
-    log_likelihood : the log likelihood of the image.
+    mean : (PARAMETER_COUNT,), the mean of the shapes that agree, numbers as in misfit; the shape asked about if the
+        mean does not agree itself.
+    log_likelihood : the natural logarithm of the likelihood of the image; higher is likelier. Only differences between
+        classes of one image mean something.
     """
 
     mean: Floats
@@ -53,11 +55,12 @@ class ParameterVolume(NamedTuple):
 def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
     """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong.
 
-    Shapes turned by any angle are equally likely, and so are lengths and diameters over SIZE_RANGE squares.
+    It is given as a likelihood. Shapes turned by any angle are equally likely, and so are lengths and diameters over
+    SIZE_RANGE squares. The same arguments give the same answer.
 
     Parameters
     ----------
-    kind, shape, image : class, numbers and image, as in geometry.shapes.misfit.
+    kind, shape, image : class, numbers (PARAMETER_COUNT,) and image, as in geometry.shapes.misfit.
     wrong : the number of squares that the shape gets wrong.
     """
     free = initial_steps(kind)
@@ -70,7 +73,8 @@ def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> Para
 def _log_density(kind: int, uneven: bool) -> float:
     """Return the log density of a class in its numbers, all that stand for one shape taken together.
 
-    `uneven` says whether the shape is an L with arms of two widths.
+    The natural logarithm of a density per square of length and per radian. `kind` : one of the classes of misfit.
+    `uneven` : whether the shape is an L with arms of two widths.
     """
     if kind == DISC_CLASS:
         return -math.log(SIZE_RANGE / 2)
@@ -96,7 +100,18 @@ def _sample_volume(
 ) -> tuple[Floats, float]:
     """Return the mean of the shapes about one that get no more squares wrong, and the volume that they fill.
 
-    `free` (PARAMETER_COUNT,) is how far the walk goes in each number in one step; 0 for numbers that stay.
+    Parameters
+    ----------
+    kind, shape, image : class, numbers (PARAMETER_COUNT,) and image, as in misfit.
+    wrong : number of squares that may be wrong.
+    free : (PARAMETER_COUNT,) how far the walk goes in each number in one step, in squares or radians; 0 for numbers
+        that stay.
+    random : (2 n, PARAMETER_COUNT) numbers from -1 to 1: n steps of the walk, then n places in the box.
+
+    Returns
+    -------
+    (PARAMETER_COUNT,) the mean, or `shape` if the mean gets more squares wrong; and the volume, squares and radians
+    multiplied, always above 0.
     """
     count = len(random) // 2
     at, other = shape.copy(), shape.copy()
@@ -127,5 +142,8 @@ def _sample_volume(
 
 @compiled
 def _agrees(kind: int, shape: Floats, image: Image, wrong: int) -> bool:
-    """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong."""
+    """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong.
+
+    `kind`, `shape`, `image` : class, numbers and image, as in misfit.
+    """
     return class_violation(kind, shape) == 0.0 and count_wrong_squares(kind, shape, image, wrong + 1.0) <= wrong

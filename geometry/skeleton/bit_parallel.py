@@ -21,7 +21,11 @@ EVEN_BYTES, EVEN_PAIRS, LOWER_HALF = 0x00FF00FF00FF00FF, 0x0000FFFF0000FFFF, 0xF
 
 @bare
 def degrees(word: int) -> int:
-    """Return a word with the number of links of each cell in its byte."""
+    """Return a word with the number of links (0 to 4) of each of its eight cells in the byte of the cell.
+
+    `word` : the states of eight cells, a byte each (see skeleton.py); a link is one of the four lowest bits (1 east, 2
+        north, 4 west, 8 south).
+    """
     return (word & LOWEST_BITS) + (word >> 1 & LOWEST_BITS) + (word >> 2 & LOWEST_BITS) + (word >> 3 & LOWEST_BITS)
 
 
@@ -29,7 +33,12 @@ def degrees(word: int) -> int:
 def node_marks(word: int, degree: int) -> int:
     """Return a word with 1 in the byte of each node, 0 elsewhere.
 
-    A node is a cell flagged by the highest bit, or one with links or flags but not two links.
+    A node is a cell flagged by the highest bit (HALT), or one with links or flags but not two links.
+
+    Parameters
+    ----------
+    word : the states of eight cells, a byte each: bits 1 to 8 links, 16 to 64 flags, 128 HALT.
+    degree : their numbers of links, as `degrees` returns them.
     """
     two = degree >> 1 & ~degree
     some = word | word >> 4
@@ -39,7 +48,7 @@ def node_marks(word: int, degree: int) -> int:
 
 @bare
 def sum_of_bytes(word: int) -> int:
-    """Return the sum of the bytes of a word whose highest byte is less than 128."""
+    """Return the sum of the eight bytes of a word whose highest byte is less than 128."""
     pairs = (word & EVEN_BYTES) + (word >> 8 & EVEN_BYTES)
     fours = (pairs & EVEN_PAIRS) + (pairs >> 16 & EVEN_PAIRS)
     return (fours & LOWER_HALF) + (fours >> 32)
@@ -49,8 +58,13 @@ def sum_of_bytes(word: int) -> int:
 def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, int]:
     """Return the numbers of nodes, of chain ends at nodes, and of links of the whole skeleton.
 
-    Fills ``base`` with the number of nodes before each group of sixteen words, and ``since`` with the number of nodes
-    from the start of its group up to each word.
+    A chain has two ends; a link between two neighbouring cells counts once.
+
+    Parameters
+    ----------
+    words : (words,) int64, states of eight cells each, of the whole padded screen.
+    base : (words / 16, rounded up) int32, filled with the number of nodes before each group of sixteen words.
+    since : (words,) uint8, filled with the number of nodes from the start of its group up to each word.
     """
     nodes, ends, links, start, lots = 0, 0, 0, 0, 0
     for k in range(words.shape[0]):
@@ -72,7 +86,12 @@ def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, 
 def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> int:
     """Append the cells of the nodes in the words ``first <= k < last`` to ``node``, and return their number so far.
 
-    ``found`` nodes are listed already; ``node`` has room for one more than there are nodes.
+    Parameters
+    ----------
+    words : (words,) int64, states of eight cells each, of the whole padded screen; `last` may lie beyond.
+    node : (nodes + 1 or more,) int32, filled from ``found`` on with flat indices (row * width + column, padded),
+        ascending. One element behind the last node is overwritten.
+    found : so many nodes are listed already.
     """
     for k in range(first, last if last < words.shape[0] else words.shape[0]):
         mark = node_marks(words[k], degrees(words[k]))
@@ -86,7 +105,15 @@ def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> 
 
 @bare
 def node_number(cell: int, words: Eights, base: Ints, since: ByteFlags) -> int:
-    """Return the number of nodes before a cell, from ``base`` and ``since`` as ``count_nodes`` filled them."""
+    """Return the number of nodes before a cell; when the cell is a node itself, that is its own number.
+
+    Parameters
+    ----------
+    cell : flat index into the padded screen.
+    words : (words,) int64, states of eight cells each, unchanged since `count_nodes`.
+    base, since : as ``count_nodes`` filled them: nodes before each group of sixteen words, and from there up to each
+        word.
+    """
     k = cell >> 3
     before = node_marks(words[k], degrees(words[k])) & (1 << 8 * (cell & 7)) - 1
     return int(base[k >> 4] + since[k] + sum_of_bytes(before))

@@ -27,14 +27,14 @@ MADV_POPULATE_WRITE = 23  # of Linux's madvise, since 5.14
 
 
 class Buffers(NamedTuple):
-    """The arrays of a screen, which has a padded shape of (rows + 2, columns + 2).
+    """The arrays of a screen, which has a padded shape of (rows + 2, columns + 2): one blocked cell on each side.
 
     Attributes
     ----------
     square : (rows + 2, columns + 2) int16 or int32
         Room for squared clearances in half squares.
-    words : (n,) uint64
-        Room for the states of the skeleton, eight cells a word.
+    words : (cells / 8, rounded up) uint64
+        Room for the states of the skeleton, eight cells a word, a byte each.
     """
 
     square: SquaredDistances
@@ -42,20 +42,22 @@ class Buffers(NamedTuple):
 
 
 class Tenant:
-    """The holder of a set of arrays: when it dies, the set is spare."""
+    """The holder of a set of arrays, without attributes: when it is collected, the set is spare."""
 
 
 class Scratch(NamedTuple):
     """Scratch for a change of a screen, of which little is ever written.
 
+    Cells are flat indices into the padded screen; `cells` is their number, (rows + 2) * (columns + 2).
+
     Attributes
     ----------
     mark : (cells,) uint8
-        Marks of cells, all 0 before and after a change.
+        Marks of cells (bits TOUCHED, MOVED, JOINED, PASSED of update_skeleton.py), all 0 before and after a change.
     touched : (cells,) int32
         Room for the list of cells whose state may have changed.
     before : (cells,) uint8
-        Room for the states of these before the change.
+        Room for the states of these before the change, in the order of the list.
     """
 
     mark: States
@@ -79,7 +81,7 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
     shape : (int, int)
         Padded shape: (rows + 2, columns + 2).
     kind : type
-        Least type of ``square``; a spare set of the larger type serves as well.
+        Least type of ``square``, np.int16 or np.int32; a spare set of the larger type serves as well.
 
     Returns
     -------
@@ -101,13 +103,16 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
 
 
 def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
-    """Keep a set of arrays as the only spare one."""
+    """Keep a set of arrays, no longer in use, as the only spare one; `shape` is its padded shape."""
     SPARE_BUFFERS.clear()
     SPARE_BUFFERS[shape] = buffers
 
 
 def take_scratch(cells: int) -> Scratch:
-    """Return scratch for a screen of so many cells: that of the last change if it was of that size, else new."""
+    """Return scratch for a screen of so many padded cells: that of the last change if it was of that size, else new.
+
+    Its ``mark`` is all 0; what the other arrays hold is arbitrary. It is no longer spare until ``keep_scratch``.
+    """
     scratch = SPARE_SCRATCH.pop(cells, None)
     if scratch is None:
         scratch = Scratch(np.zeros(cells, np.uint8), np.empty(cells, np.int32), np.empty(cells, np.uint8))
@@ -115,7 +120,7 @@ def take_scratch(cells: int) -> Scratch:
 
 
 def keep_scratch(scratch: Scratch) -> None:
-    """Keep scratch for the next change, as the only spare one."""
+    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one."""
     SPARE_SCRATCH.clear()
     SPARE_SCRATCH[len(scratch.mark)] = scratch
 
@@ -123,7 +128,8 @@ def keep_scratch(scratch: Scratch) -> None:
 def populate(array: NDArray[Any], advise: Adviser | None) -> None:
     """Ask the system to provide the memory of an array at once, which is faster than page by page as it is written.
 
-    Only advice: where the system does not know it, nothing happens.
+    Only advice, nothing is written: nothing happens where the system does not know it, or for arrays of less than 64
+    KiB or of 4 MiB and more.
 
     advise : the system's madvise; None where there is none.
     """
@@ -135,7 +141,12 @@ def populate(array: NDArray[Any], advise: Adviser | None) -> None:
 
 @cache
 def adviser(platform: str = sys.platform) -> Adviser | None:
-    """Return Linux's madvise, or None on other systems. platform : the name of the system, as in sys.platform."""
+    """Return Linux's madvise, or None on other systems and where it is not found.
+
+    It takes an address, a number of bytes and the number of an advice, and returns 0 or, for an error, -1.
+
+    platform : the name of the system, as in sys.platform.
+    """
     if not platform.startswith("linux"):
         return None
     import ctypes

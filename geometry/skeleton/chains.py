@@ -11,7 +11,10 @@ from geometry.skeleton.skeleton import Flags, States, stride
 
 
 class Chains(NamedTuple):
-    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+    """The pathgraph of n nodes and m chains, by cells of the padded screen.
+
+    A cell is the flat index row * (columns + 2) + column, both counted with the blocked frame of one cell, from the
+    south-west. Nodes are junctions and ends of the skeleton, chains the lines of cells between them.
 
     Attributes
     ----------
@@ -26,7 +29,7 @@ class Chains(NamedTuple):
     cells : (start[m],) int32
         Cells of all chains, one chain after the other, both end nodes included.
     neck : (m,) int32
-        Index into ``cells`` of the lowest cell of each chain in the total order of skeleton.py.
+        Index into ``cells`` of the lowest cell of each chain (least clearance, then least index): its narrowest place.
     """
 
     node: Ints
@@ -43,9 +46,14 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     Parameters
     ----------
     bones : SkeletonGraph
-        Nodes and chains of the skeleton.
+        Nodes and chains of the skeleton; its array of nodes becomes part of the result.
     state : (rows + 2, columns + 2) uint8
-        Links of the skeleton.
+        Links of the skeleton (bits 1, 2, 4, 8 to the east, north, west, south), of which ``bones`` was made.
+
+    Returns
+    -------
+    Chains
+        Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
     """
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)
@@ -60,7 +68,32 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
 def fill_cells(
     states: Flags, width: int, node: Ints, port: Ints, lowest: Ints, start: Ints, cells: Ints, neck: Ints, leave: Ints
 ) -> None:
-    """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave`` (-1 at first)."""
+    """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave``.
+
+    Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+
+    Parameters
+    ----------
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    width : int
+        Width of the padded screen.
+    node : (n,) int32
+        Cell of each node.
+    port : (m, 2) int32
+        First and last end of each chain: 4 times the number of the node plus the direction (0 east, 1 north, 2 west, 3
+        south) in which the chain leaves it.
+    lowest : (m,) int32
+        Cell of the lowest place of each chain.
+    start : (m + 1,) int32
+        Index into ``cells`` at which those of each chain start.
+    cells : (start[m],) int32
+        Filled with the cells of all chains, both end nodes included.
+    neck : (m,) int32
+        Filled with the index into ``cells`` of the lowest cell of each chain, the first one when a ring has it twice.
+    leave : (n, 4) int32
+        All -1 at first; filled with the number of the chain that leaves a node to the east, north, west, south.
+    """
     for chain in range(port.shape[0]):
         cell, direction = node[port[chain, 0] >> 2] + 0, port[chain, 0] & 3
         leave[port[chain, 0] >> 2, direction] = chain

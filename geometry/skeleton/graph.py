@@ -23,7 +23,10 @@ WORDS_AHEAD = 1 << 14  # words of states listed ahead of the walk: twice as many
 
 
 class SkeletonGraph(NamedTuple):
-    """The pathgraph of n nodes and m chains, by cells: flat indices into the padded screen (see distance_transform.py).
+    """The pathgraph of n nodes and m chains, by cells of the padded screen.
+
+    A cell is the flat index row * (columns + 2) + column, both counted with the blocked frame of one cell, from the
+    south-west. Nodes are junctions and ends of the skeleton, chains the lines of cells between them.
 
     Attributes
     ----------
@@ -33,7 +36,7 @@ class SkeletonGraph(NamedTuple):
         First and last end of each chain, as 4 times the number of the node plus the direction in which the chain leaves
         it (0 east, 1 north, 2 west, 3 south). The first ends ascend, and each is less than its last end.
     neck : (m,) int32
-        Lowest cell of each chain in the total order of skeleton.py: its narrowest place.
+        Lowest cell of each chain (least clearance, then least index): its narrowest place.
     steps : (m,) int32
         Number of steps from square to square from end to end of each chain.
     """
@@ -50,9 +53,11 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares.
+        Squared clearances in half squares, (2 * clearance in squares)^2.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton (see skeleton.py).
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. That bit, HALT, of
+        the first cell (least index) of a ring without a junction is set.
     words : (n,) uint64
         The memory of ``state`` by eights.
     min_notes : int
@@ -61,6 +66,7 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
     Returns
     -------
     SkeletonGraph
+        With no node when the skeleton is empty. A summit without links is a node without chains.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states), min_notes)
@@ -78,7 +84,23 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
 
 
 def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
-    """Return ``bones`` with the rings added whose first cells are flagged in ``states``. ``notes`` is scratch."""
+    """Return ``bones`` with the rings added whose first cells are flagged in ``states``, in the order of cells.
+
+    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat.
+    states : (cells,) uint8
+        States of the skeleton, flat; cells with HALT are the first cells of rings.
+    width : int
+        Width of the padded screen.
+    bones : SkeletonGraph
+        The graph without the rings; it is not changed.
+    notes : (size,) int32
+        Scratch.
+    """
     cells = np.flatnonzero(states >= HALT).astype(np.int32)
     place = bones.node.searchsorted(cells)
     node, ring = np.insert(bones.node, place, cells), (place + np.arange(len(cells))).astype(np.int32)
@@ -107,7 +129,28 @@ def walk_rings(
     steps: Ints,
     notes: Ints,
 ) -> None:
-    """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps."""
+    """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat.
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    width : int
+        Width of the padded screen.
+    node : (n,) int32
+        Cell of each node, those of the rings included.
+    ring : (r,) int32
+        Numbers of the nodes of rings, ascending.
+    port : (r, 2) int32
+        Filled with the two ends of each ring: 4 times the number of its node plus the direction in which it leaves
+        there.
+    neck, steps : (r,) int32
+        Filled with the lowest cell (flat index) of each ring and its number of steps from square to square.
+    notes : (size,) int32
+        Scratch.
+    """
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
         direction = first_direction(int(states[cell] & LINKS))
@@ -118,7 +161,21 @@ def walk_rings(
 
 @bare
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
-    """Flag the first cell of every ring that has no junction, found from the saddle that is its lowest cell."""
+    """Set HALT in the state of the first cell of every ring that has no junction.
+
+    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat.
+    states : (cells,) uint8
+        States of the skeleton, flat; changed.
+    width : int
+        Width of the padded screen.
+    words : (cells / 8, rounded up) uint64
+        The memory of ``states`` by eights.
+    """
     for word in range(words.shape[0]):
         if words[word] == 0:
             continue
@@ -131,9 +188,18 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
 
 @bare
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
-    """Return the first cell of the ring on which a saddle lies and is the lowest cell.
+    """Return the first cell (least flat index) of the ring on which a saddle lies and is the lowest cell.
 
     -1 when the ring has a node or a lower saddle.
+
+    Parameters
+    ----------
+    saddle : int
+        Flat index of a saddle that is no node.
+    heights, states : (cells,)
+        Squared clearances in half squares, and states of the skeleton, flat.
+    width : int
+        Width of the padded screen.
     """
     cell, direction, first = saddle, first_direction(int(states[saddle])), saddle
     while True:
@@ -149,7 +215,10 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Return whether a cell of this state is a node: flagged HALT, or with links or flags but not two links."""
+    """Return whether a cell of this state (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
+
+    It is when flagged HALT, or with links or flags but not two links. State 0, off the skeleton, is none.
+    """
     links = (here & 5) + (here >> 1 & 5)
     return bool((here != 0) & ((here & HALT != 0) | ((links & 3) + (links >> 2) != 2)))
 
@@ -169,10 +238,34 @@ def walk_chains(
     seen: States,
     notes: Notes,
 ) -> int:
-    """List the nodes, walk every chain once from its first end, and return the number of links walked.
+    """List the nodes, walk every chain once from its first end, and return the number of links (steps) walked.
 
-    Fills ``node``, ``port``, ``neck`` and ``steps``. ``seen`` (nodes,) is 0 at first and notes the ends met, as bits by
-    direction. Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache.
+    Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache. Rings
+    without a node are not walked. Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares, flat.
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    words : (cells / 8, rounded up) int64
+        The memory of ``states`` by eights.
+    width : int
+        Width of the padded screen.
+    base, since : int32 and uint8
+        As ``count_nodes`` filled them: nodes before each group of sixteen words, and from there up to each word.
+    node : (n + 1,) int32
+        Filled with the cells of the nodes, ascending.
+    port : (m, 2) int32
+        Filled with the first and the last end of each chain: 4 times the number of the node plus the direction (0 east,
+        1 north, 2 west, 3 south) in which the chain leaves it.
+    neck, steps : (m,) int32
+        Filled with the lowest cell of each chain and its number of steps from square to square.
+    seen : (n,) uint8
+        0 at first; notes the ends met at each node, as bits by direction.
+    notes : (2, size) int32
+        Scratch (see lowest_cells.py).
     """
     chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
     for first in range(-WORDS_AHEAD, words.shape[0], WORDS_AHEAD):
@@ -203,7 +296,23 @@ def walk_chain(
 ) -> tuple[int, int, int, int]:
     """Walk one chain from a node; return its last cell, the direction back from there, its steps, and the notes so far.
 
-    Its ends and saddles, one of which is its lowest cell, are added to the ``noted`` notes (see lowest_cells.py).
+    That is: the flat index of the node at its other end, the direction (0 to 3) in which the chain leaves that node,
+    the number of steps from square to square, and how many of ``notes`` are in use now.
+
+    Parameters
+    ----------
+    cell, direction : int
+        Flat index of the first node, and the direction (0 east, 1 north, 2 west, 3 south) of the link by which the
+        chain leaves it.
+    heights, states : (cells,)
+        Squared clearances in half squares, and states of the skeleton, flat.
+    width : int
+        Width of the padded screen.
+    notes : (size,) int32
+        Cells that may be the lowest of their chain: the two ends and the saddles of this one are added, the first as
+        ~cell (see lowest_cells.py). When room runs out, those of this chain are replaced by the lowest so far.
+    noted : int
+        How many of ``notes`` are in use already.
     """
     steps, first = 0, noted
     notes[noted] = ~cell
@@ -228,21 +337,34 @@ def walk_chain(
 
 @bare
 def other_direction(here: int, back: int) -> int:
-    """Return the direction of the other link of a cell that has two links. ``back`` : the direction of the one."""
+    """Return the direction (0 east, 1 north, 2 west, 3 south) of the other link of a cell that has two links.
+
+    Parameters
+    ----------
+    here : the state of the cell; its four lowest bits are the links. With other than two links the answer means
+        nothing.
+    back : the direction of the one link, 0 to 3, as seen from the cell.
+    """
     rest = int(here & LINKS) ^ (1 << back)
     return (rest >> 1) - (rest >> 3)
 
 
 @bare
 def first_direction(here: int) -> int:
-    """Return the first direction in which a cell of this state (links only, not 0) has a link."""
+    """Return the first direction (0 east, 1 north, 2 west, 3 south) in which a cell has a link.
+
+    `here` : its state, with a link at least; the flags in its higher bits do not count (see skeleton.py).
+    """
     first = here & -here
     return (first >> 1) - (first >> 3)
 
 
 @bare
 def find(node: Ints, cell: int) -> int:
-    """Return the number of the first node at or after a cell, by bisection. ``node`` : cells of nodes, ascending."""
+    """Return the number of the first node at or after a cell, by bisection; the number of nodes when there is none.
+
+    `node` : (n,) cells of nodes (flat indices), ascending. `cell` : a flat index.
+    """
     low, high = 0, node.shape[0]
     while low < high:
         middle = (low + high) >> 1

@@ -41,7 +41,7 @@ def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
 
 
 def node_attributes(arrays: PathgraphArrays) -> list[dict[str, float]]:
-    """Return the attributes of each node, all in squares."""
+    """Return for each node, in order, a dictionary of ``x``, ``y`` and ``clearance``, all in squares (screen frame)."""
     x, y = arrays.nodes.T.tolist()
     places = zip(x, y, arrays.node_clearances.tolist(), strict=True)
     return [{"x": east, "y": north, "clearance": clearance} for east, north, clearance in places]
@@ -50,7 +50,9 @@ def node_attributes(arrays: PathgraphArrays) -> list[dict[str, float]]:
 def adjacency(arrays: PathgraphArrays) -> list[dict[int, dict[int, dict[str, Any]]]]:
     """Return for each node its neighbours, for each of these the edges between by number, for each its attributes.
 
-    Both ends of an edge share the dictionaries of the edge, as networkx has it.
+    The list has a dictionary for each node: neighbour to (number of the edge to attributes). Attributes are ``length``
+    and ``clearance`` in squares and ``points``, (k, 2) float64, x and y in squares, in the frame of the screen. A node
+    without edges has an empty one. Both ends of an edge share the dictionaries of the edge, as networkx has it.
     """
     rows: list[dict[int, dict[int, dict[str, Any]]]] = [{} for _ in range(len(arrays.nodes))]
     points, offsets = arrays.points, arrays.offsets.tolist()
@@ -68,7 +70,10 @@ def adjacency(arrays: PathgraphArrays) -> list[dict[int, dict[int, dict[str, Any
 
 @contextmanager
 def paused_collection() -> Iterator[None]:
-    """Keep the garbage collector from running while many objects are made, none of which is garbage."""
+    """Keep the garbage collector from running inside a ``with`` while many objects are made, none of which is garbage.
+
+    At the end it runs again, if it did before.
+    """
     enabled = gc.isenabled()
     gc.disable()
     try:

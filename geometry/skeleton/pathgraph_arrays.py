@@ -19,8 +19,9 @@ class PathgraphArrays(NamedTuple):
 
     Nodes are the junctions and ends of the skeleton, edges the chains between them. Lengths, clearances and
     coordinates are in squares; points are (x, y) in the frame of the screen, where the square in column i and row j
-    has its centre at (i + 0.5, j + 0.5). Nodes come in ascending order of (y, x), edges in ascending order of their
-    first node. The arrays of a ``Screen`` are read-only.
+    has its centre at (i + 0.5, j + 0.5), row 0 in the south. Nodes come in ascending order of (y, x), edges in
+    ascending order of their first node. The clearance of a point is its distance to the nearest point of a square that
+    is not free. The arrays of a ``Screen`` are read-only.
 
     Attributes
     ----------
@@ -91,7 +92,7 @@ class PathgraphArrays(NamedTuple):
         Parameters
         ----------
         edge : int
-            Number of the edge, from 0 on.
+            Number of the edge, from 0 on: its row of ``edges``.
 
         Returns
         -------
@@ -107,16 +108,18 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, with a blocked frame.
+        Squared clearances in half squares, (2 * clearance in squares)^2, with a blocked frame.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton (see skeleton.py).
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
     bones : SkeletonGraph
         The nodes and chains of ``state``.
 
     Returns
     -------
     PathgraphArrays
-        Writable arrays.
+        Writable arrays, in squares, in the frame of the screen without its padding; of no rows when the skeleton is
+        empty.
     """
     n, m = len(bones.node), len(bones.steps)
     offsets = np.zeros(m + 1, np.int32)
@@ -162,7 +165,25 @@ def fill_arrays(
 ) -> None:
     """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``.
 
-    ``adjacency_offsets`` has one element more than at last, and is 0.
+    n is the number of nodes, m of edges, which are the chains.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares of the padded screen, flat.
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    width : int
+        Width of the padded screen.
+    node, port, lowest, steps : int32
+        The graph: cell of each node, both ends of each chain (4 times the node plus the direction in which it leaves),
+        lowest cell and number of steps of each chain; cells are flat indices.
+    nodes, node_clearances, edges, lengths, edge_clearances, points, narrowest, incident_edges, neighbours
+        Filled; shapes and units as in ``PathgraphArrays``.
+    offsets : (m + 1,) int32
+        Given: rows of ``points`` at which those of each edge start.
+    adjacency_offsets : (n + 2,) int32
+        0 at first; filled but for the last element, which has no meaning.
     """
     fill_nodes(heights, width, node, nodes, node_clearances)
     for edge in range(port.shape[0]):
@@ -174,7 +195,21 @@ def fill_arrays(
 
 @bare
 def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearances: Floats) -> None:
-    """Fill places (n, 2) and clearances (n,) of nodes, whose padded cells ascend."""
+    """Fill places and clearances of nodes.
+
+    Parameters
+    ----------
+    heights : (cells,) int16 or int32
+        Squared clearances in half squares of the padded screen, flat.
+    width : int
+        Width of the padded screen.
+    node : (n,) int32
+        Cells of the nodes, flat indices into the padded screen, ascending.
+    nodes : (n, 2) float64
+        Filled with their centres (x, y) in squares, in the frame of the screen without its padding.
+    clearances : (n,) float64
+        Filled with their clearances in squares.
+    """
     row, first = 0, 0
     for k in range(node.shape[0]):
         cell = int(node[k])
@@ -197,7 +232,26 @@ def fill_points(
     points: Floats,
     narrowest: Ints,
 ) -> None:
-    """Walk every chain from its first end and fill ``points`` and ``narrowest``."""
+    """Walk every chain from its first end and fill ``points`` and ``narrowest``.
+
+    Parameters
+    ----------
+    states : (cells,) uint8
+        States of the skeleton, flat (see skeleton.py).
+    width : int
+        Width of the padded screen.
+    node, port, lowest : int32
+        Cell of each node; both ends of each chain (4 times the node plus the direction in which it leaves); lowest cell
+        of each chain. Cells are flat indices into the padded screen.
+    nodes : (n, 2) float64
+        Places (x, y) of the nodes in squares.
+    offsets : (m + 1,) int32
+        Rows of ``points`` at which those of each chain start.
+    points : (p, 2) float64
+        Filled with the centres (x, y) of the squares of all chains, in squares, both end nodes included.
+    narrowest : (m,) int32
+        Filled with the row of ``points`` of each chain's lowest cell, the first one when a loop has it twice.
+    """
     for edge in range(port.shape[0]):
         first, low = port[edge, 0] >> 2, int(lowest[edge])
         cell, way, x, y = int(node[first]), 1 << (port[edge, 0] & 3), nodes[first, 0], nodes[first, 1]
@@ -217,7 +271,18 @@ def fill_points(
 
 @bare
 def fill_adjacency(edges: Ints, offsets: Ints, incident: Ints, neighbours: Ints) -> None:
-    """Sort the ends of edges by node. ``offsets`` has two elements more than there are nodes, and is 0 at first."""
+    """Sort the ends of edges by node, and fill ``offsets``, ``incident`` and ``neighbours``.
+
+    Parameters
+    ----------
+    edges : (m, 2) int32
+        Numbers of the first and the last node of each edge.
+    offsets : (n + 2,) int32
+        0 at first; filled so that what belongs to node v stands at ``offsets[v]`` to ``offsets[v + 1]`` (exclusive).
+        Its last element has no meaning.
+    incident, neighbours : (2 m,) int32
+        Filled with the numbers of the edges at each node, ascending, and with the nodes at their other ends.
+    """
     for edge in range(edges.shape[0]):
         for side in range(2):
             offsets[edges[edge, side] + 2] += 1

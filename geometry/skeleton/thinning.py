@@ -15,19 +15,20 @@ from geometry.skeleton.skeleton import KINDS, States, beside
 
 
 def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
-    """Return the thin skeleton.
+    """Return the thin skeleton as a raster.
 
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances; 0 on blocked squares.
+        Squared clearances in half squares, (2 * clearance in squares)^2; 0 on blocked squares.
     state : (rows + 2, columns + 2) uint8
-        Links and flags of the skeleton.
+        Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
+        that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
 
     Returns
     -------
     (rows, columns) bool
-        True on the squares of the skeleton.
+        True on the squares of the skeleton; a new array without the padding, row 0 in the south.
     """
     line = state > 0
     reached = square == 0
@@ -40,7 +41,15 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
 
 @bare
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
-    """Set ``reached`` for all cells off the line that the seeds reach by sides and corners. ``stack`` is scratch."""
+    """Set ``reached`` for all cells off the line that the seeds reach by sides and corners.
+
+    Parameters
+    ----------
+    line : (rows + 2, columns + 2) bool, the cells of the skeleton, which the flood does not enter.
+    reached : (rows + 2, columns + 2) bool, True on the seeds; changed.
+    seeds : (n,) int32, flat indices of cells to begin at.
+    stack : (cells,) int32, scratch.
+    """
     width, cells = line.shape[1], line.size
     lines, reach = line.reshape(-1), reached.reshape(-1)
     for seed in seeds:
@@ -61,7 +70,13 @@ def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
 def thin(line: Bools, kind: States) -> bool:
     """Remove, one after the other, all simple points of the line but its ends; return whether there were any.
 
-    ``kind`` : flags by the set of neighbours on the line (KINDS).
+    A simple point is a cell whose removal changes neither components nor holes. Points that only the removals of this
+    pass make simple may be left: call again until False is returned.
+
+    Parameters
+    ----------
+    line : (rows + 2, columns + 2) bool, True on the cells of the line; changed. Its first and last row are left alone.
+    kind : (256,) uint8, KINDS of skeleton.py: by the set of neighbours on the line, 0 where they are one group.
     """
     width = line.shape[1]
     lines = line.reshape(-1)

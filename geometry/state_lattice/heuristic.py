@@ -25,14 +25,15 @@ def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> C
     Parameters
     ----------
     lattice : the state lattice.
-    end_costs : (4, squares) cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
-    redirect_cost : cost of going on in another direction in the same push.
-        COMMAND_COST stands for starting another push.
+    end_costs : (4, squares) int32, cost of ending at a pose, -1 where the goal is not met; below bucket_queue.BUCKETS.
+    redirect_cost : cost of going on in another direction in the same push. COMMAND_COST stands for starting another
+        push.
 
     Returns
     -------
-    (4, 9, squares) int32, with direction NO_DIRECTION for a body that lies.
-    COST_UNREACHABLE where the goal cannot be reached; -1 where a body that lies would overlap something.
+    (4, 9, squares) int32: quarter turn of the body, direction as in PUSH_DIRECTIONS with NO_DIRECTION for a body that
+    lies, number of the square of its centroid in the padded table. COMMAND_COST stands for a command. COST_UNREACHABLE
+    where the goal cannot be reached; -1 where a body that lies would overlap something.
     """
     squares = end_costs.shape[1]
     remaining = np.full((4, 9, squares), COST_UNREACHABLE, np.int32)
@@ -73,7 +74,13 @@ def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> C
 def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[no-untyped-def]
     """Relax backwards the quarter and half turns, about every hold, that end at a pose.
 
-    `k`, `p` : quarter turn and place of the pose. `cost_before` : its cost plus that of a turn.
+    Parameters
+    ----------
+    lattice : the state lattice.
+    remaining : (4, 9, squares) the costs to go so far; lowered where a turn to the pose is cheaper.
+    queue : poses still to be looked at; those with lower costs are put on it.
+    k, p : quarter turn and place (number of the centroid's square) of the pose.
+    cost_before : its cost to go plus that of a turn.
     """
     for hold in range(len(lattice.grasp_cost)):
         if lattice.grasp_cost[hold] < 0 or lattice.solid[p + lattice.holds[k, hold]]:
@@ -100,7 +107,13 @@ def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[
 def _relax_push_step(lattice, remaining, queue, k, m, p, now):  # type: ignore[no-untyped-def]
     """Relax backwards one step of a push: to the same push under way, and to where it began.
 
-    `k`, `m`, `p` : quarter turn, direction and place after the step. `now` : the cost there.
+    Parameters
+    ----------
+    lattice : the state lattice.
+    remaining : (4, 9, squares) the costs to go so far; lowered where a push to the pose is cheaper.
+    queue : poses still to be looked at; those with lower costs are put on it.
+    k, m, p : quarter turn, direction and place (number of the centroid's square) after the step.
+    now : the cost to go there.
     """
     place_before = p - lattice.steps[m]
     price = lattice.push_cost[k, m, place_before]

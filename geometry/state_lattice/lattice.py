@@ -24,7 +24,13 @@ CORNER_GRASP_COST = COMMAND_COST // 5  # added to a grasp across a corner of the
 
 
 class OffsetLists(NamedTuple):
-    """Lists of numbers one after another: list n is items[first[n] : first[n + 1]]."""
+    """Lists of numbers one after another: list n is items[first[n] : first[n + 1]].
+
+    Attributes
+    ----------
+    items : (k,) int64.
+    first : (lists + 1,) int64.
+    """
 
     items: Longs
     first: Longs
@@ -33,19 +39,25 @@ class OffsetLists(NamedTuple):
 class StateLattice(NamedTuple):
     """All that the search asks of table and body, in arrays for numba. Offsets are differences of square numbers.
 
+    Squares are numbered as in Grid, padding included. A hold is a square from which the robot grasps the body. Quarter
+    turns 0..3 are those of the body, counter-clockwise from how it lies; its place is the number of the square of its
+    centroid. Directions are those of PUSH_DIRECTIONS. Costs are whole numbers, COMMAND_COST for a command.
+
     Attributes
     ----------
-    solid : (squares,) whether a square stops the body.
-    walkable : (squares,) whether the robot may walk there while the body is not in its way.
+    solid : (squares,) bool, whether a square stops the body.
+    walkable : (squares,) bool, whether the robot may walk there while the body is not in its way.
     holds : (4, n) by quarter turn, the offset of each hold from the body's place.
     grasp_cost : (n,) cost of a grasp at each hold; -1 where the hold is not to be used.
-    push_cost : (4, 8, squares) by quarter turn and direction, the cost of a push by one square; 0 where it is blocked.
-    robot_can_step : (8, squares) whether the robot itself can make the step.
-    lies : (4, squares) whether the body can lie at a place.
-    covered : by quarter turn, the squares of the body.
-    turns : by hold * 4 + quarter turn, the squares that the body meets in a turn counter-clockwise about the hold.
+    push_cost : (4, 8, squares) by quarter turn and direction, the cost of a push by one square from a place; 0 where it
+        is blocked.
+    robot_can_step : (8, squares) bool, whether the robot itself can make the step from a square.
+    lies : (4, squares) bool, whether the body can lie at a place.
+    covered : by quarter turn, offsets of the squares of the body from its place.
+    turns : by hold * 4 + quarter turn, offsets of the squares that the body meets in a turn counter-clockwise about the
+        hold, from its place before the turn.
     wide : the same for the body with its margin.
-    push_allowed : (4, n, 8) whether the robot may push in a direction from a hold.
+    push_allowed : (4, n, 8) bool, whether the robot may push in a direction from a hold.
     steps : (8,) the offset of each direction.
     turn_price : cost of a turn where there is room for it.
     """
@@ -68,9 +80,11 @@ class StateLattice(NamedTuple):
 class Grid(NamedTuple):
     """The numbering of the squares of a table: padded by `pad` squares all round, row by row.
 
+    A number is (row + pad) * stride + column + pad; row 0 of the table is in the south.
+
     Attributes
     ----------
-    columns, rows : size of the table in squares.
+    columns, rows : size of the table in squares, without padding.
     pad : width of the padding in squares.
     """
 
@@ -84,34 +98,49 @@ class Grid(NamedTuple):
         return self.columns + 2 * self.pad
 
     def number(self, column: int, row: int) -> int:
-        """Return the number of a square."""
+        """Return the number of the square (column, row) of the table; not checked.
+
+        Columns and rows up to `pad` beyond the table give squares of the padding.
+        """
         return (row + self.pad) * self.stride + column + self.pad
 
     def square(self, number: int) -> tuple[int, int]:
-        """Return the (column, row) of a square's number."""
+        """Return the (column, row) in the table of a square's number; outside the table if it is in the padding."""
         return number % self.stride - self.pad, number // self.stride - self.pad
 
     def padded(self, squares: Bools, value: bool) -> Bools:
-        """Return a (rows, columns) array as (squares,), with `value` in the padding."""
+        """Return a (rows, columns) bool array as (squares,) by number of square, with `value` in the padding.
+
+        A copy; row 0 of the array is row 0 of the table.
+        """
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
     def offsets(self, offsets: Longs) -> Longs:
-        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,)."""
+        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,) int64."""
         flat: Longs = offsets[:, 1] * self.stride + offsets[:, 0]
         return flat
 
     def table_squares(self) -> Longs:
-        """Return the numbers of all squares of the table, without the padding."""
+        """Return the numbers of all squares of the table, without the padding: (rows * columns,) int64, row by row."""
         row, column = np.divmod(np.arange(self.rows * self.columns), self.columns)
         return (row + self.pad) * self.stride + column + self.pad
 
     def clear(self, solid: Bools, offsets: Longs) -> Bools:
-        """Return at which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table."""
+        """Return at which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table.
+
+        Parameters
+        ----------
+        solid : (squares,) bool by number of square.
+        offsets : (n, 2) columns and rows from the square that is asked for.
+        """
         return _mark_clear(solid, self.table_squares(), self.offsets(offsets))
 
 
 def new_lattice_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
-    """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body."""
+    """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body.
+
+    `body`, `wide` : footprints of the body without and with its margin.
+    """
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
     return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
 
@@ -131,9 +160,13 @@ def new_state_lattice(
     Parameters
     ----------
     grid : the numbering of squares.
-    free : (rows, columns) squares that do not stop the body. walkable : (rows, columns) where the robot may walk.
-    body : footprints of the body. wide : those of the body with its margin, or the same object without a margin.
-    grasp_cost, push_allowed, turn_price : as in StateLattice.
+    free : (rows, columns) bool, row 0 in the south: squares that do not stop the body.
+    walkable : (rows, columns) bool: where the robot may walk.
+    body : footprints of the body.
+    wide : those of the body with its margin, or the same object without a margin.
+    grasp_cost : (holds,) cost of a grasp at each of body.holds; -1 where the hold is not to be used.
+    push_allowed : (4, holds, 8) bool by quarter turn, hold and direction: whether the robot may push.
+    turn_price : cost of a turn where there is room for it; COMMAND_COST stands for a command.
     """
     solid = grid.padded(~free, True)
     table_squares, quarters = grid.table_squares(), [quarter(body.lying, k) for k in range(4)]
@@ -164,29 +197,45 @@ def new_state_lattice(
 
 
 def _push_footprints(grid: Grid, body: Footprints) -> OffsetLists:
-    """Return the squares met by a push of one square, by quarter turn * 8 + direction."""
+    """Return the squares met by a push of one square, list number quarter turn * 8 + direction.
+
+    As offsets of square numbers from the body's place before the push.
+    """
     return _joined([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
 
 def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
-    """Return the squares met by a quarter turn counter-clockwise, by hold * 4 + quarter turn."""
+    """Return the squares met by a quarter turn counter-clockwise, list number hold * 4 + quarter turn before it.
+
+    As offsets of square numbers from the body's place before the turn.
+    """
     return _joined([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
 
 def _squares_of_robot_step(dx: int, dy: int) -> Longs:
-    """Return the squares that must be free for a robot's step: its own, the next, and both beside a diagonal step."""
+    """Return the squares that must be free for a robot's step: its own, the next, and both beside a diagonal step.
+
+    Offsets (n, 2) column, row from its own square. `dx`, `dy` : -1, 0 or 1.
+    """
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
 
 def _joined(lists: list[Longs]) -> OffsetLists:
-    """Return lists as one OffsetLists."""
+    """Return lists of int64 as one OffsetLists, in the same order."""
     first = np.concatenate([[0], np.cumsum([len(each) for each in lists])]).astype(np.int64)
     return OffsetLists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
 
 @compiled
 def _mark_clear(solid: Bools, table_squares: Longs, offsets: Longs) -> Bools:
-    """Return at which of the places none of the offsets is solid: (squares,) bool, False elsewhere."""
+    """Return at which of the places none of the offsets is solid: (squares,) bool, False elsewhere.
+
+    Parameters
+    ----------
+    solid : (squares,) bool by number of square.
+    table_squares : numbers of the places that are looked at.
+    offsets : (n,) differences of square numbers.
+    """
     clear = np.zeros(len(solid), np.bool_)
     for place in table_squares:
         clear[place] = True
@@ -199,7 +248,15 @@ def _mark_clear(solid: Bools, table_squares: Longs, offsets: Longs) -> Bools:
 
 @compiled
 def _push_costs(solid: Bools, table_squares: Longs, body: OffsetLists, wide: OffsetLists, with_margin: bool) -> Costs:
-    """Return StateLattice.push_cost."""
+    """Return StateLattice.push_cost: (4, 8, squares) int32, the cost of a push by one square; 0 where it is blocked.
+
+    Parameters
+    ----------
+    solid : (squares,) bool by number of square.
+    table_squares : numbers of the squares of the table; off it pushes are blocked.
+    body, wide : squares met by a push, without and with the margin, list number quarter turn * 8 + direction.
+    with_margin : whether there is a margin; pushes for which it is too tight cost TIGHT_PUSH_COST more.
+    """
     push_cost = np.zeros((4, 8, len(solid)), np.int32)
     for k in range(4):
         for d in range(8):
@@ -214,9 +271,13 @@ def _push_costs(solid: Bools, table_squares: Longs, body: OffsetLists, wide: Off
 
 @compiled
 def place_after_turn(lattice: StateLattice, hold: int, quarters: int, place: int, quarters_turned: int) -> int:
-    """Return the place of the body after a turn about a hold.
+    """Return the place of the body, the number of its centroid's square, after a turn about a hold.
 
-    `quarters` : the body's quarter turn before. `quarters_turned` : quarter turns made, counter-clockwise positive.
+    Parameters
+    ----------
+    hold : index of the hold; the robot stands there.
+    quarters, place : the body's quarter turn and place before.
+    quarters_turned : quarter turns made, counter-clockwise positive.
     """
     return int(place + lattice.holds[quarters, hold] - lattice.holds[(quarters + quarters_turned) % 4, hold])
 
@@ -225,7 +286,13 @@ def place_after_turn(lattice: StateLattice, hold: int, quarters: int, place: int
 def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quarters_turned: int) -> int:
     """Return the cost of a quarter turn about a hold in addition to the price of every turn; -1 if it is blocked.
 
-    `quarters`, `place` : the pose before. `quarters_turned` : 1 for counter-clockwise, -1 for clockwise.
+    0 where the margin has room, TIGHT_TURN_COST where only the body has. The robot's own square is not looked at.
+
+    Parameters
+    ----------
+    hold : index of the hold; the robot stands there.
+    quarters, place : the pose before: quarter turn, number of the square of the centroid.
+    quarters_turned : 1 for counter-clockwise, -1 for clockwise.
     """
     if quarters_turned < 0:
         place = place_after_turn(lattice, hold, quarters, place, quarters_turned)
@@ -240,7 +307,10 @@ def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quart
 
 @compiled
 def _is_clear(solid: Bools, lists: OffsetLists, which: int, place: int) -> bool:
-    """Return whether none of the offsets in list `which`, seen from a place, is solid."""
+    """Return whether none of the offsets in list number `which`, seen from a place, is solid.
+
+    `solid` : (squares,) bool by number of square. `place` : number of a square.
+    """
     for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
         if solid[place + lists.items[n]]:
             return False

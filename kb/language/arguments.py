@@ -13,7 +13,7 @@ class Complaint(NamedTuple):
 
     Attributes
     ----------
-    span : the place of the term in its source.
+    span : the place of the term in its source: line and columns from 1.
     what : the error message, without its place.
     hint : a remedy, or '' for none.
     """
@@ -30,7 +30,7 @@ class ArgumentType(NamedTuple):
     ----------
     name : the name of the argument in messages and in the vocabulary.
     check : returns the complaint about a term, or None when the term fits.
-    limits : (least, greatest) integer that fits; None when integers do not fit.
+    limits : (least, greatest) integer that fits; None for an argument that is no integer.
     """
 
     name: str
@@ -39,15 +39,19 @@ class ArgumentType(NamedTuple):
 
 
 def abbreviated(term: Term) -> str:
-    """Return a term as text of at most 40 characters, for messages."""
+    """Return a term as text of at most 40 characters, for messages; a longer one is cut and ends in `...`."""
     text = str(term)
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
 def integer_argument(name: str, low: int, high: int) -> ArgumentType:
-    """Return the type of integers from `low` to `high`, both included."""
+    """Return the type of integers from `low` to `high`, both included.
+
+    name : what the argument is called in messages, with its article, such as `a count`.
+    """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is an integer in the range."""
         if not isinstance(term, Number):
             return Complaint(term.span, f"{name} must be an integer, not {abbreviated(term)}")
         if not low <= term.value <= high:
@@ -58,10 +62,14 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
 
 
 def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
-    """Return the type of the names in `known`: no other name fits."""
+    """Return the type of the names in `known`: no other name fits.
+
+    name : what the argument is called in messages, without an article, such as `shape`.
+    """
     words = tuple(known)
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is one of the words."""
         if isinstance(term, Symbol) and not term.args and term.name in words:
             return None
         hint = did_you_mean(str(term).strip('"').lower(), words) or f"one of {', '.join(words)}"
@@ -71,7 +79,7 @@ def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
 
 
 def _check_name(term: Term) -> Complaint | None:
-    """Return a complaint unless the term is a name without arguments."""
+    """Return a complaint unless the term is a name without arguments; None when it is one."""
     if isinstance(term, Symbol) and not term.args:
         return None
     hint = f"write {term.value.lower()} without quotes" if isinstance(term, Text) and term.value.isidentifier() else ""
@@ -79,20 +87,23 @@ def _check_name(term: Term) -> Complaint | None:
 
 
 def _check_colour(term: Term) -> Complaint | None:
-    """Return a complaint unless the term is one lower-case letter."""
+    """Return a complaint unless the term is one lower-case letter; None when it is one."""
     if isinstance(term, Symbol) and not term.args and len(term.name) == 1 and term.name.isalpha():
         return None
     return Complaint(term.span, f"a colour is a single lower-case letter, not {abbreviated(term)}")
 
 
 def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
-    """Return the type of the names that match a regular expression, such as o1 for `o[0-9]+`.
+    """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`.
 
-    name : the name of the argument in messages. such_as : an example of a valid name, for the hint.
+    name : the name of the argument in messages, without an article.
+    pattern : the expression.
+    such_as : an example of a valid name, for the hint.
     """
     form = re.compile(pattern)
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is a name that matches."""
         if isinstance(term, Symbol) and not term.args and form.fullmatch(term.name):
             return None
         return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"such as {such_as}")
@@ -101,12 +112,14 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
 
 
 def wkt_argument(name: str, *kinds: str) -> ArgumentType:
-    """Return the type of quoted shapes in well-known text.
+    """Return the type of quoted shapes in well-known text, coordinates in squares.
 
-    kinds : the kinds of shapes that fit, of POINT, LINESTRING, POLYGON and MULTIPOLYGON.
+    name : what the argument is called in messages, with its article.
+    kinds : the kinds of shapes that fit, at least one of POINT, LINESTRING, POLYGON and MULTIPOLYGON.
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is a quoted shape of an accepted kind."""
         from kb.language.wkt import WktError, parse_wkt
 
         if not isinstance(term, Text):

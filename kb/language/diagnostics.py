@@ -14,7 +14,7 @@ class SourceSpan(NamedTuple):
     Attributes
     ----------
     line : the line.
-    start : the first column.
+    start : the first column, from 1.
     end : the last column, which belongs to the range.
     """
 
@@ -31,7 +31,7 @@ class Problem(NamedTuple):
     file : the file's name as the user gave it.
     span : the place of the error.
     what : the error message, without its place.
-    source : the text of the line at `span`; '' when it is not shown.
+    source : the text of the whole line at `span`; '' when it is not shown.
     hint : a remedy, or '' for none.
     """
 
@@ -42,7 +42,11 @@ class Problem(NamedTuple):
     hint: str = ""
 
     def __str__(self) -> str:
-        """Return `file:line:col-col: error: what`, then the source line, a caret and the hint."""
+        """Return `file:line:col-col: error: what`, then the source line, a line of carets under the place, the hint.
+
+        Lines are joined by line ends, without one at the end; source line, carets and hint are left out when they are
+        ''.
+        """
         line, start, end = self.span
         text = [f"{self.file}:{line}:{start}-{end}: error: {self.what}"]
         if self.source:
@@ -55,11 +59,11 @@ class Problem(NamedTuple):
 
 
 class BadInputError(Exception):
-    """A user's file has errors.
+    """A user's file has errors; its text is that of the problems (see `format_problems`).
 
     Attributes
     ----------
-    problems : all problems found, in the order of the files.
+    problems : all problems found, a tuple in the order of the files.
     """
 
     def __init__(self, problems: Iterable[Problem]) -> None:
@@ -73,7 +77,7 @@ class CannotOpenError(Exception):
     Attributes
     ----------
     path : the file's name as the user gave it.
-    why : the reason.
+    why : the reason, in the words of the system.
     """
 
     def __init__(self, path: str, why: str) -> None:
@@ -82,7 +86,10 @@ class CannotOpenError(Exception):
 
 
 def format_problems(problems: Iterable[Problem]) -> str:
-    """Return the first `MAX_PROBLEMS_SHOWN` problems as text, and a last line when there are more."""
+    """Return the first `MAX_PROBLEMS_SHOWN` problems as text, and the last line `... and more` when there are more.
+
+    Without a line end at the end; '' for no problems.
+    """
     every = list(problems)
     text = [str(problem) for problem in every[:MAX_PROBLEMS_SHOWN]]
     if len(every) > MAX_PROBLEMS_SHOWN:
@@ -100,7 +107,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
     Returns
     -------
-    The hint; '' when no valid word is similar (a difflib ratio below 0.6).
+    The hint, such as "did you mean square?"; '' when no valid word is similar (a difflib ratio below 0.6).
     """
     import difflib  # only when something is misspelt
 
@@ -109,7 +116,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 
 def _window(source: str, start: int) -> tuple[str, int]:
-    """Return the part of a long line around column `start`, and how many characters were cut off on its left."""
+    """Return the part of a long line around column `start` (from 1), and how many characters were cut off on its left.
+
+    The part has at most MAX_SOURCE_LINE_WIDTH characters; a tab becomes a blank, any other character beyond printable
+    ASCII `?`.
+    """
     clean = "".join(c if " " <= c <= "~" else " " if c == "\t" else "?" for c in source)
     left = 0 if len(clean) <= MAX_SOURCE_LINE_WIDTH else max(0, start - 1 - MAX_SOURCE_LINE_WIDTH // 3)
     return clean[left : left + MAX_SOURCE_LINE_WIDTH], left

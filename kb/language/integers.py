@@ -45,7 +45,7 @@ def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
 
 
 def _magnitude(text: str) -> int:
-    """Return the value of an integer literal, or any value beyond 32 bits for a literal of too many digits."""
+    """Return the value of an integer literal without a sign, or any value beyond 32 bits for one of too many digits."""
     base = INTEGER_BASES.get(text[:2], 10)
     digits = (text[2:] if base != 10 else text).lstrip("0")
     return int(digits or "0", base) if len(digits) <= MAX_DIGITS_CONVERTED else MAX_INT32 + 2

@@ -23,7 +23,7 @@ MAX_BYTES_PER_READ = 65536  # bytes; the capacity of a pipe on Linux
 
 
 def _optional(name: str) -> ModuleType | None:
-    """Return a module of the standard library, or None when this system does not have it."""
+    """Return a module of the standard library by its name, or None when this system does not have it."""
     try:
         return __import__(name)
     except ImportError:
@@ -36,7 +36,10 @@ _msvcrt: Any = None if _fcntl else _optional("msvcrt")
 
 
 def missing_features() -> list[str]:
-    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing."""
+    """Return one sentence for users about each feature that this system lacks; [] when nothing is missing.
+
+    The sentences have no full stop.
+    """
     missing = []
     if _resource is None:
         missing.append("the memory of a question is not limited on this system: only its time is")
@@ -52,11 +55,11 @@ def limit_resource(kind: str, most: int) -> bool:
     ----------
     kind : the suffix of the RLIMIT constant: `AS` (bytes of memory), `NOFILE` (open files), `CORE` (bytes of a core
         dump).
-    most : the limit.
+    most : the limit, in the unit of that kind; it cannot be raised again.
 
     Returns
     -------
-    Whether the system supports and accepted the limit.
+    Whether the system supports and accepted the limit; when not, nothing has changed.
     """
     which = getattr(_resource, f"RLIMIT_{kind}", None)
     if which is None:
@@ -69,7 +72,10 @@ def limit_resource(kind: str, most: int) -> bool:
 
 
 def limit_processor_time(seconds: int) -> bool:
-    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so."""
+    """Let the system end this process after `seconds` more seconds of processor time; return whether it does so.
+
+    A later call replaces the limit. False, and no limit, where the system has none or refuses it.
+    """
     if not hasattr(_resource, "RLIMIT_CPU"):
         return False
     used = sum(_resource.getrusage(_resource.RUSAGE_SELF)[:2])
@@ -105,6 +111,7 @@ def read_lines_from_parent() -> Iterator[bytes]:
     lines: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
     def watch() -> None:
+        """Put each line of the standard input into `lines`; end the process at its end."""
         rest = b""
         with suppress(OSError):
             # Not through sys.stdin: Python aborts at exit while a thread waits for input with the lock of sys.stdin.
@@ -124,7 +131,7 @@ def lock_file(handle: int) -> bool:
 
     Parameters
     ----------
-    handle : the file descriptor.
+    handle : the file descriptor, as of os.open.
 
     Returns
     -------

@@ -33,7 +33,7 @@ def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
 
     Parameters
     ----------
-    path : the file.
+    path : the path of the file.
 
     Returns
     -------
@@ -95,11 +95,19 @@ def parse_facts(source: Source) -> tuple[Fact, ...]:
 
 
 class _RefusedError(Exception):
-    """A fact with a syntax error; the reader continues after the next full stop."""
+    """A fact with a syntax error, which is recorded; the reader continues after the next full stop."""
 
 
 class _Reader:
-    """A recursive-descent parser over the tokens of one text."""
+    """A recursive-descent parser over the tokens of one text.
+
+    Attributes
+    ----------
+    source : the text.
+    problems : the problems found so far; it grows.
+    peek : the next token, which has not been taken yet.
+    ended : whether the full stop of the refused fact has been read already.
+    """
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -109,7 +117,10 @@ class _Reader:
         self.ended = False  # whether the full stop of the refused fact has been read
 
     def facts(self) -> tuple[Fact, ...]:
-        """Return all facts; problems are collected in `self.problems`."""
+        """Return all valid facts in order; problems are collected in `self.problems`.
+
+        It stops after `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
+        """
         found = []
         while self.peek.kind != "end" and len(self.problems) < MAX_PROBLEMS_PER_FILE:
             try:
@@ -122,7 +133,7 @@ class _Reader:
         return tuple(found)
 
     def take(self) -> Token:
-        """Return the next token and move on to the one after it."""
+        """Return the next token and move on to the one after it; the token `end` is returned again and again."""
         token = self.peek
         self.peek = next(self._coming, token)
         return token
@@ -145,7 +156,10 @@ class _Reader:
         return _RefusedError()
 
     def fact(self) -> Fact:
-        """Read one fact with its full stop."""
+        """Read one fact with its full stop, and return it.
+
+        Raises _RefusedError, after recording a problem, where something else stands.
+        """
         token = self.peek
         if token.kind != "name":
             raise self.not_a_fact(token)
@@ -156,7 +170,10 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
-        """Read one term. depth : the number of terms around it."""
+        """Read one term, and return it. depth : the number of terms around it.
+
+        Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
+        """
         token = self.peek
         if depth > MAX_TERM_DEPTH:
             raise self.refuse(token, f"terms are nested more than {MAX_TERM_DEPTH} deep")
@@ -171,7 +188,11 @@ class _Reader:
         raise self.not_a_term(token)
 
     def symbol(self, depth: int) -> Symbol:
-        """Read a name with its arguments, if there are any. depth : the number of terms around it."""
+        """Read a name with its arguments, if there are any, and return it.
+
+        Raises _RefusedError, after recording a problem, for a syntax error. depth : the number of terms around it, 0
+        for a fact.
+        """
         name = self.take()
         if name.text in ASP_KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
             what = f"{name.text} is a word of the language and cannot name anything"
@@ -191,7 +212,7 @@ class _Reader:
         return Symbol(name.text, tuple(args), SourceSpan(name.span.line, name.span.start, end))
 
     def string(self) -> Text:
-        """Read a quoted string and replace its escapes."""
+        """Read a quoted string, replace its escapes, and return it; raise _RefusedError for an unknown escape."""
         token = self.take()
         unknown = [piece for piece in ESCAPE_SEQUENCE.findall(token.text) if piece not in ESCAPED_CHARACTERS]
         if unknown:
@@ -199,7 +220,7 @@ class _Reader:
         return Text(ESCAPE_SEQUENCE.sub(lambda match: ESCAPED_CHARACTERS[match[0]], token.text[1:-1]), token.span)
 
     def number(self) -> Number:
-        """Read an integer with its sign."""
+        """Read an integer with its sign, and return it; raise _RefusedError beyond 32 bits and for a fraction."""
         sign = self.take() if self.peek.text == "-" else None
         token = self.take()
         if token.kind != "number":
@@ -219,7 +240,7 @@ class _Reader:
         return Number(value, span)
 
     def not_a_fact(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no fact begins."""
+        """Return the error for a token with which no fact begins; its problem is recorded."""
         if token.kind == "directive":
             return self.refuse(token, f"{token.text} is a directive; a fact file holds facts alone")
         if token.kind == "variable":
@@ -235,7 +256,7 @@ class _Reader:
         return self.refuse(token, f"a fact was expected, {token.in_words} found")
 
     def not_the_end(self, fact: Fact, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where the full stop of a fact belongs."""
+        """Return the error for a token that stands where the full stop of `fact` belongs; its problem is recorded."""
         if token.text == ":-":
             return self.refuse(token, "a rule; a fact file holds facts alone", "remove everything from :- on")
         if token.text in (",", ";", "|", ":"):
@@ -247,7 +268,7 @@ class _Reader:
         return self.refuse(token, f"a full stop was expected after the fact, {token.in_words} found")
 
     def not_a_term(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no term begins."""
+        """Return the error for a token with which no term begins; its problem is recorded."""
         if token.kind == "variable":
             what = f"{token.text} is a variable; facts have none"
             return self.refuse(token, what, f'write {_lower_case_name(token.text)}, or "{token.text}" for a text')
@@ -256,12 +277,12 @@ class _Reader:
         return self.refuse(token, f"a term was expected, {token.in_words} found")
 
     def not_closed(self, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where ',' or ')' belongs."""
+        """Return the error for a token that stands where ',' or ')' belongs; its problem is recorded."""
         if token.text in ("..", ";", "+", "-", "*", "/", "**", "|", "&", "?", "^", "\\", "@"):
             return self.refuse(token, f"{token.in_words}: intervals, pools and sums are not facts", "write them out")
         return self.refuse(token, f"',' or ')' was expected, {token.in_words} found")
 
 
 def _lower_case_name(name: str) -> str:
-    """Return the name that a variable suggests: X1 becomes x1, _ becomes x."""
+    """Return the name that a variable suggests, for a hint: X1 becomes x1, _ becomes x."""
     return name.strip("_").lower() or "x"

@@ -25,10 +25,9 @@ class Source:
     Attributes
     ----------
     file : the file's name as the user gave it.
-    text : the text; ASCII when `source_from_bytes` accepted it.
-    hide_text : the file is a link that leads out of its folder. Then messages show none of its text, because the author
-        of
-        the link may have no right to read the file.
+    text : the whole text; printable ASCII, tabs and line ends when `source_from_bytes` accepted it.
+    hide_text : whether the file is a link that leads out of its folder. Then messages show none of its text, because
+        the author of the link may have no right to read the file.
     """
 
     file: str
@@ -37,11 +36,17 @@ class Source:
 
     @cached_property
     def lines(self) -> list[str]:
-        """The lines of the text, without line ends."""
+        """The lines of the text, without line ends; line n of a span is at index n - 1.
+
+        An empty text has one line, ''.
+        """
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
-        """Return the problem `what` at `span`, with the source line; a general problem when the text is hidden."""
+        """Return the problem `what` at `span`, with the source line and the hint ('' for none).
+
+        When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
+        """
         if self.hide_text:
             return Problem(
                 self.file, span, HIDDEN_TEXT_MESSAGE, hint="check the file that it leads to, or copy it into the folder"
@@ -50,7 +55,7 @@ class Source:
         return Problem(self.file, span, what, source, hint)
 
     def start(self) -> SourceSpan:
-        """Return the first column of the file, the place of problems that concern the whole file."""
+        """Return line 1, column 1 of the file, the place of problems that concern the whole file."""
         return SourceSpan(1, 1, 1)
 
 
@@ -59,11 +64,11 @@ def read_source(path: Path | str) -> Source:
 
     Parameters
     ----------
-    path : the file. A FIFO or a device is refused, not waited for.
+    path : the path of the file. A FIFO or a device is refused, not waited for.
 
     Returns
     -------
-    The text with the file's name.
+    The text with the file's name; it is hidden in messages when the file is a link out of its folder.
 
     Raises
     ------
@@ -75,12 +80,12 @@ def read_source(path: Path | str) -> Source:
 
 
 def lies_outside(path: Path | str, folder: Path | str | None = None) -> bool:
-    """Return whether a file lies outside of a folder when all links are followed.
+    """Return whether a file lies outside of a folder when all links are followed; subfolders count as inside.
 
     Parameters
     ----------
-    path : the file.
-    folder : the folder; None for the folder in which the file is named.
+    path : the path of the file, which need not exist.
+    folder : the path of the folder; None for the folder in which the file is named.
     """
     named = os.path.abspath(path)  # noqa: PTH100 (a link in the folder's own name is not followed yet)
     home = os.path.realpath(folder if folder is not None else os.path.dirname(named))  # noqa: PTH120
@@ -94,7 +99,7 @@ def source_from_bytes(file: str, raw: bytes, hide_text: bool = False) -> Source:
     ----------
     file : the file's name in messages.
     raw : the bytes.
-    hide_text : the messages must not show the text.
+    hide_text : whether messages must not show the text.
 
     Returns
     -------
@@ -122,12 +127,12 @@ def read_bytes(path: str, most: int) -> bytes:
 
     Parameters
     ----------
-    path : the file.
+    path : the path of the file. A FIFO or a device is refused, not waited for.
     most : at most `most` + 1 bytes are read, so that a caller notices a file with more than `most` bytes.
 
     Returns
     -------
-    The bytes from the start of the file.
+    The bytes from the start of the file, all of them when they are at most `most`.
 
     Raises
     ------
@@ -150,7 +155,11 @@ def read_bytes(path: str, most: int) -> bytes:
 
 
 def _disallowed_characters(source: Source) -> list[Problem]:
-    """Return one problem for each run of equal characters that are not allowed in users' text files."""
+    """Return one problem for each run of equal characters on a line that are not allowed in users' text files.
+
+    In the order of the text, MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
+    ends.
+    """
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":
         return []
     problems: list[Problem] = []
@@ -172,7 +181,7 @@ def _disallowed_characters(source: Source) -> list[Problem]:
 
 
 def _character_and_remedy(char: str) -> tuple[str, str]:
-    """Return the description of a character that is not allowed, and a hint."""
+    """Return the description of a character that is not allowed, and a hint: what it is, and the remedy."""
     code = ord(char)
     if char in TYPOGRAPHIC_QUOTES:
         return f"a typographic quotation mark (U+{code:04X})", 'write plain " quotes'

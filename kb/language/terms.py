@@ -22,7 +22,7 @@ class Number:
     span: SourceSpan = field(compare=False)
 
     def __str__(self) -> str:
-        """Return the integer in decimal digits."""
+        """Return the integer in decimal digits, after a minus sign when it is negative."""
         return str(self.value)
 
 
@@ -32,7 +32,7 @@ class Text:
 
     Attributes
     ----------
-    value : the characters, without quotes and escapes.
+    value : the characters themselves, without quotes, and with escapes replaced.
     span : the place in the source.
     """
 
@@ -52,7 +52,7 @@ class Symbol:
     Attributes
     ----------
     name : the name.
-    args : the arguments; () for a plain name.
+    args : the arguments in order; () for a plain name.
     span : the place in the source.
     """
 
@@ -62,7 +62,7 @@ class Symbol:
 
     @property
     def signature(self) -> tuple[str, int]:
-        """The name and the number of arguments."""
+        """The name and the number of arguments, such as ("at", 2)."""
         return self.name, len(self.args)
 
     def __str__(self) -> str:

@@ -33,7 +33,7 @@ class Token(NamedTuple):
     ----------
     kind : `name`, `variable`, `number`, `string`, `directive`, `mark`, `open` (a string that is not closed) or `end`.
     text : the characters as they stand in the source.
-    span : the place in the source.
+    span : the place in the source, one line with columns from 1.
     """
 
     kind: str
@@ -42,16 +42,17 @@ class Token(NamedTuple):
 
     @property
     def in_words(self) -> str:
-        """The token as messages show it, at most 40 characters."""
+        """The token as messages show it: its text, cut to 40 characters; or `the end of the file`."""
         if self.kind == "end":
             return "the end of the file"
         return self.text if len(self.text) <= 40 else f"{self.text[:37]}..."
 
 
 def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
-    """Yield the tokens of a text; the last one has the kind `end`.
+    """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
 
-    source : the text. problems : the problem of each comment or string that is not closed is appended to this list.
+    source : the text.
+    problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
     """
     text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):
@@ -77,7 +78,7 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
 
 
 def _block_end(text: str, start: int) -> int:
-    """Return the index after the block comment that begins at `start` (comments nest), or -1 when it is not closed."""
+    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed."""
     depth = 0
     for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1

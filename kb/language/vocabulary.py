@@ -58,10 +58,13 @@ EXPECTATION_VOCABULARY: Vocabulary = {
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
     """Return the type of a name or of `name(argument)`, such as corner(northeast).
 
+    name : the name that takes an argument.
+    argument : the type of its one argument.
     otherwise : an example of the inner argument, for hints.
     """
 
     def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it fits."""
         if not isinstance(term, Symbol) or not term.args:
             return NAME_ARGUMENT.check(term)
         if term.name != name:
@@ -77,9 +80,13 @@ def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType
 
 
 def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
-    """Return the type of an argument that is a whole fact of a vocabulary."""
+    """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G).
+
+    name : what the argument is called in messages. The first complaint about the fact is that about the argument.
+    """
 
     def check(term: Term) -> Complaint | None:
+        """Return the first complaint about a term, or None when it is a valid fact of the vocabulary."""
         if not isinstance(term, Symbol):
             return Complaint(term.span, f"{name} must be a fact, not {abbreviated(term)}")
         return next(iter(_complaints(term, vocabulary)), None)
@@ -137,10 +144,10 @@ class BeliefPredicate(NamedTuple):
     ----------
     arguments : the types of its arguments.
     open : the extent to which it may hold beyond what is believed.
-    subject : the index of the argument that the fact is about.
-    confident : the last argument is a confidence. A fact with a confidence between 0 and 100 may have any other in
-        truth.
-    settled : the subjects of which the world model states all facts of this predicate that will ever hold.
+    subject : the index, from 0, of the argument that the fact is about.
+    confident : whether the last argument is a confidence in percent. A fact with a confidence between 0 and 100 may
+        have any other in truth.
+    settled : the names of the subjects of which the world model states all facts of this predicate that will ever hold.
     """
 
     arguments: tuple[ArgumentType, ...]
@@ -212,9 +219,9 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 
     Parameters
     ----------
-    source : the text in which the facts stand.
-    facts : the facts.
-    vocabulary : the predicates of this kind of file.
+    source : the text in which the facts stand, for the messages.
+    facts : the facts, in the order of the text.
+    vocabulary : the predicates of this kind of file, with the types of their arguments.
 
     Returns
     -------
@@ -224,7 +231,10 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 
 
 def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
-    """Return the complaints about one fact; [] when it is valid."""
+    """Return the complaints about one fact; [] when it is valid.
+
+    One for an unknown predicate or a wrong number of arguments; else one for each argument that does not fit, in order.
+    """
     types = vocabulary.get(fact.name)
     if types is None:
         hint = did_you_mean(fact.name, vocabulary) or f"known here: {', '.join(sorted(vocabulary))}"

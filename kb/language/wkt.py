@@ -44,11 +44,11 @@ def parse_wkt(text: str, kinds: tuple[str, ...] = WKT_KINDS) -> Any:
     Parameters
     ----------
     text : the shape in well-known text; coordinates in squares.
-    kinds : the kinds of shapes that are accepted.
+    kinds : the kinds of shapes that are accepted, of WKT_KINDS; all by default.
 
     Returns
     -------
-    A valid, non-empty geometry.
+    A valid, non-empty shapely Point, LineString, Polygon or MultiPolygon; coordinates in squares.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def parse_wkt(text: str, kinds: tuple[str, ...] = WKT_KINDS) -> Any:
 
 
 def _flaw(shape: Any) -> str:
-    """Return the reason why a geometry is invalid, in plain words."""
+    """Return the reason why a shapely geometry is invalid, in plain words, with the point (x, y) where there is one."""
     reason = shapely.is_valid_reason(shape)
     what, _, place = reason.partition("[")
     words = {
@@ -89,14 +89,30 @@ def _flaw(shape: Any) -> str:
 
 
 class _Token(NamedTuple):
-    """A word of the text and the index of its first character."""
+    """A word of the text.
+
+    Attributes
+    ----------
+    text : the word; '' for the end of the text.
+    at : the index of its first character, from 0.
+    """
 
     text: str
     at: int
 
 
 class _Reader:
-    """A recursive-descent parser over the words of one text."""
+    """A recursive-descent parser over the words of one text.
+
+    Every method that reads moves on in the text, and raises WktError, with the place, where something else stands
+    there.
+
+    Attributes
+    ----------
+    text : the text.
+    tokens : its words in order, and '' after the last one.
+    next : the index in `tokens` of the word that is read next.
+    """
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -111,14 +127,14 @@ class _Reader:
         return token
 
     def kind(self, kinds: tuple[str, ...]) -> str:
-        """Read the kind of a shape, in upper case."""
+        """Read the kind of a shape, and return it in upper case; `kinds` are those that are accepted, in upper case."""
         token = self.take()
         if token.text.upper() not in kinds:
             raise WktError(token.at, f"a shape here is a {' or '.join(kinds)}, not {token.text[:20] or 'nothing'!r}")
         return token.text.upper()
 
     def expect(self, marks: str) -> str:
-        """Read one of the given marks."""
+        """Read one of the given marks, and return it. marks : the marks, one character each."""
         token = self.take()
         if token.text not in tuple(marks):
             wanted = " or ".join(repr(mark) for mark in marks)
@@ -132,7 +148,7 @@ class _Reader:
             raise WktError(token.at, f"the shape ends before {token.text[:20]!r}")
 
     def number(self) -> float:
-        """Read a coordinate in squares."""
+        """Read a coordinate, and return it in squares; beyond MAX_WKT_COORDINATE it is an error."""
         token = self.take()
         if not WKT_NUMBER.fullmatch(token.text):
             raise WktError(token.at, f"a number was expected, {token.text[:20] or 'the end'!r} found")
@@ -142,18 +158,21 @@ class _Reader:
         return value
 
     def point(self) -> _Point:
-        """Read the two coordinates of a point."""
+        """Read the two coordinates of a point, and return them as (x, y) in squares."""
         return self.number(), self.number()
 
     def single(self) -> _Point:
-        """Read one point in brackets: `( point )`."""
+        """Read one point in brackets, `( point )`, and return it as (x, y) in squares."""
         self.expect("(")
         point = self.point()
         self.expect(")")
         return point
 
     def several(self, part: Any) -> list[Any]:
-        """Read a list in brackets: `( part , part ... )`. part : the function that reads one part."""
+        """Read a list in brackets, `( part , part ... )`, and return its parts in order, at least one.
+
+        part : the function that reads one part and returns it.
+        """
         self.expect("(")
         parts = [part()]
         while self.expect(",)") == ",":
@@ -161,11 +180,14 @@ class _Reader:
         return parts
 
     def line(self) -> _Ring:
-        """Read the points of a line: `( point , point ... )`."""
+        """Read the points of a line, `( point , point ... )`, and return them as a list of (x, y) in squares."""
         return self.several(self.point)
 
     def ring(self) -> _Ring:
-        """Read a closed ring with at least three corners; the last point repeats the first."""
+        """Read a closed ring with at least three corners, and return its points (x, y) in squares.
+
+        The last point repeats the first, in the text as well as in the result; a ring that is not closed is an error.
+        """
         at = self.tokens[self.next].at
         points = self.line()
         if points[0] != points[-1]:
@@ -175,7 +197,7 @@ class _Reader:
         return points
 
     def polygon(self) -> Any:
-        """Read a polygon: the outer ring and the holes."""
+        """Read a polygon, the outer ring and the holes, and return it as a shapely Polygon that may be invalid."""
         outer, *holes = self.several(self.ring)
         return shapely.Polygon(outer, holes)
 

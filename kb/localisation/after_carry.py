@@ -46,10 +46,16 @@ def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, mot
 
     Parameters
     ----------
-    state : what was believed before the observation.
-    surprise : the observation.
-    held : the object in hand, before the motion.
+    state : what was believed before the observation; it is not changed.
+    surprise : the observation, with what it is judged by.
+    held : the object in hand, before the motion, map frame.
     motion : as commanded, map frame.
+
+    Returns
+    -------
+    Judgement
+        The choice, with where a push may have ended. Where nothing explains the observation without residual, the
+        cheapest explanation is chosen all the same.
     """
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
@@ -86,7 +92,13 @@ def _outcomes(
 ) -> list[Explanation]:
     """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, larger.
 
-    whole : the motion as commanded. blocked : where a push may have ended. contacts : all that the motion may have met.
+    Parameters
+    ----------
+    state, surprise, held, motion : as for `explain_carry`: what was believed, the observation, the object before the
+        motion, the commanded motion (map frame).
+    whole : the explanation that the motion went as commanded.
+    blocked : where a push may have ended, by the observation; if there are none, contacts without residual are taken.
+    contacts : all contacts that may have blocked the motion.
     """
     ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
@@ -98,7 +110,14 @@ def _outcomes(
 def _facts(
     state: TrackerState, surprise: Surprise, held: HeldObject, contacts: Iterable[ContactHypothesis]
 ) -> list[str]:
-    """Return the facts about the motion on which the choice depends. contacts : the contacts it may have met."""
+    """Return the facts about the motion on which the choice depends, for kb/asp/accommodation.lp.
+
+    They are predicates without arguments and without a full stop: unchanged (the observation equals the one before),
+    clear (the motion hardly met anything), uneven (the object is known not to fill its squares). Those that do not hold
+    are left out.
+
+    contacts : the contacts that the motion may have met, each with its probability.
+    """
     facts = {
         "unchanged": np.array_equal(surprise.ranges, state.observations[-1].ranges),
         "clear": sum(contact.chance for contact in contacts) <= MAX_CLEAR_CHANCE,
@@ -108,7 +127,11 @@ def _facts(
 
 
 def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
-    """Return where a push may have ended, its whole way included, as far as the observation agrees."""
+    """Return where a push may have ended, its whole way included, as far as the observation agrees.
+
+    Each has its chance. Empty for a turn, when the push can hardly have met anything, or when the observation agrees
+    with none.
+    """
     ended = []
     for end in possible_ends(surprise, held, motion):
         assert end.outcome is not None
@@ -117,7 +140,10 @@ def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, mot
 
 
 def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: Explanation) -> list[Explanation]:
-    """Return the explanation that the object does not fill its squares, if there is one. whole : as commanded."""
+    """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing.
+
+    It is of kind smaller, without residual. whole : the explanation that the motion went as commanded.
+    """
     outcome = whole.outcome
     assert outcome is not None
     lying = held.moved(outcome.polygon, held.slack, outcome.degrees, commanded=True)
@@ -129,7 +155,10 @@ def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: 
 
 
 def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
-    """Return the explanation that the motion of the object in hand had an outcome, in the believed frame."""
+    """Return the explanation that the motion of the object in hand had an outcome, in the believed frame.
+
+    Its residual is the number of fields that contradict that outcome.
+    """
     residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
     return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
 
@@ -137,7 +166,20 @@ def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> 
 def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, place: Position) -> HeldObject | None:
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
 
-    Squares that the object may leave free are taken for floor, not for something that happens to fill them.
+    The sub-cell extent is how far, by less than a square, each side lies within the squares in which the object was
+    seen. Squares that the object may leave free are taken for floor, not for something that happens to fill them.
+
+    Parameters
+    ----------
+    state : what is believed; its map and the other held objects are used.
+    held : the object where it lies at the time of the observation, map frame.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+    place : where the observation was made, (x, y) in squares, map frame.
+
+    Returns
+    -------
+    HeldObject or None
+        None as well when its sides are not parallel to the grid, or its place is known only roughly.
     """
     frame, others, nothing = state.frame, state.others(held), NO_SQUARES
     floor = state.occupancy.supposing(patch_of_polygon(held.polygon).squares())
@@ -150,9 +192,17 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
 
 
 def contact_suspects(state: TrackerState, held: HeldObject, chosen: Explanation, motion: Motion) -> frozenset[Square]:
-    """Return the open squares one of which probably stopped an object, map frame; none when what stopped it is known.
+    """Return the open squares one of which probably stopped an object, (column, row) of the map frame.
 
-    held : the object before the motion. motion : as commanded, map frame.
+    Those that the chosen outcome names, if it does. Else empty when nothing was stopped, when what stopped it is known,
+    or when the object was never seen to move.
+
+    Parameters
+    ----------
+    state : what is believed, with the chosen frame.
+    held : the object before the motion, map frame.
+    chosen : the chosen explanation of the observation after the motion.
+    motion : as commanded, map frame.
     """
     return suspected_squares(chosen.outcome, motion, held, state.others(held), state.occupancy)
 
@@ -165,7 +215,9 @@ def moved_object(
     ranges: FieldRanges,
     suspected: frozenset[Square],
 ) -> HeldObject:
-    """Return the object in hand after the chosen outcome of a motion.
+    """Return the object in hand after the chosen outcome of a motion, map frame.
+
+    An object whose place is known only roughly is moved to touch the known obstacle that seems to have blocked it.
 
     Parameters
     ----------
@@ -173,7 +225,7 @@ def moved_object(
     held : the object before the motion.
     chosen : the chosen explanation.
     motion : as commanded, map frame.
-    ranges : (160, 2) count ranges of the observation.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
     suspected : the squares that `contact_suspects` returns.
     """
     others, place = state.others(held), chosen.place
@@ -190,8 +242,13 @@ def moved_object(
 def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
     """Return the frame hypotheses left by an observation of objects that were turned.
 
-    Where several exact origins of the believed orientation are left, those are returned that agree with the
-    observation; otherwise all hypotheses.
+    Where several exact origins (hypotheses that name one point) of the believed orientation are left, those are
+    returned that agree with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
+
+    Parameters
+    ----------
+    state : what is believed, with the motion before the observation applied.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
     """
     within = _exact_origins(state)
     if len(within) <= 1:
@@ -202,9 +259,10 @@ def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHyp
 
 
 def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
-    """Return all held objects with how far each may lie from its believed place because the origin is uncertain.
+    """Return all held objects, by name, with `astray` set: how far each may lie from its believed place, in squares.
 
-    Every turn was about the true place of Utak, so an origin that is open leaves the place of a turned object open.
+    Every turn was about the true place of Utak, so an origin that is open leaves the place of a turned object open. It
+    is 0, or the rounding of commands, where the origin is certain.
     """
     origins = [hypothesis.frame.origin for hypothesis in _exact_origins(state)]
     away = np.array(origins).reshape(-1, 2) - np.array(state.frame.origin)
@@ -217,5 +275,5 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
-    """Return the hypotheses of the believed orientation that name an exact origin."""
+    """Return the hypotheses of the believed orientation that name an exact origin; empty when there is none."""
     return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)

@@ -56,8 +56,9 @@ class DeadReckoning:
 
     Attributes
     ----------
-    predicted : where the walk ends if nothing blocked it, map frame.
-    blocked : where it may have been blocked, the last place first; empty when there was no walk. Map frame.
+    predicted : where the walk ends if nothing blocked it, (x, y) in squares, map frame.
+    blocked : where it may have been blocked: both sides of each grid line on the way, the one nearest to the end first,
+        and last the start; empty when there was no walk. Map frame.
     """
 
     predicted: Position
@@ -69,10 +70,16 @@ def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, 
 
     Parameters
     ----------
-    state : what was believed before the observation.
-    ranges : (160, 2) least and greatest counts of its fields.
+    state : what was believed before the observation; it is not changed.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each of its fields.
     ends : the end of the walk by dead reckoning.
-    command : the command before the observation; None on waking.
+    command : the command before the observation, Utak's own frame; None on waking.
+
+    Returns
+    -------
+    Judgement
+        The choice, with what was learnt. Where nothing explains the observation without residual, the cheapest
+        explanation is chosen all the same.
     """
     return _WalkExplainer(state, ranges, ends, command).judge()
 
@@ -81,6 +88,11 @@ class _WalkExplainer:
     """The proposals for one observation, in the order in which they are made; each is made only when it is needed."""
 
     def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
+        """Compute the explanation that the walk went its whole way, and where it may have been blocked.
+
+        state, ranges, ends, command : as for `explain_walk`: what was believed, the counts, the dead reckoning, the
+        command.
+        """
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
         self._budget = SearchBudget(state.search_count)
         ahead = [self._explanation("predicted", place, ends.predicted) for place in observation_places(ends.predicted)]
@@ -97,7 +109,7 @@ class _WalkExplainer:
         )
 
     def judge(self) -> Judgement:
-        """Return the chosen explanation, with what was learnt while choosing."""
+        """Return the chosen explanation, with what was learnt while choosing; the state is not changed."""
         state, first = self._state, self._whole
         if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]
@@ -123,13 +135,19 @@ class _WalkExplainer:
         return self._judgement(choose(state, self._all(first, turned)))
 
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
-        """Return a chosen explanation with what was learnt. left : the hypotheses weighed anew, if they were."""
+        """Return a chosen explanation with what was learnt while choosing it.
+
+        left : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
+        """
         return Judgement(chosen, self._budget.spent, self._possible_ends, left)
 
     def _all(self, first: Explanation, turned: list[Explanation]) -> list[Explanation]:
         """Return all explanations: first the walk as predicted, then blocked, slipped, other frames, earlier motions.
 
-        turned : the explanations by another frame.
+        Parameters
+        ----------
+        first : that the walk ended as predicted, with the fields that it leaves unexplained.
+        turned : the explanations by another frame; may be empty.
         """
         state = self._state
         explanations = [first]
@@ -155,7 +173,10 @@ class _WalkExplainer:
         return explanations
 
     def _blocked_walk(self, command: Move) -> tuple[Explanation, ...]:
-        """Return where the walk may have ended, its whole way included, as far as the observation agrees."""
+        """Return where the walk may have ended, its whole way included, as far as the observation agrees.
+
+        Each has its chance. Empty when the walk can hardly have met anything, or when the observation agrees with none.
+        """
         surprise = self._state.surprise(command, self._ranges)
         motion = Translate(*self._state.frame.to_map(command.east, command.north))
         found = possible_ends(surprise, None, motion)
@@ -165,9 +186,14 @@ class _WalkExplainer:
     def _earlier_walks(self, turned: list[Explanation], others: list[Explanation]) -> list[Explanation]:
         """Return explanations by which the newest walk, or an earlier one, was blocked where nothing was known.
 
-        Where another frame explains everything, only contacts with something known are proposed.
+        Where another frame explains everything, only contacts with something known, or of a known chance, are proposed;
+        where there are none, both the newest and an earlier walk may have been blocked. All are of kind misled; [] for
+        none.
 
-        turned : the explanations by another frame. others : all explanations so far.
+        Parameters
+        ----------
+        turned : the explanations by another frame.
+        others : all explanations so far.
         """
         state = self._state
         if all(e.residual for e in turned):
@@ -181,11 +207,11 @@ class _WalkExplainer:
         return met or self._both_blocked()
 
     def _blocked_elsewhere(self, walks: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
-        """Return explanations by which one of some walks was blocked elsewhere than believed.
+        """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed.
 
-        Ends of the newest walk in the believed frame are left out if they were proposed already.
+        Ends of the newest walk in the believed frame are left out if they were proposed already. [] when there is none.
 
-        walks : the re-estimations of each walk.
+        walks : for each walk its re-estimations (other ends with which no observations contradict each other).
         """
         state = self._state
         judged = len(state.observations) if self._possible_ends else None
@@ -197,7 +223,11 @@ class _WalkExplainer:
         ]
 
     def _both_blocked(self) -> list[Explanation]:
-        """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame."""
+        """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame.
+
+        All are of kind misled and without residual, with the newest of the earlier walks first; [] when the believed
+        frame was not among the hypotheses when the walk began, or when nothing fits.
+        """
         state, newest, found = self._state, self._state.motions[-1], []
         believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
         pairs = [(motion, hypothesis) for hypothesis in believed for motion in reversed(state.earlier)]
@@ -210,7 +240,12 @@ class _WalkExplainer:
     def _best_prior(self, ended: Sequence[Explanation], left: tuple[FrameHypothesis, ...]) -> Explanation:
         """Return the choice between the believed frame, which nothing contradicts, and the one of the best map prior.
 
-        ended : the explanations in the believed frame. left : the frame hypotheses that are left, weighed.
+        The map prior of a frame is how simple the simplest map is that agrees with all counts in it.
+
+        Parameters
+        ----------
+        ended : the explanations in the believed frame, at least one.
+        left : the frame hypotheses that are left, weighed; one of them contains the believed frame.
         """
         state = self._state
         cost = next(h.prior_cost for h in left if h.contains(state.frame))
@@ -222,9 +257,15 @@ class _WalkExplainer:
         return choose(state, explanations, ["stands"])
 
     def _other_frame(self, left: tuple[FrameHypothesis, ...], recent: list[Observation]) -> list[Explanation]:
-        """Return the explanation by another frame, where observations contradict the believed one; if there is one.
+        """Return the explanation by another frame, where observations contradict the believed one, in a list.
 
-        left : the frame hypotheses that are left. recent : the last observations, the new one included.
+        It is of kind turned; [] when no frame is left. All frames are searched anew, at the cost of 1 slow search, when
+        those that are left explain too little and the budget allows it.
+
+        Parameters
+        ----------
+        left : the frame hypotheses that are left, weighed.
+        recent : the last observations by which frames are judged, oldest first, the new one included.
         """
         state, observation = self._state, self._observation
         if state.likely_spread <= SETTLED_SPREAD:  # another origin is likelier than another orientation
@@ -245,7 +286,11 @@ class _WalkExplainer:
         return [Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost=cost)] * bool(left)
 
     def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
-        """Return the frame of the least residual over all observations among those left, and that residual."""
+        """Return the frame of the least residual among those left, and that residual (a count of fields).
+
+        The residual is over all observations. Not all frames are tried where there are many observations. When no
+        hypothesis is left, the believed frame is returned with NO_FRAME_RESIDUAL.
+        """
         state = self._state
         if not left:
             return state.frame, NO_FRAME_RESIDUAL
@@ -260,6 +305,14 @@ class _WalkExplainer:
         return frames[number], residual
 
     def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
-        """Return the explanation that the observation was made at `place`. predicted : by dead reckoning; map frame."""
+        """Return the explanation that the observation was made at `place`, in the believed frame.
+
+        Parameters
+        ----------
+        how : its kind, as of `Explanation.how`.
+        place : (x, y) in squares, map frame.
+        predicted : the place by dead reckoning, map frame; the explanation's `distance` is the distance from it, in
+            squares.
+        """
         residual = residual_at(self._state, self._ranges, place, self._state.held_objects.values())
         return Explanation(how, place, self._state.frame, residual, math.dist(place, predicted))

@@ -33,24 +33,30 @@ class SearchBudget:
 
     Attributes
     ----------
-    spent : the number of searches, over the whole life of the tracker.
+    spent : the number of slow searches that found nothing or went over all frames, over the whole life of the tracker.
     """
 
     def __init__(self, spent: int) -> None:
+        """Begin with the searches spent so far. spent : a count, as of `TrackerState.search_count`."""
         self.spent = spent
 
     @property
     def frames_left(self) -> bool:
-        """Return whether all frames may be searched once more."""
+        """Return whether all frames may be searched once more: fewer than MAX_FRAME_SEARCHES (6) searches are spent."""
         return self.spent < MAX_FRAME_SEARCHES
 
     @property
     def exhausted(self) -> bool:
-        """Return whether no slow proposal may be made any more."""
+        """Return whether no slow proposal may be made any more: MAX_FAILED_SEARCHES (18) searches are spent."""
         return self.spent >= MAX_FAILED_SEARCHES
 
     def search(self, propose: Callable[[], list[Found]]) -> list[Found]:
-        """Return what a slow proposal finds; nothing, without asking it, when the budget is exhausted."""
+        """Return what a slow proposal finds; [] without calling it when the budget is exhausted.
+
+        A proposal that finds nothing spends 1 search.
+
+        propose : the slow proposal, called at most once; it returns what it found, [] for nothing.
+        """
         if self.exhausted:
             return []
         found = propose()
@@ -64,8 +70,9 @@ class Judgement(NamedTuple):
     Attributes
     ----------
     explanation : the chosen one.
-    searches : the number of searches over all frames so far.
-    blocked : where the newest motion may have ended, by the observation; empty when it met nothing.
+    searches : the number of slow searches spent so far, over the whole life of the tracker.
+    blocked : where the newest motion may have ended (its whole way included), each with its chance, as far as the
+        observation agrees; empty when the motion can have met nothing.
     hypotheses : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
     """
 
@@ -76,7 +83,17 @@ class Judgement(NamedTuple):
 
 
 def residual_at(state: TrackerState, ranges: FieldRanges, place: Position, held_objects: Iterable[HeldObject]) -> int:
-    """Return how many fields of an observation at `place` contradict the map and the held objects where they lie."""
+    """Return how many fields of an observation at `place` contradict the map and the held objects where they lie.
+
+    Fields of earlier observations that are no longer possible with it count as well; 0 means that nothing contradicts.
+
+    Parameters
+    ----------
+    state : what is believed; its map and its frame are used.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
+    place : where it was made, (x, y) in squares, map frame.
+    held_objects : all objects that were ever held, where they lie then, map frame.
+    """
     return count_clashes(state.frame, state.occupancy, held_objects, place, ranges)
 
 
@@ -85,7 +102,16 @@ def consistent_ends(
 ) -> tuple[Explanation, ...]:
     """Return those possible ends of the newest motion that its observation agrees with, each with its chance.
 
+    Parameters
+    ----------
+    surprise : the observation, with what was believed before it.
     ended : each possible end, with the explanation that the motion ended there.
+
+    Returns
+    -------
+    tuple of Explanation
+        Those without residual, in the order given, with `chance`, `contact_squares` and a `prior_cost` (log odds,
+        relative to the best of them). Empty when the observation agrees with none.
     """
     fitting = (
         one._replace(chance=end.chance, contact_squares=end.contact_squares) for end, one in ended if not one.residual
@@ -98,7 +124,20 @@ def propose_frame(
 ) -> list[Explanation]:
     """Return the frame that explains a surprise with fewer than `residual` unexplained fields, if there is one.
 
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation, after objects were moved.
+    residual : the fields that the motion as commanded leaves unexplained: a count.
+    budget : of slow searches; 1 is spent when nothing is found, or when all frames were searched.
     simple : whether a motion that ended early explains it in the believed frame.
+
+    Returns
+    -------
+    list of Explanation
+        One at most. Its kind is turned for another frame, or for other frame hypotheses; in the believed frame it is
+        that of the outcome of the motion. [] when no frame is better, when the budget is exhausted, or when the same is
+        proposed elsewhere.
     """
     if budget.exhausted:
         return []
@@ -123,7 +162,9 @@ def propose_frame(
 def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) -> list[Explanation]:
     """Return explanations by which a push was blocked and the origin of the frame lies elsewhere in its square.
 
-    Each costs the less the larger the part of the square is in which the origin may lie then.
+    Each is of kind turned and without residual, with the probability of the contact as `chance`. Its `prior_cost` (log
+    odds against that origin) is the less the larger the part of the square of waking is in which the origin may lie
+    then. [] when nothing fits, without a push, and when the budget of slow searches is exhausted.
     """
     found = []
     for one, chance, against in budget.search(lambda: blocked_pushes_with_origin(surprise)):
@@ -135,6 +176,9 @@ def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) ->
 
 class EarlierMotionProposers(NamedTuple):
     """The two proposers of earlier motions that ended elsewhere than believed.
+
+    Both are called with the newest observation and with the motions to try, oldest first, and return a list, [] for
+    nothing.
 
     Attributes
     ----------
@@ -158,11 +202,22 @@ def propose_earlier_motions(
 ) -> list[Explanation]:
     """Return explanations by which an earlier motion ended elsewhere than believed.
 
-    Where a simple explanation in the believed frame exists, only motions that were in doubt are re-estimated, and none
-    if the chance of the simple explanation is known. Another origin of the frame is proposed as well only where
-    nothing simple explains the observation in any frame.
+    Where a simple explanation (see `is_simple`) in the believed frame exists, only motions that were in doubt are
+    re-estimated (other ends of them are tried), and none if the chance of the simple explanation is known. Another
+    origin of the frame is proposed as well only where nothing simple explains the observation in any frame.
 
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation, after objects were moved.
     others : all explanations so far.
+    budget : of slow searches; the search with another origin is charged to it.
+    proposers : the functions that are asked.
+
+    Returns
+    -------
+    list of Explanation
+        Of kind misled and without residual; [] when there is none.
     """
     simple = [other for other in others if is_simple(state, other)]
     here = [other for other in simple if other.frame == state.frame]
@@ -177,13 +232,16 @@ def propose_earlier_motions(
 
 
 def is_simple(state: TrackerState, explanation: Explanation) -> bool:
-    """Return whether an explanation leaves no residual and needs neither a first slip nor another orientation."""
+    """Return whether an explanation is simple: no residual, no first slip, and the believed orientation of the frame.
+
+    A slip is an end of a motion beside its predicted end; once one happened, further ones count as simple.
+    """
     likely = explanation.how != "slipped" or state.slipped
     return likely and not explanation.residual and explanation.frame.angle == state.frame.angle
 
 
 def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanation:
-    """Return the explanation that an earlier motion ended as it was re-estimated."""
+    """Return the explanation, of kind misled, that an earlier motion ended as it was re-estimated; without residual."""
     walk, one = motion
     distance = math.hypot(*walk.correction.shift)
     misled = Explanation("misled", one.place, one.frame, 0, distance, one.outcome, one.hypotheses, walk)
@@ -191,7 +249,12 @@ def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanati
 
 
 def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
-    """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known."""
+    """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known.
+
+    explanation : its `reestimated` is not None. It is returned unchanged when the motion is not remembered, when its
+    observation is the newest one, or when the frame is another one; `chance` is None when that end was no known
+    alternative.
+    """
     assert explanation.reestimated is not None
     correction = explanation.reestimated.correction
     motion = next((motion for motion in state.motions if motion.number == correction.since), None)
@@ -201,9 +264,11 @@ def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
 
 
 def prior_cost(state: TrackerState, angle: int) -> float:
-    """Return by how much the map prior of an orientation is worse than the best one, in log odds.
+    """Return by how much the map prior of an orientation is worse than the best one, in log odds (natural logarithm).
 
-    angle : the orientation in degrees. The cost of the believed orientation is 0.
+    The believed orientation has 0, one that is no longer among the hypotheses UNTRIED_COST.
+
+    angle : the orientation in degrees, counter-clockwise positive, as of `Frame.angle`.
     """
     if angle == state.frame.angle:
         return 0.0
@@ -211,7 +276,15 @@ def prior_cost(state: TrackerState, angle: int) -> float:
 
 
 def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
-    """Return the cheapest explanation (kb/asp/accommodation.lp). facts : facts about the motion and observation."""
+    """Return the cheapest explanation by kb/asp/accommodation.lp; of those that cost the same the first.
+
+    Parameters
+    ----------
+    state : what was believed; it adds the facts trust(N), slips, off_middle, met(E) and proven.
+    explanations : at least one, the likeliest first.
+    facts : further facts about the motion and the observation, as text without a full stop: stands, clear, uneven,
+        unchanged.
+    """
     known = [f"trust({0 if state.off_middle else state.confirmations})", *["slips"] * state.slipped]
     known += ["off_middle"] * state.off_middle
     known += [f"met({n})" for n, e in enumerate(explanations) if e.met_known and e.frame == state.frame]

@@ -32,24 +32,32 @@ LIKELY_END_CHANCE = 0.05  # probability above which an alternative end of an ear
 class TrackerState:
     """Everything the localisation tracker believes after an observation.
 
+    Two frames: the map frame has its axes along the grid, x to the east and y to the north, and (0, 0) at the
+    south-west corner of the square of waking. Utak's own frame has its origin where Utak woke, with north the way it
+    faced.
+
     Attributes
     ----------
     occupancy : the occupancy map, map frame. The tracker updates it in place; everybody else only reads it.
-    frame : the believed frame: orientation of the map in Utak's own frame, and the point of the square of waking.
+    frame : the believed frame: the angle, in degrees, by which Utak's own frame is turned against the map frame, and
+        its origin, a point of the square of waking.
     place : where Utak is: (x, y) in squares, map frame.
-    observations : all observations since the tracker began; each keeps its place in Utak's own frame.
+    observations : all observations since the tracker began, oldest first; each keeps its place in Utak's own frame.
     hypotheses : the frame hypotheses that are left.
     confirmations : number of observations in a row that confirmed the believed frame.
     blocked_squares : squares that stopped Utak himself when a motion was about to enter them, map frame.
-    suspected_squares : open squares one of which probably stopped a held object, map frame.
+    suspected_squares : open squares (not settled as free or occupied) one of which probably stopped a held object, map
+        frame.
     search_count : number of slow proposals that found nothing or searched all frames. It limits further ones.
     slipped : whether any motion ended beside its predicted end.
     motions : the last straight motions, oldest first. Each may have ended otherwise than believed.
-    held_objects : all objects that were ever held, by name.
+    held_objects : all objects that were ever held, by name, map frame.
     in_hand : the name of the object in the hand; None when the hand is empty.
-    residuals : residual of each of the last observations, oldest first.
-    been : places of the observations before the tracker began anew, Utak's own frame.
-    completions : the newest completions of the map in this frame; None when none were drawn.
+    residuals : number of unexplained fields of each of the last observations, oldest first; 4 at most.
+    been : places of the observations before the tracker began anew, oldest first, (east, north) in squares, Utak's own
+        frame.
+    completions : the newest completions of the map in this frame (sampled maps that agree with all counts); None when
+        none were drawn.
     """
 
     occupancy: OccupancyMap = field(default_factory=OccupancyMap)
@@ -72,7 +80,10 @@ class TrackerState:
     def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
         """Return an observation that contradicts this state, with what of the state it is judged by.
 
-        command : the command before the observation. ranges : (160, 2) least and greatest counts of its fields.
+        Parameters
+        ----------
+        command : the command before the observation, Utak's own frame.
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
         """
         return Surprise(
             command,
@@ -91,12 +102,15 @@ class TrackerState:
 
     @property
     def square(self) -> Square:
-        """Return the square of the map frame in which Utak is."""
+        """Return the square (column, row) of the map frame in which Utak is; the square of waking is (0, 0)."""
         return math.floor(self.place[0]), math.floor(self.place[1])
 
     @property
     def track(self) -> list[Position]:
-        """Return all places of observations, oldest first, those before a new beginning included; map frame."""
+        """Return all places of observations as (x, y) in squares, oldest first; map frame.
+
+        Those before a new beginning of the tracker are included.
+        """
         return [
             self.frame.place_from_utak(*place)
             for place in (*self.been, *(observation.place for observation in self.observations))
@@ -104,56 +118,74 @@ class TrackerState:
 
     @property
     def looked_from(self) -> frozenset[Square]:
-        """Return the squares of the map frame from which the observations of the present map were made."""
+        """Return the squares from which the observations of the present map were made: (column, row), map frame."""
         return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:
-        """Return how far the true origin of the frame may lie from the believed one.
+        """Return how far the true origin of the frame may lie from the believed one: (west, south, east, north).
 
-        In squares of the map frame: to the west and south (not above 0), then east and north (not below 0).
+        In squares of the map frame: west and south are not above 0, east and north are not below 0; all 0 when it is
+        certain.
         """
         return origin_leeway(self.frame, self.observations, self.hypotheses)
 
     @property
     def off_middle(self) -> bool:
-        """Return whether the believed origin of the frame is not the middle of the square of waking."""
+        """Return whether the believed origin of the frame is not exactly the middle of the square of waking."""
         return self.frame.origin != CENTRE
 
     @property
     def beside_line(self) -> bool:
-        """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact."""
+        """Return whether a contact at a grid line has fixed the origin in one axis, but for the width of a contact.
+
+        That width is 2e-6 squares.
+        """
         return min(map(abs, self.leeway)) <= 2 * LINE_DISTANCE
 
     # -- certainty -------------------------------------------------------------------------------
 
     @property
     def lost(self) -> bool:
-        """Return whether localisation has failed: observation after observation contradicts what is believed."""
+        """Return whether localisation has failed: observation after observation contradicts what is believed.
+
+        So it is when the last 4 observations together left at least 8 fields unexplained (24 once an object was moved),
+        and more than one of them left any.
+        """
         moved = any(held.proven for held in self.held_objects.values())
         limit = MAX_RESIDUAL_AFTER_MOVING if moved else MAX_RESIDUAL
         return sum(self.residuals) >= limit and sum(residual > 0 for residual in self.residuals) > 1
 
     @property
     def spread(self) -> float:
-        """Return the greatest difference between the believed orientation and one that is left, in radians."""
+        """Return the greatest difference between the believed orientation and one that is left, in radians.
+
+        It is 0 when no other orientation is left.
+        """
         return self._spread(self.hypotheses)
 
     @property
     def likely_spread(self) -> float:
-        """Return the same of the orientations whose map prior is hardly worse than the best one, in radians."""
+        """Return the greatest difference between the believed orientation and a plausible one that is left, in radians.
+
+        Plausible are orientations whose map prior is hardly worse than the best one (PLAUSIBLE_COST); 0 when there is
+        none.
+        """
         return self._spread(other for other in self.hypotheses if other.is_plausible)
 
     def _spread(self, hypotheses: Iterable[FrameHypothesis]) -> float:
-        """Return the greatest difference in orientation from the believed frame, in radians; 0 for no hypotheses."""
+        """Return the greatest difference in orientation between the believed frame and some hypotheses, in radians.
+
+        It is 0 for no hypotheses.
+        """
         return math.radians(max((abs(other.angle - self.frame.angle) for other in hypotheses), default=0))
 
     @property
     def sure(self) -> bool:
         """Return whether what the counts settle is beyond doubt.
 
-        It is not after observations contradicted each other or a motion slipped, while one of the last motions may
-        have ended in another square, or while several frame hypotheses are left that differ from Utak's own axes.
+        It is not after observations contradicted each other or a motion slipped, while one of the last motions may have
+        ended in another square, or while several frame hypotheses are left that differ from Utak's own axes.
         """
         along = self.frame.angle == 0 and all(other.is_centred for other in self.hypotheses)
         settled = not (self.shaken or any(map(self._elsewhere_likely, self.motions)))
@@ -161,11 +193,14 @@ class TrackerState:
 
     @property
     def shaken(self) -> bool:
-        """Return whether observations contradicted each other, or a motion ended beside its predicted end."""
+        """Return whether observations ever contradicted each other, or a motion ever ended beside its predicted end."""
         return self.slipped or self.occupancy.overruled > 0
 
     def _elsewhere_likely(self, motion: MotionHypothesis) -> bool:
-        """Return whether a motion may well have ended in another square than believed, by the observation after it."""
+        """Return whether a motion may well have ended in another square than believed, by the observation after it.
+
+        False when that observation is not integrated yet. Likely is an end of a probability above LIKELY_END_CHANCE.
+        """
         if motion.number >= len(self.observations):
             return False
         places = [self.observations[motion.number].place, *motion.likely_ends(LIKELY_END_CHANCE)]
@@ -176,10 +211,10 @@ class TrackerState:
 
     @property
     def closed(self) -> frozenset[Square]:
-        """Return the squares of the map frame that are occupied, or probably are, because they stopped a motion.
+        """Return the squares (column, row) of the map frame that stopped a motion, and so are (probably) occupied.
 
-        A square seen to be free is left out when motions slip, or when all eight squares around it are free, too:
-        then the contact, or its place, was believed wrongly.
+        A square seen to be free is left out when motions slip, or when all eight squares around it are free, too: then
+        the contact, or its place, was believed wrongly. Suspected squares count only while the counts leave them open.
         """
         blocked = self.blocked_squares
         certain = set() if self.slipped else {square for square in blocked if not self._free_around(*square)}
@@ -187,7 +222,10 @@ class TrackerState:
         return frozenset((*certain, *(s for s in doubted if self.occupancy.state[self.occupancy.index(*s)] == OPEN)))
 
     def _free_around(self, x: int, y: int) -> bool:
-        """Return whether a square of the map and its eight neighbours are settled as free."""
+        """Return whether the square (x, y) of the map frame and its eight neighbours are settled as free.
+
+        Neighbours beyond the map are not asked.
+        """
         row, column = self.occupancy.index(x, y)
         around = self.occupancy.state[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         return bool((around == FREE).all())
@@ -196,19 +234,30 @@ class TrackerState:
 
     @property
     def reestimable(self) -> tuple[MotionHypothesis, ...]:
-        """Return the last straight motions that can be re-estimated: with an empty hand, or with a known object."""
+        """Return the last straight motions, oldest first, that can be re-estimated (other ends of them can be tried).
+
+        Those are the ones with an empty hand, or with an object that is known still.
+        """
         return tuple(motion for motion in self.motions if motion.in_hand is None or motion.in_hand in self.held_objects)
 
     @property
     def earlier(self) -> tuple[MotionHypothesis, ...]:
-        """Return those of them whose observation has been integrated already."""
+        """Return the last straight motions whose observation has been integrated already, oldest first.
+
+        Only those that can be re-estimated (see `reestimable`): with an empty hand, or with an object that is known
+        still.
+        """
         return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
 
     @property
     def doubtful(self) -> tuple[MotionHypothesis, ...]:
-        """Return those earlier motions that may well have ended elsewhere than believed."""
+        """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first.
+
+        Their observation is integrated already, and they have another end of a probability above LIKELY_END_CHANCE
+        (0.05).
+        """
         return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 
     def others(self, held: HeldObject) -> list[HeldObject]:
-        """Return all objects that were ever held but one."""
+        """Return all objects that were ever held except the one of the name of `held`, map frame."""
         return [other for other in self.held_objects.values() if other.name != held.name]

@@ -58,14 +58,16 @@ class Tracker:
     def anew(self) -> "Tracker":
         """Return a tracker that begins anew at the believed place, with an empty map and all frame hypotheses.
 
-        Called after a localisation failure. The track is kept, so that the robot knows about where it came from.
+        Called after a localisation failure. The believed frame and place stay, and the track is kept, so that the robot
+        knows about where it came from; the newest observation is left out of it, for it is made again. No object is
+        known or in hand.
         """
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
         return Tracker(TrackerState(OccupancyMap(), state.frame, state.place, hypotheses=ALL_HYPOTHESES, been=been))
 
     def wake(self, impression: Impression) -> Accommodation:
-        """Explain and integrate the first impression.
+        """Explain and integrate the first impression; `state` is replaced.
 
         Parameters
         ----------
@@ -74,22 +76,22 @@ class Tracker:
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields is accounted for.
+            The chosen explanation, and how each of the 160 fields of the retina is accounted for.
         """
         return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
 
     def accommodate(self, command: Command, impression: Impression) -> Accommodation:
-        """Explain and integrate the impression that followed a command.
+        """Explain and integrate the impression that followed a command; `state` is replaced.
 
         Parameters
         ----------
-        command : the command, in Utak's own frame.
+        command : the command, in Utak's own frame (origin where Utak woke, north the way it faced).
         impression : what the senses returned after it.
 
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields is accounted for.
+            The chosen explanation, and how each of the 160 fields of the retina is accounted for.
         """
         ranges, state = count_ranges(impression.retina), self.state
         if state.in_hand is not None and isinstance(command, Push | Turn):
@@ -105,13 +107,14 @@ class Tracker:
         )
 
     def grasp(self, held: HeldObject) -> None:
-        """Believe that an object is in the hand.
+        """Believe that an object is in the hand; `state` is replaced.
 
         The squares of an object that was never held before become floor in the occupancy map.
 
         Parameters
         ----------
-        held : the object, where it is believed to lie. What is known of an object held before is kept.
+        held : the object, where it is believed to lie, map frame. For the name of an object held before only the name
+            counts: what is known of that one is kept.
         """
         held_objects = self.state.held_objects
         if held.name not in held_objects:
@@ -120,27 +123,39 @@ class Tracker:
         self.state = replace(self.state, held_objects=held_objects, in_hand=held.name)
 
     def update_object(self, held: HeldObject) -> None:
-        """Replace what is known of an object that was held before.
+        """Replace what is known of an object that was held before; `state` is replaced.
 
         Parameters
         ----------
-        held : what is known of it now; it bears the same name.
+        held : what is known of it now, map frame; it bears the same name.
         """
         self.state = replace(self.state, held_objects={**self.state.held_objects, held.name: held})
 
     def keep_completions(self, completions: Completions | None) -> None:
-        """Keep the newest completions of the map; the chance of a contact is estimated by them.
+        """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them.
 
         Parameters
         ----------
-        completions : of the map in the believed frame; None when none were drawn.
+        completions : sampled maps that agree with all counts, in the believed frame; None when none were drawn.
         """
         self.state = replace(self.state, completions=completions)
 
     # -- after a walk, on waking, after a release ------------------------------------------------
 
     def _after_walk(self, ranges: FieldRanges, walk: DeadReckoning, command: Command | None) -> Accommodation:
-        """Explain and integrate an observation after a walk, or after a command that leaves everything in place."""
+        """Explain and integrate an observation after a walk, or after a command that leaves everything in place.
+
+        Parameters
+        ----------
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+        walk : where the walk ends, and may have been blocked, map frame.
+        command : None on waking.
+
+        Returns
+        -------
+        Accommodation
+            The chosen explanation, and how each of the 160 fields is accounted for.
+        """
         if walk.blocked and isinstance(command, Move):
             self._remember(command)
         judged = explain_walk(self.state, ranges, walk, command)
@@ -155,13 +170,20 @@ class Tracker:
         return self._integrate(explanation, ranges)
 
     def _count_confirmations(self, explanation: Explanation) -> None:
-        """Count a predicted observation as a confirmation; reset the count if the chance of its end is unknown."""
+        """Count a predicted observation as a confirmation in `state`.
+
+        Any other explanation leaves the count as it is if the chance of its end is known; else the count begins at 0
+        again.
+        """
         number = self.state.confirmations
         number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
         self.state = replace(self.state, confirmations=number)
 
     def _note_motion(self, explanation: Explanation) -> None:
-        """Note that motions slip, or which of the last motions was blocked, if an explanation says so."""
+        """Note in `state` that motions slip, or which of the remembered motions was blocked, if an explanation says so.
+
+        After a slip (an end beside the predicted one) all remembered motions are forgotten.
+        """
         state = self.state
         if explanation.how == "slipped":
             self.state = replace(state, slipped=True, motions=())
@@ -174,7 +196,19 @@ class Tracker:
     # -- after a push or a turn ------------------------------------------------------------------
 
     def _after_carry(self, ranges: FieldRanges, name: str, command: Push | Turn) -> Accommodation:
-        """Explain and integrate an observation after a push or a turn of the held object `name`."""
+        """Explain and integrate an observation after a push or a turn of the held object `name`.
+
+        Parameters
+        ----------
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+        name : of the object in hand.
+        command : Utak's own frame.
+
+        Returns
+        -------
+        Accommodation
+            The chosen explanation, and how each of the 160 fields is accounted for.
+        """
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
         if isinstance(command, Turn) and state.beside_line:
@@ -189,7 +223,17 @@ class Tracker:
         return self._integrate(judged.explanation, ranges)
 
     def _move_object(self, name: str, chosen: Explanation, command: Push | Turn, ranges: FieldRanges) -> None:
-        """Move the held object as the chosen explanation says, and refine what is known of its outline."""
+        """Move the held object in `state` as the chosen explanation says, and refine what is known of its outline.
+
+        Utak's place, the suspected squares and the hypotheses of the origin are brought up to date as well.
+
+        Parameters
+        ----------
+        name : of the object in hand.
+        chosen : the chosen explanation, applied already to the frame and the map.
+        command : the push or turn, Utak's own frame.
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+        """
         if chosen.larger is not None:
             self._declare_floor(chosen.larger)
             self.update_object(chosen.larger)
@@ -208,9 +252,10 @@ class Tracker:
     # -- the one place where an explanation is applied -------------------------------------------
 
     def _apply(self, chosen: Explanation) -> None:
-        """Believe what an explanation says of the frame and of earlier motions.
+        """Believe in `state` what an explanation says of the frame and of earlier motions.
 
-        If either is new, all observations and held objects are mapped anew.
+        If either is new, all observations and held objects are mapped anew, and objects are forgotten that are neither
+        in hand nor were ever seen to move.
         """
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
@@ -233,7 +278,11 @@ class Tracker:
         self.state = _remapped(replace(state, frame=chosen.frame), under)
 
     def _learn(self, judged: Judgement) -> None:
-        """Keep what was learnt while an explanation was chosen: searches, hypotheses, other ends of the motion."""
+        """Keep in `state` what was learnt while an explanation was chosen: searches, hypotheses, ends of the motion.
+
+        The other ends of the newest motion are stored in Utak's own frame, each with its probability after the
+        observation; they are not stored when the chosen explanation is in another frame.
+        """
         state, chosen = self.state, judged.explanation
         if judged.hypotheses is not None:
             state = replace(state, hypotheses=judged.hypotheses)
@@ -247,7 +296,11 @@ class Tracker:
         self.state = replace(state, motions=motions)
 
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
-        """Remember a straight motion, for it may have ended otherwise than believed. name : of the object in hand."""
+        """Remember a straight motion in `state`, for it may have ended otherwise than believed.
+
+        The oldest is forgotten when more than MAX_MOTIONS are remembered. name : of the object in hand; None for a
+        walk.
+        """
         state = self.state
         motion = MotionHypothesis(
             len(state.observations), (command.east, command.north), state.hypotheses, in_hand=name
@@ -255,13 +308,24 @@ class Tracker:
         self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _declare_floor(self, held: HeldObject) -> None:
-        """Believe that there is floor where an object lies."""
+        """Settle all squares on which an object lies, or may lie, as free in the occupancy map."""
         occupancy, patch = self.state.occupancy, held.possible
         squares = occupancy.squares(patch.west, patch.south, patch.mask)
         occupancy.declare(squares, FREE, len(self.state.observations) - 1)
 
     def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
-        """Integrate an explained observation into the map, without what the held objects show of themselves."""
+        """Integrate an explained observation into the map, without what the held objects show of themselves.
+
+        Parameters
+        ----------
+        explanation : the chosen one, applied already; its place is where the observation was made, map frame.
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+
+        Returns
+        -------
+        Accommodation
+            The explanation, and how each of the 160 fields was accounted for before the observation was integrated.
+        """
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
@@ -285,16 +349,25 @@ class Tracker:
 
 
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
-    """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped."""
+    """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped.
+
+    Dropped are blocked and suspected squares, and the completions; they stay where the map is the same object.
+
+    under : the map and the held objects in the new frame.
+    """
     if under.occupancy is not state.occupancy:
         state = replace(state, blocked_squares=frozenset(), suspected_squares=frozenset(), completions=None)
     return replace(state, occupancy=under.occupancy, held_objects=dict(under.held_objects))
 
 
 def _standing_place(state: TrackerState, place: Position) -> Position:
-    """Return the place to believe, map frame: on the side of a grid line where nothing stands, snapped to the middle.
+    """Return the place to believe, (x, y) in squares, map frame: on the side of a grid line where nothing stands.
 
-    A motion that a contact stopped ends on a grid line, and the observation may have been made from either side.
+    A motion that a contact stopped ends on a grid line, and the observation may have been made from either side. A
+    coordinate within 2e-6 squares of the middle of a square is moved onto it. Where something stands on all sides, the
+    place of the observation stays.
+
+    place : where the observation was made, map frame.
     """
     sides, occupancy = [place, *observation_places(place)], state.occupancy
     squares = [(math.floor(x), math.floor(y)) for x, y in sides]

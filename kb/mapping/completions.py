@@ -36,6 +36,8 @@ SceneKey = tuple[int | bytes, ...]  # all that determines the samples of a scene
 class CompletionTask(NamedTuple):
     """A scene to be drawn: a part of the map that is independent of all others.
 
+    Arrays are [row, column], row 0 in the south.
+
     Attributes
     ----------
     rows, columns : slice
@@ -46,7 +48,7 @@ class CompletionTask(NamedTuple):
     first : (h, w) int8
         Where a sample begins that was not drawn before: 1 where a square is more likely occupied than not.
     counts : Counts
-        The counts of the squares to be drawn alone, with flat indices of the part.
+        The counts of the squares to be drawn alone, with flat indices of the part: row * w + column.
     """
 
     rows: slice
@@ -56,13 +58,18 @@ class CompletionTask(NamedTuple):
     counts: Counts
 
     def told(self, view: MapView) -> SceneKey:
-        """Return a key of all that determines its samples, its place included: equal keys mean equal scenes."""
+        """Return a key of all that determines its samples, its place included: equal keys mean equal scenes.
+
+        view : the map view on whose arrays the scene lies.
+        """
         arrays = (self.ground, *self.counts)
         return view.west + self.columns.start, view.south + self.rows.start, *(array.tobytes() for array in arrays)
 
 
 class Completions(NamedTuple):
-    """Completions of a map.
+    """Completions of a map: sampled maps that agree with all counts.
+
+    Arrays are [row, column], row 0 in the south.
 
     Attributes
     ----------
@@ -71,9 +78,9 @@ class Completions(NamedTuple):
     ground : (rows, columns) int8
         What was given of each square: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
     images : (MAX_COMPLETIONS, rows, columns) int8
-        The completions: 1 where a square is occupied.
+        The completions: 1 where a square is occupied, 0 where it is free or was never seen.
     scenes : mapping
-        Key of a scene -> its samples at the n squares drawn, (MAX_COMPLETIONS, n) int8.
+        Key of a scene -> its samples at the n squares drawn, (MAX_COMPLETIONS, n) int8, in raster order.
     """
 
     west: int
@@ -85,7 +92,7 @@ class Completions(NamedTuple):
     def at(self, x: int, y: int) -> Bools | None:
         """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool.
 
-        None where the square was never seen.
+        None where the square was never seen, or lies beyond the arrays.
         """
         row, column = y - self.south, x - self.west
         inside = 0 <= row < self.ground.shape[0] and 0 <= column < self.ground.shape[1]
@@ -95,7 +102,11 @@ class Completions(NamedTuple):
         return shown
 
     def over(self, scene: CompletionTask, view: MapView) -> "Completions":
-        """Return the part that lies where a scene of another map view lies; UNSEEN_SQUARE beyond these completions."""
+        """Return the part that lies where a scene of another map view lies, without samples of scenes.
+
+        Squares beyond these completions are UNSEEN_SQUARE. scene : the scene; its shape is that of the result. view :
+        the map view on whose arrays the scene lies, same map frame.
+        """
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
         ground: OccupancyImage = np.full(scene.ground.shape, UNSEEN_SQUARE, np.int8)
         images = np.zeros((len(self.images), *ground.shape), np.int8)
@@ -114,6 +125,8 @@ NO_COMPLETIONS = Completions(0, 0, np.zeros((0, 0), np.int8), np.zeros((MAX_COMP
 def given_squares(view: MapView) -> OccupancyImage:
     """Return what is given when completions are drawn: settled squares, and the interior of what is surely alike.
 
+    That interior are squares that are probably occupied, or free, as are all others within INTERIOR_DEPTH squares.
+
     Parameters
     ----------
     view : MapView
@@ -122,7 +135,7 @@ def given_squares(view: MapView) -> OccupancyImage:
     Returns
     -------
     (rows, columns) int8
-        FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE.
+        On the arrays of the view: FREE, OCCUPIED, DRAWN (to be drawn) or UNSEEN_SQUARE.
     """
     ground = np.where(view.seen, np.where(view.state == OPEN, DRAWN, view.state), UNSEEN_SQUARE).astype(np.int8)
     drawn = ground == DRAWN
@@ -132,14 +145,14 @@ def given_squares(view: MapView) -> OccupancyImage:
 
 
 def draw_completions(view: MapView, ground: OccupancyImage, before: Completions) -> Completions:
-    """Draw completions that agree with all counts.
+    """Draw MAX_COMPLETIONS (12) completions that agree with the counts, and return them on the arrays of the view.
 
     Parameters
     ----------
     view : MapView
         The map.
     ground : (rows, columns) int8
-        What is given, as of `given_squares`.
+        What is given of each square of the view, as `given_squares` returns it: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
     before : Completions
         Those of the impression before, in the same frame; scenes of which nothing new is known are taken from them.
     """
@@ -154,7 +167,11 @@ def draw_completions(view: MapView, ground: OccupancyImage, before: Completions)
 
 
 def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
-    """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8."""
+    """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8, 1 where occupied.
+
+    The squares come in raster order. before : earlier completions at the place of the scene; the samples begin with
+    them.
+    """
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN_SQUARE)
     sweeps, hot = NEXT_SCHEDULE if known.sum() > open_.sum() / 2 else FIRST_SCHEDULE
@@ -164,7 +181,10 @@ def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
 
 
 def _resample(costs: Floats) -> Longs:
-    """Return which samples are kept, (MAX_COMPLETIONS,) indices: cheaper ones more often (systematic resampling)."""
+    """Return which samples are kept, (MAX_COMPLETIONS,) indices, in ascending order and with repetitions.
+
+    Cheaper ones are kept more often (systematic resampling). costs : (n,), one for each sample.
+    """
     weight = np.cumsum(np.exp(-COST_WEIGHT * (costs - costs.min())))
     marks = (np.arange(MAX_COMPLETIONS) + 0.5) / MAX_COMPLETIONS
     kept: Longs = np.searchsorted(weight, marks * weight[-1])
@@ -172,14 +192,14 @@ def _resample(costs: Floats) -> Longs:
 
 
 def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
-    """Yield the independent scenes of a map.
+    """Yield the independent scenes of a map; none where no square is to be drawn.
 
     Parameters
     ----------
     view : MapView
         The map.
     ground : (rows, columns) int8
-        What is given, as of `given_squares`.
+        What is given of each square of the view, as `given_squares` returns it: FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE.
     """
     open_ = ground == DRAWN
     counts = _counts_of_drawn(view.counts, ground)
@@ -205,7 +225,12 @@ def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
 
 
 def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
-    """Return what the fields that cover squares to be drawn say of these squares alone."""
+    """Return what the fields that cover squares to be drawn say of these squares alone; other fields are left out.
+
+    Flat indices stay those of the ground: row * columns + column.
+
+    counts : of all fields, flat indices of the ground. ground : (rows, columns) int8, what is given of each square.
+    """
     under = ground.ravel()[counts.where]
     weight = np.where(under == DRAWN, counts.weight, np.int16(0))
     full = np.where(under == OCCUPIED, counts.weight, np.int16(0)).sum(1, dtype=np.int16)
@@ -214,7 +239,12 @@ def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
 
 
 def _joined_labels(near: Components, counts: Counts) -> Labels:
-    """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label."""
+    """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label.
+
+    Labels are 0 for no part, and not consecutive.
+
+    near : the parts before they are joined. counts : of the fields, with flat indices row * columns + column.
+    """
     under = near.labels.ravel()[counts.where]
     used = counts.weight > 0
     one = np.where(used, under, near.number + 1).min(1, initial=near.number + 1)
@@ -233,7 +263,10 @@ def _joined_labels(near: Components, counts: Counts) -> Labels:
 
 
 def _interior(mask: Bools, depth: int) -> Bools:
-    """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it."""
+    """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it: a mask like it.
+
+    Beyond its edge the mask is taken to go on as at the edge.
+    """
     for axis in (0, 1):
         framed = np.pad(mask, [(depth, depth) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
         parts = [np.take(framed, np.arange(k, k + mask.shape[axis]), axis) for k in range(2 * depth + 1)]

@@ -50,7 +50,7 @@ class CompletionSummary(NamedTuple):
     Attributes
     ----------
     pictures : Completions
-        The completions.
+        The completions; all arrays are on theirs, [row, column] with row 0 in the south.
     """
 
     pictures: Completions
@@ -61,11 +61,13 @@ class CompletionSummary(NamedTuple):
         Parameters
         ----------
         by_counts : (rows, columns) float32
-            The probability by counts alone. It weighs as much as one more completion.
+            The probability by counts alone, 0 to 1, on the arrays of the completions. It weighs as much as one more
+            completion.
 
         Returns
         -------
         (rows, columns) float32
+            From 0 to 1. Where nothing was to be drawn it is `by_counts`.
         """
         ground, images = self.pictures.ground, self.pictures.images
         shares = (images.sum(0, dtype=np.float32) + by_counts) / np.float32(len(images) + 1)
@@ -83,6 +85,8 @@ class CompletionSummary(NamedTuple):
         Returns
         -------
         (rows, columns) float64
+            From 0 to 1; higher where more completions show a part of that shape, or a part that may be the seen end of
+            one.
         """
         ground, images = self.pictures.ground, self.pictures.images
         heat = np.zeros(ground.shape)
@@ -98,22 +102,23 @@ NO_COMPLETION_SUMMARY = CompletionSummary(NO_COMPLETIONS)
 
 
 def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETION_SUMMARY) -> CompletionSummary:
-    """Draw completions of a map, and summarise them.
+    """Draw completions of a map, and return them with what they have in common.
 
     Parameters
     ----------
     view : MapView
         The map.
     before : CompletionSummary
-        Those of the impression before, in the same frame.
+        Those of the impression before, in the same frame; none by default.
     """
     return CompletionSummary(draw_completions(view, given_squares(view), before.pictures))
 
 
 def likeness(found: Blobs, shape: str) -> Floats:
-    """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 to 1.
+    """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 (not at all) to 1.
 
-    shape : as for `CompletionSummary.likely`.
+    found : the edge-connected occupied parts of a completion.
+    shape : square, disc, brick, rectangle; any other word stands for all other shapes.
     """
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
     rectangular = (ratio + 1 / ratio) / 12
@@ -136,13 +141,25 @@ def likeness(found: Blobs, shape: str) -> Floats:
 
 
 def end_probability(found: Blobs) -> Floats:
-    """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1."""
+    """Return how likely each of n parts ends where its squares border on unseen ones, (n,) from 0 to 1.
+
+    It is 1 for a part that is seen all around, less by a factor for each side of a square beyond which nothing was
+    seen, and 0 for one that is long enough to be a wall.
+
+    found : the edge-connected occupied parts of a completion.
+    """
     wall = (found.outward > 0) & (found.area >= WALL_ELONGATION * found.outward)
     return np.where(wall, 0.0, END_PROBABILITY**found.outward)
 
 
 def part_seen_probability(found: Blobs) -> Floats:
-    """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1."""
+    """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1.
+
+    It is 0 for a part that goes on unseen along one side of a square at most, along too many, or that has too great an
+    area for those sides.
+
+    found : the edge-connected occupied parts of a completion.
+    """
     compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
     may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
     answer: Floats = np.where(may_be, OBJECT_PROBABILITY * chance_by_seen_squares(found.area), 0.0)
@@ -155,12 +172,12 @@ def chance_by_seen_squares(squares: Longs) -> Floats:
     Parameters
     ----------
     squares : (n,) int64
-        How many of its squares are seen.
+        How many of its squares are seen: a count.
 
     Returns
     -------
     (n,) float64
-        From 0 to 1.
+        From 0 to 1; the more squares are seen the likelier.
     """
     parts = SEEN_PART_PROBABILITY
     answer: Floats = np.select([squares >= least for least, _ in parts], [chance for _, chance in parts])
@@ -168,16 +185,22 @@ def chance_by_seen_squares(squares: Longs) -> Floats:
 
 
 def _not_slender(ratio: Floats) -> Floats:
-    """Return how well a ratio of length to width agrees with a brick, 0 to 1."""
+    """Return how well a ratio agrees with a brick: 1 up to 4, less beyond, but at least MIN_LIKENESS (0.1).
+
+    ratio : length divided by width of each of n parts, (n,).
+    """
     return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
 
 def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
-    """Return 1 for values up to a limit, and less the further a value is above it by the tolerance."""
+    """Return 1 for values up to a limit, and less, down to 0, the further a value is above it; an array like `value`.
+
+    tolerance : above the limit, at which the result is 1 / e.
+    """
     return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 
 def _agreement(error: Floats, tolerance: Floats | float) -> Floats:
-    """Return exp(-(error / tolerance)^2): 1 for no error."""
+    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`."""
     answer: Floats = np.exp(-((error / tolerance) ** 2))
     return answer

@@ -24,12 +24,15 @@ class ObstacleChance:
     Parameters
     ----------
     occupancy : OccupancyMap
-        The map; it grows where a square beyond it is asked for.
+        The map; it grows where a square beyond it is asked for. A probability once asked for stays, whatever is settled
+        later.
     completions : Completions, optional
-        Completions of the map. Without them counts alone give the probability of an open square.
+        Completions of the map (sampled maps that agree with all counts). Without them counts alone give the probability
+        of an open square.
     """
 
     def __init__(self, occupancy: OccupancyMap, completions: Completions | None = None) -> None:
+        """Begin with no probability computed."""
         self._occupancy = occupancy
         self._completions = completions
         self._known: dict[Square, Floats] = {}
@@ -45,14 +48,18 @@ class ObstacleChance:
         Returns
         -------
         (m,) float64
-            One value for each completion; (1,) where counts alone tell, or where nothing was seen.
+            One value, 0 to 1, for each completion; (1,) where the square is settled (0 or 1), where there are no
+            completions, or where nothing was seen (UNSEEN_PROBABILITY).
         """
         if square not in self._known:
             self._known[square] = self._probabilities(square)
         return self._known[square]
 
     def _probabilities(self, square: Square) -> Floats:
-        """Return the probability that a square is occupied, by each completion."""
+        """Return the probability that a square (x, y) of the map frame is occupied, by each completion; not yet kept.
+
+        (m,) float64, or (1,) where the square is settled, where there are no completions, or where nothing was seen.
+        """
         self._occupancy.make_room(*square)
         index = self._occupancy.index(*square)
         state = self._occupancy.state[index]
@@ -67,14 +74,17 @@ class ObstacleChance:
         return np.where(shown, 1.0 - wrong, wrong)
 
     def _next_to_occupied(self, square: Square) -> bool:
-        """Return whether some completion shows an edge neighbour of a square occupied."""
+        """Return whether some completion shows an edge neighbour of a square (x, y) of the map frame occupied."""
         assert self._completions is not None
         x, y = square
         shown = (self._completions.at(x + dx, y + dy) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)))
         return any(one is not None and one.any() for one in shown)
 
     def odds(self, square: Square) -> float:
-        """Return the log odds that an open square (x, y) of the map frame is occupied."""
+        """Return the log odds (natural logarithm) that an open square (x, y) of the map frame is occupied.
+
+        A settled square has none: it raises ValueError or ZeroDivisionError.
+        """
         likely = float(self.occupied(square).mean())
         return math.log(likely / (1.0 - likely))
 
@@ -86,7 +96,12 @@ class ObstacleChance:
         Parameters
         ----------
         groups : sequence of iterables of (x, y)
-            The squares that the motion enters, group after group; map frame.
+            The squares that the motion enters, group after group in the order of the way; map frame.
+
+        Returns
+        -------
+        list of float
+            In the same order, 0 to 1. They sum to 1 at most; the rest is that the motion meets nothing.
         """
         free, found = np.ones(1), []
         for squares in groups:

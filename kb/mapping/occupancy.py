@@ -39,12 +39,14 @@ NO_COUNTS = Counts(
 class MapView(NamedTuple):
     """A snapshot of the part of the map that was seen, with a margin of unseen squares.
 
+    Arrays are [row, column], row 0 in the south, column 0 in the west.
+
     Attributes
     ----------
     west, south : int
         The square at [0, 0], map frame.
     probability : (rows, columns) float32
-        That a square is occupied; 0.5 where nothing is known.
+        That a square is occupied, 0 to 1; 0.5 where nothing is known.
     state : (rows, columns) int8
         OPEN, FREE or OCCUPIED: what the counts settle.
     seen : (rows, columns) bool
@@ -52,12 +54,12 @@ class MapView(NamedTuple):
     settled_by : (rows, columns) int16
         The number of the impression that settled a square, or -1.
     counts : Counts
-        The fields that still say something, with flat indices of this view.
+        The fields that still say something, with flat indices of this view: row * columns + column.
     sure : bool
-        Whether what is settled is beyond doubt: not while several frames may be right, or impressions contradict
-        each other.
+        Whether what is settled is beyond doubt: not while several frames may be right, or impressions contradict each
+        other.
     by_counts : (rows, columns) float32 or None
-        That a square is occupied, by counts alone, where `probability` draws on completions, too.
+        That a square is occupied, by counts alone, where `probability` draws on completions, too; else None.
     """
 
     west: int
@@ -71,11 +73,17 @@ class MapView(NamedTuple):
     by_counts: NDArray[np.float32] | None = None
 
     def locate(self, x: float, y: float) -> tuple[int, int]:
-        """Return the index [row, column] of the square in which a point (x, y) of the map frame lies."""
+        """Return the index [row, column] of the square in which a point (x, y) of the map frame lies.
+
+        It is outside of the arrays, possibly negative, for a point outside of the view. x, y : in squares.
+        """
         return math.floor(y) - self.south, math.floor(x) - self.west
 
     def part(self, rows: slice, columns: slice) -> "MapView":
-        """Return the view of some rows and columns alone, without the counts."""
+        """Return the view of some rows and columns alone, without the counts; its arrays are shared with this one.
+
+        rows, columns : with a start that is not negative. `by_counts` stays that of the whole view.
+        """
         return self._replace(
             west=self.west + columns.start,
             south=self.south + rows.start,
@@ -89,6 +97,8 @@ class MapView(NamedTuple):
 
 class OccupancyMap:
     """The map, which grows. Arrays are [row, column]; square (x, y) of the map frame lies at [y - south, x - west].
+
+    Row 0 is in the south. A flat index is row * columns + column, and changes when the map grows.
 
     Attributes
     ----------
@@ -105,6 +115,7 @@ class OccupancyMap:
     """
 
     def __init__(self) -> None:
+        """Begin with an empty map about the square (0, 0) in which the robot woke: all is open and unseen."""
         self.west = self.south = -GROWTH_MARGIN
         shape = (2 * GROWTH_MARGIN, 2 * GROWTH_MARGIN)
         self.state = np.full(shape, OPEN, np.int8)
@@ -121,11 +132,14 @@ class OccupancyMap:
 
     @property
     def logit(self) -> Logits:
-        """The log odds that an open square is occupied, (rows, columns) float32; 0 where nothing was seen."""
+        """The log odds (natural logarithm) that an open square is occupied, (rows, columns) float32.
+
+        It is 0 where nothing was seen; at settled squares it means nothing.
+        """
         return self._odds.logit
 
     def copy(self) -> "OccupancyMap":
-        """Return an independent copy, to which more impressions can be added."""
+        """Return an independent copy, to which more impressions can be added; neither changes the other."""
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
@@ -138,9 +152,14 @@ class OccupancyMap:
         Parameters
         ----------
         places : iterable of (x, y)
-            The places, map frame.
+            The places, in squares, map frame; the map grows to hold what is in sight of them.
         margin : int
-            Squares around that part which are included, too.
+            Squares around that part which are included, too, as far as the map goes.
+
+        Raises
+        ------
+        IndexError
+            No square was seen yet.
         """
         squares = [(math.floor(x), math.floor(y)) for x, y in places]
         for square in squares:
@@ -161,17 +180,27 @@ class OccupancyMap:
         return MapView(west, south, probability, state, seen, self.settled_by[part].copy(), counts)
 
     def _counts(self, top: int, left: int, columns: int) -> Counts:
-        """Return the fields, with flat indices of a part of the map that begins at [top, left], `columns` wide."""
+        """Return the fields that still say something, with flat indices of a part of the map.
+
+        top, left : row and column of the map at which the part begins; top is its south. columns : the width of the
+        part.
+        """
         rows, places = np.divmod(self._where, self.state.shape[1])
         where = np.where(self._weight > 0, (rows - top) * columns + places - left, 0).astype(np.int32)
         return Counts(where, self._weight, self._low, self._high)
 
     def index(self, x: int, y: int) -> tuple[int, int]:
-        """Return the index [row, column] of a square (x, y) of the map frame."""
+        """Return the index [row, column] of a square (x, y) of the map frame.
+
+        It is outside of the arrays, possibly negative, for a square outside of the map: see `make_room`.
+        """
         return y - self.south, x - self.west
 
     def squares(self, west: int, south: int, mask: Bools) -> Bools:
-        """Return a small mask, whose [0, 0] is the square (west, south) of the map frame, on the arrays of the map."""
+        """Return a small mask on the arrays of the map: (rows, columns) bool, like `state`.
+
+        west, south : the square of the map frame at [0, 0] of `mask`. The mask must lie within the map.
+        """
         whole = np.zeros(self.state.shape, np.bool_)
         row, column = self.index(west, south)
         whole[row : row + mask.shape[0], column : column + mask.shape[1]] = mask
@@ -180,12 +209,12 @@ class OccupancyMap:
     # -- impressions ---------------------------------------------------------------------------------
 
     def misfits(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> Bools:
-        """Return which fields contradict the map if the robot stands on a square.
+        """Return which fields contradict the map if the robot stands on a square; the map grows to hold all in sight.
 
         Parameters
         ----------
         samples : Samples
-            The squares that each field samples.
+            The squares that each field samples, relative to the robot's square.
         ranges : (160, 2) int16
             The least and the greatest count of occupied squares under each field.
         x, y : int
@@ -204,10 +233,16 @@ class OccupancyMap:
     def clashes(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int, whether: bool = False) -> int:
         """Return how many fields, of an impression and of all before, cannot be right if it was received on a square.
 
+        The map grows to hold all in sight; nothing is settled. 0 means that nothing contradicts.
+
         Parameters
         ----------
-        samples, ranges, x, y
-            As for `misfits`.
+        samples : Samples
+            The squares that each field samples, relative to the robot's square.
+        ranges : (160, 2) int16
+            The least and the greatest count of occupied squares under each field.
+        x, y : int
+            The robot's square, map frame.
         whether : bool
             Whether to leave out the fields of impressions before if some field of this one cannot be right.
         """
@@ -229,12 +264,14 @@ class OccupancyMap:
 
         Parameters
         ----------
-        samples, ranges
-            As for `misfits`.
+        samples : Samples
+            The squares that each field samples, relative to the robot's square.
+        ranges : (160, 2) int16
+            The least and the greatest count of occupied squares under each field.
         x, y : int
             The square on which it was received, map frame.
         number : int
-            The number of the impression.
+            The number of the impression; squares that it settles are credited to it.
         """
         arrays = (samples.columns, samples.rows, samples.weight, ranges)
         seen_here: ObservationKey = (x, y, *(array.tobytes() for array in arrays))
@@ -257,7 +294,10 @@ class OccupancyMap:
         self._observations.add(seen_here)
 
     def withdraw(self, squares: Ints) -> None:
-        """Forget what was settled of some squares (flat indices), and all fields that cover one of them."""
+        """Forget what was settled of some squares, and all fields that cover one of them; the squares are open then.
+
+        squares : (n,) int32, flat indices on the map: row * columns + column.
+        """
         self._observations.clear()
         doubtful = np.zeros(self.state.size, np.bool_)
         doubtful[squares] = True
@@ -275,7 +315,7 @@ class OccupancyMap:
         Parameters
         ----------
         x, y : int
-            The square, map frame.
+            The square, map frame; the map must have room for it.
         number : int
             The number of the impression received there.
         """
@@ -287,6 +327,8 @@ class OccupancyMap:
 
     def declare(self, mask: Bools, value: int, number: int) -> None:
         """Settle squares by other knowledge than counts, for example the place of an object that was pushed.
+
+        What was settled of them, and all fields that cover one of them, are forgotten.
 
         Parameters
         ----------
@@ -304,9 +346,11 @@ class OccupancyMap:
     # -- solving ---------------------------------------------------------------------------------
 
     def window(self, west: int, south: int, shape: tuple[int, ...]) -> NDArray[np.int8]:
-        """Return the states of a (rows, columns) part of the map frame from a square (west, south) on.
+        """Return the states of a part of the map, (rows, columns) int8, row 0 in the south; a copy.
 
         Squares beyond the map are OPEN.
+
+        west, south : the square of the map frame at [0, 0]. shape : (rows, columns) of the part.
         """
         row, column = self.index(west, south)
         part = np.full(shape, OPEN, np.int8)
@@ -337,29 +381,42 @@ class OccupancyMap:
 
     @property
     def _fields(self) -> tuple[Ints, NDArray[np.int16], NDArray[np.int16], NDArray[np.int16]]:
-        """All fields that still say something, as the kernels take them: where, weight, low, high."""
+        """The fields that still say something, as the kernels take them: where, weight, low, high.
+
+        where : (n, 16) int32, flat indices of the squares under each of n fields. weight : (n, 16) int16, how often
+        each of them counts; 0 is padding. low, high : (n,) int16, the least and the greatest count of occupied squares.
+        """
         return self._where, self._weight, self._low, self._high
 
     def _informative(self) -> Bools:
-        """Return which fields still say something of open squares."""
+        """Return which fields still say something of open squares, (n,) bool, in the order of the fields.
+
+        A field says nothing when all its squares are settled, or when any number of its open squares may be occupied.
+        """
         _, weight, low, high = remaining_counts(self.state.ravel(), *self._fields)
         return (weight > 0) & ((low > 0) | (high < weight))
 
     def _keep(self, rows: Bools) -> None:
-        """Drop all fields but those of a mask."""
+        """Drop all fields but those of a mask. rows : (n,) bool, one for each field."""
         self._where, self._weight = self._where[rows], self._weight[rows]
         self._low, self._high, self._fresh = self._low[rows], self._high[rows], self._fresh[rows]
 
     # -- growth ----------------------------------------------------------------------------
 
     def _under(self, samples: Samples, x: int, y: int) -> Ints:
-        """Return the flat indices of the squares sampled from square (x, y), (160, 16)."""
+        """Return the flat indices on the map of the squares sampled from square (x, y), (160, 16) int32.
+
+        x, y : map frame. The map must have room for all in sight of it.
+        """
         columns = self.state.shape[1]
         answer: Ints = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
         return answer
 
     def make_room(self, x: int, y: int) -> None:
-        """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in."""
+        """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in.
+
+        `west` and `south` change, and with them all indices, when rows or columns are added there.
+        """
         row, column = self.index(x, y)
         rows, columns = self.state.shape
         south, west = max(0, SIGHT_RANGE - row), max(0, SIGHT_RANGE - column)
@@ -368,7 +425,7 @@ class OccupancyMap:
             self._grow(*(n + GROWTH_MARGIN if n else 0 for n in (south, north, west, east)))
 
     def _grow(self, south: int, north: int, west: int, east: int) -> None:
-        """Add so many rows and columns on each side."""
+        """Add so many rows (south, north) and columns (west, east) of open, unseen squares on each side."""
         rows, columns = np.divmod(self._where, self.state.shape[1])
         widths = ((south, north), (west, east))
         self.state = np.pad(self.state, widths, constant_values=OPEN)
@@ -384,6 +441,13 @@ def _fill_gaps(probability: NDArray[np.float32], seen: Bools) -> None:
 
     Their probability is the mean of those neighbours. In a turned frame the retina skips some squares, but never two
     adjacent ones.
+
+    Parameters
+    ----------
+    probability : (rows, columns) float32
+        That each square is occupied, 0 to 1; changed at the gaps.
+    seen : (rows, columns) bool
+        Which squares were seen; True at the gaps afterwards.
     """
     known = np.pad(seen, 1).astype(np.float32)
     likely = np.pad(np.where(seen, probability, 0), 1)

@@ -25,10 +25,12 @@ Logits = NDArray[np.float32]
 class Fields(NamedTuple):
     """Fields, and the states of squares when the odds were fitted to them; as geometry.counts.settle takes them.
 
+    Flat indices are row * columns + column on the arrays of the map.
+
     Attributes
     ----------
     state : (size,) int8
-        What was settled, by flat index of the square.
+        What was settled, by flat index of the square: OPEN (-1), FREE (0) or OCCUPIED (1).
     where : (n, 16) int32
         Flat indices of the squares under each field.
     weight : (n, 16) int16
@@ -51,13 +53,15 @@ class Forgotten(NamedTuple):
 
 
 class Grown(NamedTuple):
-    """A change of the map: rows and columns were added, ((south, north), (west, east))."""
+    """A change of the map: numbers of rows and columns that were added, ((south, north), (west, east))."""
 
     widths: tuple[tuple[int, int], tuple[int, int]]
 
 
 class Odds:
-    """The log odds that squares are occupied, as some changes leave them; computed when they are asked for.
+    """The log odds (natural logarithm) that squares are occupied, after some changes; computed when they are asked for.
+
+    Arrays are those of the map: [row, column], row 0 in the south.
 
     Parameters
     ----------
@@ -68,17 +72,24 @@ class Odds:
     """
 
     def __init__(self, logit: Logits, changes: tuple[Fields | Forgotten | Grown, ...] = ()) -> None:
+        """Begin with nothing computed; `logit` is not changed."""
         self._before, self._changes = logit, changes
 
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
-        """Return the odds after one more change."""
+        """Return the log odds after one more change, to be computed when they are asked for; these stay as they are.
+
+        change : fields to which open squares are fitted, squares of which all is forgotten, or rows and columns added.
+        """
         if "logit" in self.__dict__:
             return Odds(self.logit, (change,))
         return Odds(self._before, (*self._changes, change))
 
     @cached_property
     def logit(self) -> Logits:
-        """The log odds, (rows, columns) float32; 0 where nothing was seen."""
+        """The log odds (natural logarithm), (rows, columns) float32, within -6 to 6; 0 where nothing was seen.
+
+        At settled squares they mean nothing.
+        """
         logit = self._before.copy()
         for change in self._changes:
             if isinstance(change, Grown):
@@ -91,7 +102,11 @@ class Odds:
 
 
 def _fit(logits: Logits, fields: Fields) -> None:
-    """Fit the odds of open squares to the mean counts of the fields, in place."""
+    """Fit the odds of open squares to the mean counts of the fields, in place.
+
+    logits : (rows, columns) float32, log odds; changed at the open squares under the fields. fields : flat indices of
+    it.
+    """
     where, weights = fields.where, fields.weight
     open_, weight, low, high = remaining_counts(*fields)
     if not open_.any():
@@ -113,7 +128,7 @@ def _fit(logits: Logits, fields: Fields) -> None:
 
 
 def _logit(p: Floats) -> Floats:
-    """Return the log odds of probabilities, clipped away from 0 and 1."""
+    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`."""
     p = np.clip(p, MIN_TARGET_SHARE, MAX_TARGET_SHARE)
     answer: Floats = np.log(p / (1 - p))
     return answer

@@ -19,7 +19,7 @@ class Patch(NamedTuple):
     west, south : int
         The square at [0, 0] of the mask, map frame.
     mask : (rows, columns) bool
-        Which squares belong to it.
+        Which squares belong to it; row 0 in the south, column 0 in the west.
     """
 
     west: int
@@ -28,23 +28,23 @@ class Patch(NamedTuple):
 
     @property
     def centre(self) -> XY:
-        """The mean of the centres of its squares, (x, y) in the map frame; it has at least one square."""
+        """The mean of the centres of its squares, (x, y) in squares, map frame; it has at least one square."""
         rows, columns = np.nonzero(self.mask)
         return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
 
     def squares(self) -> set[Square]:
-        """Return its squares (x, y), map frame."""
+        """Return its squares (x, y), that is (column, row) of the map frame; empty when its mask has none."""
         rows, columns = np.nonzero(self.mask)
         return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
 
 
 def patch_of(mask: Bools, view: MapView) -> Patch:
-    """Return the patch of a mask on the view's arrays, cut to its extent.
+    """Return the patch of a mask on the view's arrays, cut to its extent; the mask is copied.
 
     Parameters
     ----------
     mask : (rows, columns) bool
-        At least one square.
+        At least one square; none raises IndexError. Row 0 in the south.
     view : MapView
         The view on whose arrays the mask is.
     """
@@ -54,12 +54,14 @@ def patch_of(mask: Bools, view: MapView) -> Patch:
 
 
 def patch_of_polygon(polygon: Any) -> Patch:
-    """Return the patch of the squares whose open interior meets a polygon.
+    """Return the patch of the squares whose open interior meets a polygon; its mask spans the bounding box.
+
+    A square that the polygon only touches does not belong to it.
 
     Parameters
     ----------
     polygon : shapely Polygon or MultiPolygon
-        In the map frame; not empty.
+        In squares, map frame; not empty.
     """
     x0, y0, x1, y1 = polygon.bounds
     west, south = int(np.floor(x0)), int(np.floor(y0))
@@ -68,7 +70,10 @@ def patch_of_polygon(polygon: Any) -> Patch:
 
 
 def patch_of_squares(squares_: Iterable[Square]) -> Patch:
-    """Return the patch of some squares (x, y) of the map frame, at least one."""
+    """Return the patch of some squares (x, y) of the map frame, cut to their extent.
+
+    squares_ : at least one; none raises ValueError.
+    """
     columns, rows = np.array(sorted(squares_)).T
     west, south = int(columns.min()), int(rows.min())
     mask = np.zeros((int(rows.max()) + 1 - south, int(columns.max()) + 1 - west), np.bool_)

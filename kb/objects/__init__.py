@@ -8,6 +8,6 @@ proportions     whether a rectangle is a square or a brick, as far as its extent
 held_object     an object that the robot has held: its outline, its place, and how exactly both are known
 touches         the colours that were felt, square by square
 
-Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit); `may_be`
-(proportions); `HeldObject` (held_object); `Touches` (touches).
+Public names: `SubcellExtent`, `SideValues` (subcell_extent); `ShapeMeasurer`, `ShapeMeasurement` (shape_fit);
+`possible_rectangle_shapes`, `corrected_shape` (proportions); `HeldObject` (held_object); `Touches` (touches).
 """

@@ -52,22 +52,23 @@ class HeldObject:
     name : str
         The name of its node in the world model.
     polygon : shapely Polygon
-        Its believed outline, where it is believed to lie now; map frame.
+        Its believed outline, where it is believed to lie now; map frame, in squares.
     first : shapely Polygon
         Where it lay when it was first held; map frame.
     slack : float
         How far the true outline may lie from the believed one, in squares.
     full, empty : frozenset of (x, y)
-        Squares that the tolerance leaves open, but that were seen to be occupied, or not, since it last moved.
+        Squares of the map frame that the tolerance `slack` leaves open, but that were seen to be occupied, or not,
+        since it last moved.
     turned : float
         Degrees by which it was turned since it was first held, counter-clockwise positive.
     shape : mapping of str to int
         Shape class -> confidence in percent, from before it was grasped; {} until it is measured anew, if it was found
         to be larger than it seemed.
     colour : str or None
-        The colour felt on it before it was grasped.
+        The colour felt on it before it was grasped; None when it was not felt.
     support : tuple of int
-        Numbers of the impressions that support it; every impression of it is added.
+        Numbers of the impressions, from 0, that support it; every impression of it is added.
     proven : bool
         Whether it was seen to move.
     stuck : int
@@ -115,52 +116,68 @@ class HeldObject:
 
     @property
     def dubious(self) -> bool:
-        """Whether it may well lie elsewhere than believed, or have another outline."""
+        """Whether it may well lie elsewhere than believed, or have another outline.
+
+        So it is when its outline could not be measured in this frame, or a motion left MIN_DUBIOUS_FIELDS fields
+        unexplained.
+        """
         return self.skewed or self.unexplained >= MIN_DUBIOUS_FIELDS
 
     @property
     def play(self) -> float:
-        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding."""
+        """The distance within which the true outline lies of the believed one, in squares; 0 for mere rounding.
+
+        It is the greater one of `slack` and `astray`.
+        """
         play = max(self.slack, self.astray)
         return play if play >= GRID_CORNER_TOLERANCE else 0.0
 
     @property
     def lying_insets(self) -> SubcellExtent | None:
-        """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid."""
+        """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid.
+
+        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the
+        side.
+        """
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
+        """The distance by which each side may lie further in than believed, in squares.
+
+        The values are those of its west, east, south and north sides, as it lies now. Where no insets are known, all
+        are `play`.
+        """
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
 
     @property
     def _quarters(self) -> int | None:
-        """The number of quarter turns that it was turned; None when it lies askew."""
+        """The number of quarter turns by which it was turned, counter-clockwise positive; None when it lies askew."""
         quarters = round(self.turned / 90.0)
         return quarters if abs(self.turned - 90.0 * quarters) < GRID_CORNER_TOLERANCE else None
 
     @cached_property
     def sure(self) -> Patch:
-        """The squares that it surely covers, map frame."""
+        """The squares that it surely covers, map frame; a patch without squares when there are none."""
         inner = self._bound(1) if self.play else self.polygon
         patch = EMPTY_PATCH if inner.is_empty else patch_of_polygon(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
-        """The squares that it covers or may cover, map frame."""
+        """The squares that it covers or may cover, those of `sure` included; map frame."""
         if not self.play:
             return self.sure
         patch = patch_of_polygon(self._bound(-1))
         return patch if not self.empty else patch_of_squares(patch.squares() - self.empty)
 
     def _bound(self, inwards: int) -> Any:
-        """Return the smallest possible outline (inwards 1), or the greatest (-1), map frame.
+        """Return the smallest possible outline (inwards 1), or the greatest (-1): a shapely polygon, map frame.
 
-        What is known of each side is used where no motion ended early.
+        What is known of each side is used where no motion ended early; else the believed outline shrinks or grows by
+        `play` all round. The smallest one may be empty.
         """
         insets = self.lying_insets
         if insets is not None and not self.stopped and self.play <= max(insets.play, COMMAND_ROUNDING):
@@ -177,11 +194,11 @@ class HeldObject:
         Parameters
         ----------
         polygon : shapely Polygon
-            Where it lies now, map frame.
+            Where it lies now, map frame, in squares.
         slack : float
             How far the true outline may lie from that, in squares.
         degrees : float
-            By how much it was turned, counter-clockwise positive.
+            By how much it was turned by this motion, counter-clockwise positive.
         commanded : bool
             Whether the motion went all the way. An object that was stopped lies close beside a grid line as often as
             on it.
@@ -195,7 +212,8 @@ class HeldObject:
         Parameters
         ----------
         polygon : shapely Polygon
-            Where it lies, map frame.
+            Where it lies, map frame, in squares. Corners that lie on corners of the grid but for rounding are moved
+            there.
         otherwise : float
             How far the true outline may lie from that, in squares. An outline with all corners on the grid is taken
             for exact, unless its place is known only roughly or its sides may lie further in or out.
@@ -210,14 +228,22 @@ class HeldObject:
     def seen(self, samples: Samples, ranges: NDArray[np.int16], x: int, y: int) -> "HeldObject":
         """Return the object after an impression: fields of one square show which of its open squares it covers.
 
+        Its open squares are those that it may cover but does not surely cover; `full` and `empty` grow by those that
+        were seen.
+
         Parameters
         ----------
         samples : Samples
-            The squares that each field samples.
+            The squares that each of the 160 fields samples, as offsets from the robot's square, map frame.
         ranges : (160, 2) int16
-            The least and the greatest count of occupied squares under each field.
+            The least and the greatest count of occupied squares under each field, in the order of an impression.
         x, y : int
             The square on which the impression was received, map frame.
+
+        Returns
+        -------
+        HeldObject
+            The object itself when no open square was seen alone in a field.
         """
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
@@ -232,15 +258,19 @@ class HeldObject:
     def told(self, agrees: Callable[[Any], bool]) -> "HeldObject | None":
         """Return the object with the insets of its sides narrowed by an impression.
 
+        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
+        side.
+
         Parameters
         ----------
         agrees : function
-            Returns whether the impression agrees with an outline of the object, map frame.
+            Returns whether the impression agrees with an outline of the object: a shapely Polygon, map frame.
 
         Returns
         -------
         HeldObject or None
-            None when the impression agrees with no outline of possible insets, or when insets say nothing of it.
+            None when the impression agrees with no outline of possible insets, or when insets say nothing of it: it
+            lies askew, its place is known only roughly, or its outline is of another frame.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
@@ -251,10 +281,13 @@ class HeldObject:
     def inset(self, insets: SubcellExtent) -> "HeldObject | None":
         """Return the object with other possible insets, its sides moved to where they are then believed to lie.
 
+        An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to a
+        side.
+
         Parameters
         ----------
         insets : SubcellExtent
-            The possible insets of its sides, as it lay when first held.
+            The possible insets of its sides (west, east, south, north, in squares), as it lay when first held.
 
         Returns
         -------
@@ -276,6 +309,8 @@ class HeldObject:
     def woken(self, far: float) -> "HeldObject":
         """Return the object if the point where the robot woke is known within a distance: it bounds the turns' centre.
 
+        Only `astray` changes: to the length, in squares, by which its rotation moves a point that is so far off.
+
         Parameters
         ----------
         far : float
@@ -284,7 +319,7 @@ class HeldObject:
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":
-        """Return the object after a motion that it was expected to make and did not."""
+        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one."""
         return replace(self, stuck=self.stuck + 1)
 
 
@@ -296,7 +331,12 @@ def held_or_moved(loads: Mapping[str, HeldObject], held: str | None) -> dict[str
     loads : mapping of str to HeldObject
         All objects that were grasped, by name.
     held : str or None
-        The name of the one in hand.
+        The name of the one in hand; None for empty hands.
+
+    Returns
+    -------
+    dict of str to HeldObject
+        The objects by name, in the order of `loads`.
     """
     return {name: load for name, load in loads.items() if load.proven or name == held}
 
@@ -307,13 +347,21 @@ def snap_to_grid(polygon: Any) -> Any:
     Parameters
     ----------
     polygon : shapely Polygon
-        In the map frame.
+        In the map frame, in squares; corners of the grid have whole coordinates.
+
+    Returns
+    -------
+    shapely Polygon
+        The polygon itself when any of its corners lies off the grid.
     """
     return shapely.transform(polygon, np.rint) if is_grid_aligned(polygon) else polygon
 
 
 def is_grid_aligned(polygon: Any) -> bool:
-    """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid."""
+    """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid.
+
+    Corners of the grid have whole coordinates, in squares; they may be missed by less than GRID_CORNER_TOLERANCE.
+    """
     points = shapely.get_coordinates(polygon)
     return bool(np.abs(points - np.rint(points)).max() < GRID_CORNER_TOLERANCE)
 
@@ -324,21 +372,30 @@ def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> flo
     Parameters
     ----------
     polygon : shapely Polygon
-        The believed outline, map frame.
+        The believed outline, map frame, in squares; its corners are on the grid when their coordinates are whole.
     otherwise : float
-        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact: its image
-        shows it exactly.
+        The tolerance of an outline off the grid, in squares. One with all corners on the grid is exact, so the result
+        is 0: its image shows it exactly.
     """
     return 0.0 if is_grid_aligned(polygon) else max(otherwise, COMMAND_ROUNDING)
 
 
 def initial_insets(polygon: Any) -> SubcellExtent | None:
-    """Return the possible insets of the sides of an object that never moved; None when it is not on the grid."""
+    """Return the possible insets of the sides of an object that never moved; None when it is not on the grid.
+
+    `polygon` is its believed outline, a shapely Polygon, map frame, or None when there is none; then the result is
+    None. On the grid every side may lie from 0 to less than 1 square further in.
+    """
     return SubcellExtent() if polygon is not None and is_grid_aligned(polygon) else None
 
 
 def initial_short(polygon: Any) -> SideValues:
-    """Return by how much further in the sides of an object that never moved may lie than its outline, in squares."""
+    """Return by how much further in the sides of an object that never moved may lie than its outline, in squares.
+
+    The values are those of west, east, south and north. `polygon` is its believed outline, a shapely Polygon, map
+    frame. All are 0 when it is None, 1 (a side lies less than that further in) when it lies on the grid, else
+    OUTLINE_TOLERANCE.
+    """
     if polygon is None:
         return NO_INSETS
     insets = initial_insets(polygon)
@@ -350,10 +407,12 @@ def subtract_held_objects(
 ) -> tuple[Samples, NDArray[np.int16]]:
     """Subtract objects that were held from an impression, so that it speaks of all else alone.
 
+    No argument is changed.
+
     Parameters
     ----------
     samples : Samples
-        The squares that each field samples.
+        The squares that each of the 160 fields samples, as offsets from the robot's square, map frame.
     ranges : (160, 2) int16
         The least and the greatest count of occupied squares under each field.
     x, y : int
@@ -364,10 +423,11 @@ def subtract_held_objects(
     Returns
     -------
     samples : Samples
-        The samples without the squares of the objects.
+        The samples without the squares that the objects cover or may cover: their weights are 0.
     ranges : (160, 2) int16
-        The counts of the remaining squares. A greatest count below 0 shows that an object is not where it is believed
-        to be.
+        The counts of the remaining squares: the least one without all that the objects may cover, the greatest one
+        without what they surely cover. A greatest count below 0 shows that an object is not where it is believed to be;
+        a least count may be below 0 as well.
     """
     left, weight = ranges.copy(), samples.weight.copy()
     for load in loads:

@@ -18,7 +18,15 @@ MAX_SIDE_UNCERTAINTY = 0.5  # squares: the length of a side must be known within
 
 
 class SideInterval(NamedTuple):
-    """The length of a side, in squares: as believed, and its least and greatest possible value."""
+    """The length of a side, in squares.
+
+    Attributes
+    ----------
+    believed : float
+        As the outline has it.
+    least, most : float
+        Its least and its greatest possible value, as far as it is known how far its ends lie within their squares.
+    """
 
     believed: float
     least: float
@@ -26,19 +34,20 @@ class SideInterval(NamedTuple):
 
 
 def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInterval, SideInterval] | None:
-    """Return the lengths of the sides of a rectangle parallel to the grid, along x and along y.
+    """Return the lengths of the sides of a rectangle parallel to the grid, in squares: along x, then along y.
 
     Parameters
     ----------
     polygon : shapely Polygon or None
-        The believed outline, map frame.
+        The believed outline, map frame, in squares; None when no outline is known.
     insets : SubcellExtent or None
-        How far its sides lie within their squares.
+        How far its sides may lie within the squares in which it was seen, as it lies now; None when that is not known.
 
     Returns
     -------
     (SideInterval, SideInterval) or None
-        None for all that is no such rectangle.
+        The side from west to east, then that from south to north. None for all that is no rectangle parallel to the
+        grid, and when an argument is None.
     """
     if polygon is None or insets is None:
         return None
@@ -50,7 +59,10 @@ def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInte
 
 
 def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
-    """Return the interval of a side believed to be so long; axis 0 is west-east, axis 2 south-north."""
+    """Return the interval of a side believed to be `length` squares long; axis 0 is west-east, axis 2 south-north.
+
+    The axis is the index of the first of the side's two ends in the order west, east, south, north.
+    """
     here, least, most = (sum(sides[axis : axis + 2]) for sides in (insets.believed, insets.least, insets.most))
     return SideInterval(length, length + here - most, length + here - least)
 
@@ -58,15 +70,21 @@ def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInter
 def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tuple[str, ...]:
     """Return what a rectangle may be, as far as the lengths of its sides are known.
 
+    It may be a square when its sides may differ by at most MAX_SQUARE_DIFFERENCE squares, a brick when they may differ
+    by more.
+
     Parameters
     ----------
-    polygon, insets
-        As for `side_intervals`.
+    polygon : shapely Polygon or None
+        The believed outline, map frame, in squares.
+    insets : SubcellExtent or None
+        How far its sides may lie within the squares in which it was seen, as it lies now.
 
     Returns
     -------
     tuple of str
-        square, brick, or both; () for all that is no rectangle parallel to the grid.
+        ("square",), ("brick",) or ("square", "brick"); () for all that is no rectangle parallel to the grid, and when
+        an argument is None.
     """
     sides = side_intervals(polygon, insets)
     if sides is None:
@@ -79,12 +97,23 @@ def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tup
 def corrected_shape(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
     """Return the confidences in shape classes, corrected where a rectangle is known to be smaller than its squares.
 
+    Then the class that its believed sides show, square or brick, gets the greatest confidence of square, brick and
+    rectangle, and the other one of both the lesser of their two confidences.
+
     Parameters
     ----------
     shape : mapping of str to int
         Shape class -> confidence in percent, as the squares show it.
-    polygon, insets
-        As for `side_intervals`.
+    polygon : shapely Polygon or None
+        The believed outline, map frame, in squares.
+    insets : SubcellExtent or None
+        How far its sides may lie within the squares in which it was seen, as it lies now.
+
+    Returns
+    -------
+    mapping of str to int
+        `shape` itself where it is no rectangle parallel to the grid, no side is believed to lie further in, or the
+        length of a side is not known within MAX_SIDE_UNCERTAINTY squares.
     """
     sides = side_intervals(polygon, insets)
     if sides is None or insets is None or not any(insets.believed):

@@ -22,7 +22,7 @@ class ShapeMeasurement(NamedTuple):
     fits : tuple of (str, int)
         Shape class and number of squares that it leaves wrong, the likeliest class first; () when nothing fits yet.
     polygon : shapely Polygon or None
-        The outline of the first class, map frame.
+        The outline of the first class, map frame, in squares; None when nothing fits yet.
     open : int
         How many squares of the patch are not settled.
     full : int
@@ -36,7 +36,7 @@ class ShapeMeasurement(NamedTuple):
 
 
 class ShapeMeasurer:
-    """Measures patches, and remembers the fits of all squares that it has measured."""
+    """Measures patches, and remembers the fits of all squares that it has measured, so that none is measured twice."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[bytes, bytes], tuple[tuple[tuple[str, int], ...], Any]] = {}
@@ -44,12 +44,21 @@ class ShapeMeasurer:
     def measure(self, patch: Patch, view: MapView) -> ShapeMeasurement:
         """Measure a patch of the map.
 
+        Squares that no count settles count as covered where they are occupied with a probability of at least
+        MIN_COVERED_PROBABILITY.
+
         Parameters
         ----------
         patch : Patch
-            The squares that the object covers, or may cover.
+            The squares that the object covers, or may cover; map frame.
         view : MapView
             The map; the patch lies within its arrays.
+
+        Returns
+        -------
+        ShapeMeasurement
+            Without fits and polygon when no square counts as covered, or more than MAX_OPEN_RATIO others for each that
+            does. `open` and `full` count the squares of the patch by the map alone.
         """
         row, column = patch.south - view.south, patch.west - view.west
         part = (slice(row, row + patch.mask.shape[0]), slice(column, column + patch.mask.shape[1]))
@@ -62,17 +71,25 @@ class ShapeMeasurer:
         return self._measured(patch, full, possible)._replace(open=int(open_.sum()), full=int(settled.sum()))
 
     def measure_whole(self, patch: Patch) -> ShapeMeasurement:
-        """Measure a patch all of whose squares are known to be covered."""
+        """Measure a patch all of whose squares are known to be covered; map frame. `open` of the result is 0."""
         return self._measured(patch, patch.mask, np.zeros_like(patch.mask))
 
     def _measured(self, patch: Patch, full: Bools, possible: Bools) -> ShapeMeasurement:
-        """Return the fits of a patch; `full` and `possible` are its squares that are covered, and that may be."""
+        """Return the fits of a patch, the outline of the first of them in the map frame, and the counts of both masks.
+
+        `full` and `possible` are (rows, columns) masks, on the patch's own array, of its squares that are covered, and
+        of those that may be.
+        """
         fits, polygon = self._fit(full, possible)
         placed = shapely.transform(polygon, lambda points: points + np.array([patch.west, patch.south]))
         return ShapeMeasurement(fits, placed, int(possible.sum()), int(full.sum()))
 
     def _fit(self, full: Bools, possible: Bools) -> tuple[tuple[tuple[str, int], ...], Any]:
-        """Return the fits of some squares, and the outline of the first, in the frame of the masks."""
+        """Return the fits of some squares, and the outline of the first, in the frame of the masks.
+
+        The fits are pairs (shape class, number of squares that it leaves wrong), the likeliest class first; the outline
+        is a shapely Polygon, in squares, origin at the south-west corner of the masks' square [0, 0].
+        """
         key = (full.tobytes() + bytes(full.shape), possible.tobytes())
         if key not in self._known:
             found = fit_shapes(full, possible)

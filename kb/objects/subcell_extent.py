@@ -25,12 +25,15 @@ FULL_INSETS: SideValues = (1.0, 1.0, 1.0, 1.0)
 
 
 class SubcellExtent(NamedTuple):
-    """The possible insets of the sides of an object, as it lay when it was first held.
+    """The possible insets of the sides of an object, as it lay when it was first held, unless stated otherwise.
+
+    An inset is the distance, in squares, from the outer line of the squares in which the object was seen, inwards to
+    the side. Without any knowledge every side may have an inset from 0 to less than 1.
 
     Attributes
     ----------
     least : SideValues
-        The least inset of each side, in squares.
+        The least inset of each side (west, east, south, north), in squares.
     most : SideValues
         Each inset is less than this, in squares.
     """
@@ -40,7 +43,7 @@ class SubcellExtent(NamedTuple):
 
     @property
     def believed(self) -> SideValues:
-        """The believed inset of each side, in squares.
+        """The believed inset of each side, in squares: west, east, south, north.
 
         0 along an axis on which nothing is known. Else that of an object as long as a whole number of squares, if this
         is possible; else the middle of what is possible.
@@ -49,7 +52,7 @@ class SubcellExtent(NamedTuple):
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side may lie further in than believed, in squares."""
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
@@ -57,7 +60,8 @@ class SubcellExtent(NamedTuple):
     def plays(self) -> tuple[SideValues, SideValues]:
         """The distances by which each side may lie further out than believed, and further in, in squares.
 
-        0 for a side that is believed to fill its squares.
+        Two tuples, for further out and for further in, each of west, east, south, north. 0 for a side that is believed
+        to fill its squares, that is, to have the inset 0.
         """
         here = self.believed
         out = _as_sides(at - least if at else 0.0 for at, least in zip(here, self.least, strict=True))
@@ -65,16 +69,23 @@ class SubcellExtent(NamedTuple):
 
     @property
     def play(self) -> float:
-        """The greatest value of `plays`, in squares."""
+        """The greatest value of `plays`, in squares; 0 when every side is believed to fill its squares."""
         return max(max(sides) for sides in self.plays)
 
     def after(self, quarters: int) -> "SubcellExtent":
-        """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
+        """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive.
+
+        The values are sorted anew: what was the inset of the east side is that of the north side after one quarter
+        turn.
+        """
         return SubcellExtent(turn_sides(self.least, quarters), turn_sides(self.most, quarters))
 
 
 def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float, float]:
-    """Return the believed insets of two opposite sides."""
+    """Return the believed insets of two opposite sides, in squares: west and east, or south and north.
+
+    `least` and `most` hold the least and the greatest possible inset of the two, in the same order.
+    """
     if not any(least):
         return 0.0, 0.0
     low, high = max(least[1], 1.0 - most[0]), min(most[1], 1.0 - least[0])
@@ -85,7 +96,11 @@ def _believed(least: tuple[float, ...], most: tuple[float, ...]) -> tuple[float,
 
 
 def turn_sides(sides: SideValues, quarters: int) -> SideValues:
-    """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive."""
+    """Return the values of the sides as they lie after a number of quarter turns, counter-clockwise positive.
+
+    Both are in the order west, east, south, north: after one quarter turn the value of the east side is that of the
+    north.
+    """
     for _ in range(quarters % 4):
         west, east, south, north = sides
         sides = north, south, west, east
@@ -93,7 +108,10 @@ def turn_sides(sides: SideValues, quarters: int) -> SideValues:
 
 
 def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
-    """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares."""
+    """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares.
+
+    The values are those of west, east, south and north, negative for further out.
+    """
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
 
@@ -104,9 +122,10 @@ def inset_outline(polygon: Any, sides: SideValues) -> Any:
     Parameters
     ----------
     polygon : shapely Polygon
-        The outline, map frame.
+        The outline, map frame, in squares; without holes.
     sides : SideValues
-        How far each side moves inwards, in squares; outwards where that is negative.
+        How far the sides that face west, east, south and north move inwards, in squares; outwards where that is
+        negative.
 
     Returns
     -------
@@ -137,17 +156,18 @@ def within_play(polygon: Any, inwards: SideValues, margin: float) -> Any:
     Parameters
     ----------
     polygon : shapely Polygon
-        The outline, map frame.
+        The outline, map frame, in squares; without holes.
     inwards : SideValues
-        How far each side moves inwards, in squares; outwards where that is negative.
+        How far the sides that face west, east, south and north move inwards, in squares; outwards where that is
+        negative.
     margin : float
-        How much further each side moves, in squares; negative for outwards. SideValues on grid lines whose axis is not
-        moved stay exactly where they are.
+        How much further each side moves, in squares; negative for outwards. Sides on grid lines whose axis is not moved
+        stay exactly where they are.
 
     Returns
     -------
     shapely Polygon or None
-        None as for `inset_outline`.
+        None when not all sides are parallel to the grid, or when the result has not the same corners.
     """
     moved = inset_outline(polygon, _as_sides(far + margin for far in inwards))
     if moved is None:
@@ -164,7 +184,12 @@ def last_row_coverage(image: tuple[float, float, float, float]) -> SideValues:
     Parameters
     ----------
     image : (x0, y0, x1, y1)
-        The bounds of the image, in squares, map frame.
+        The bounds of the image (west, south, east, north), in squares, map frame.
+
+    Returns
+    -------
+    SideValues
+        In the order west, east, south, north; 1 where the bound lies on a grid line.
     """
     x0, y0, x1, y1 = image
     return math.floor(x0) + 1 - x0, x1 - math.ceil(x1) + 1, math.floor(y0) + 1 - y0, y1 - math.ceil(y1) + 1
@@ -176,15 +201,17 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
     Parameters
     ----------
     insets : SubcellExtent
-        What was possible before, for the sides as they lie at the impression.
+        The insets (west, east, south, north, in squares) that were possible before, for the sides as they lie at the
+        impression.
     polygon : shapely Polygon
         The believed outline, where it is believed to lie; map frame.
     agrees : function
-        Returns whether the impression agrees with an outline.
+        Returns whether the impression agrees with an outline: a shapely Polygon, map frame.
 
     Returns
     -------
     SubcellExtent or None
+        What is possible after it, for the sides as they lie at the impression: never more than before.
         None when the impression agrees with no possible outline.
     """
     west, east, south, north = insets.believed
@@ -207,13 +234,18 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
 
 
 def _halves(least: float, most: float, deep: float) -> list[tuple[float, float]]:
-    """Return intervals of the inset of a side in each of which it covers the same squares; `deep` divides them."""
+    """Return intervals of the inset of a side in each of which it covers the same squares; `deep` divides them.
+
+    `least` and `most` bound the inset; a side with an inset beyond `deep` leaves the last row of squares. All are in
+    squares. The result is [(least, most)] when `deep` does not lie between them or the inset is known well enough, else
+    [(least, deep), (deep, most)].
+    """
     if least + MIN_ROW_DEPTH < deep < most - MIN_ROW_DEPTH and most - least > MIN_TESTED_INTERVAL:
         return [(least, deep), (deep, most)]
     return [(least, most)]
 
 
 def _as_sides(values: Iterable[float]) -> SideValues:
-    """Return four values as a tuple."""
+    """Return four values as a tuple (west, east, south, north); ValueError for any other number of values."""
     west, east, south, north = values
     return west, east, south, north

@@ -20,7 +20,7 @@ class Touches:
         The colours of the 8 adjacent squares, clockwise from north in the robot frame, None for floor; () before the
         first impression.
     colours : dict of (x, y) to str
-        The colour of each square that was felt not to be floor, map frame.
+        The colour, one lower-case letter, of each square (column, row) of the map frame that was felt not to be floor.
     """
 
     def __init__(self) -> None:
@@ -32,18 +32,21 @@ class Touches:
         self.colours.clear()
 
     def feel(self, touch: tuple[str | None, ...], frame: Frame, square: Square, held: Container[Square]) -> None:
-        """Take in the touches of an impression.
+        """Take in the touches of an impression: `current` becomes them, and `colours` is kept up to date.
+
+        A square felt to be floor, or held by an object, loses its colour.
 
         Parameters
         ----------
         touch : tuple of str or None
-            The colours of the 8 adjacent squares in DIRECTIONS, None for floor.
+            The colours of the 8 adjacent squares in the order of DIRECTIONS (robot frame), None for floor.
         frame : Frame
             The believed frame. Directions that point between two of its squares tell nothing.
         square : (x, y)
             The robot's square, map frame.
         held : container of (x, y)
-            Squares that objects which were held may cover: what is felt there belongs to them, not to the map.
+            Squares, map frame, that objects which were held may cover: what is felt there belongs to them, not to the
+            map.
         """
         self.current = touch
         x, y = square
@@ -58,10 +61,16 @@ class Touches:
                 self.colours[there] = colour
 
     def felt_in(self, direction: str) -> str | None:
-        """Return the colour felt now in one of the eight DIRECTIONS; None for floor."""
+        """Return the colour felt now in one of the eight DIRECTIONS of the robot frame.
+
+        None for floor, and before the first impression. Another direction raises ValueError.
+        """
         return self.current[DIRECTIONS.index(direction)] if self.current else None
 
     def colour_of(self, patch: Patch) -> str | None:
-        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was."""
+        """Return the colour of the first square of a patch (by x, then y) that was felt; None when none was.
+
+        The patch is of the map frame; the colour is one lower-case letter.
+        """
         colours = [self.colours[square] for square in sorted(patch.squares()) if square in self.colours]
         return colours[0] if colours else None

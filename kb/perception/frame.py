@@ -40,12 +40,15 @@ ADJACENT_OFFSETS = (
 class Samples(NamedTuple):
     """The squares that the 160 fields sample at one orientation of the frame, relative to the robot's own square.
 
+    Row n of each array belongs to field n, in the order of an impression.
+
     Attributes
     ----------
     columns, rows : (160, 16) int32
-        Offsets of the sampled squares, map frame.
+        Offsets of the sampled squares from the robot's own square, in squares, map frame: to the east and to the north,
+        negative to the west and south; 0 where padded.
     weight : (160, 16) int16
-        How often a field samples that square; 0 is padding.
+        How often a field samples that square; 0 is padding. The field of the robot's own square has padding alone.
     slack : (160,) int16
         How many samples of a field fall between two squares, and count for neither.
     """
@@ -63,33 +66,51 @@ class Frame:
     Attributes
     ----------
     angle : int
-        Degrees by which the robot frame is turned against the map frame, counter-clockwise positive, -44 to 45.
+        Degrees by which the robot frame is turned against the map frame, counter-clockwise positive, -44 to 45; 0 when
+        both have the same axes.
     origin : (x, y)
-        The origin of the robot frame, in squares, map frame: a point of square (0, 0).
+        The origin of the robot frame, in squares, map frame: a point of square (0, 0); its centre (0.5, 0.5) by
+        default.
     """
 
     angle: int = 0
     origin: XY = CENTRE
 
     def to_map(self, east: float, north: float) -> XY:
-        """Return a vector of the robot frame as a vector (x, y) of the map frame, in squares."""
+        """Return a vector (east, north) of the robot frame as a vector (x, y) of the map frame, in squares.
+
+        A vector is a difference of points: the origin of the frames does not matter.
+        """
         return turned(east, north, self.angle)
 
     def to_utak(self, x: float, y: float) -> XY:
-        """Return a vector of the map frame as a vector (east, north) of the robot frame, in squares."""
+        """Return a vector (x, y) of the map frame as a vector (east, north) of the robot frame, in squares.
+
+        A vector is a difference of points: the origin of the frames does not matter.
+        """
         return turned(x, y, -self.angle)
 
     def place_to_utak(self, x: float, y: float) -> XY:
-        """Return a point of the map frame as a point (east, north) of the robot frame, in squares."""
+        """Return a point (x, y) of the map frame as a point (east, north) of the robot frame, in squares.
+
+        The robot frame has its origin where the robot woke.
+        """
         return self.to_utak(x - self.origin[0], y - self.origin[1])
 
     def place_from_utak(self, east: float, north: float) -> XY:
-        """Return a point of the robot frame as a point (x, y) of the map frame, in squares."""
+        """Return a point (east, north) of the robot frame as a point (x, y) of the map frame, in squares.
+
+        The map frame has its origin at the south-west corner of square (0, 0), the one in which the robot woke.
+        """
         x, y = self.to_map(east, north)
         return x + self.origin[0], y + self.origin[1]
 
     def places_from_utak(self, east: Floats, north: Floats) -> tuple[Floats, Floats]:
-        """Return points of the robot frame as points of the map frame: arrays x, y of the same shape, in squares."""
+        """Return points of the robot frame as points of the map frame.
+
+        `east` and `north` are arrays of the same shape, in squares from where the robot woke. The result is (x, y): two
+        float64 arrays of that shape, in squares, map frame.
+        """
         x, y = turned(east, north, self.angle)
         return x + self.origin[0], y + self.origin[1]
 
@@ -99,12 +120,13 @@ class Frame:
         Parameters
         ----------
         direction : str
-            One of the eight DIRECTIONS of the robot frame.
+            One of the eight DIRECTIONS of the robot frame; anything else raises ValueError.
 
         Returns
         -------
         (int, int) or None
-            None where the direction points between two squares, so that it may name either.
+            Squares to the east and to the north of the robot's own square, each -1, 0 or 1. None where the direction
+            points between two squares, so that it may name either.
         """
         named = self.adjacent_squares(direction)
         return named[0] if len(named) == 1 else None
@@ -112,23 +134,32 @@ class Frame:
     def adjacent_squares(self, direction: str) -> list[Square]:
         """Return the offsets (columns, rows) of the adjacent squares that a direction of the robot frame may name.
 
-        They are several where the direction points between two squares.
+        The offsets are squares to the east and to the north of the robot's own square, map frame, west ones first. They
+        are several where the direction, one of the eight DIRECTIONS, points between two squares; else it is one.
         """
         column, row = self.to_map(*ADJACENT_OFFSETS[DIRECTIONS.index(direction)])
         return [(x, y) for x in _nearest_squares(column) for y in _nearest_squares(row)]
 
     def directions(self) -> dict[Square, str]:
-        """Return for each adjacent square, as offset (columns, rows), a direction that surely names it, if any does."""
+        """Return for each adjacent square a direction that surely names it.
+
+        Keys are offsets (columns, rows) from the robot's own square, map frame; values are of the eight DIRECTIONS of
+        the robot frame. Squares that no direction surely names are left out; of several directions the first of
+        DIRECTIONS is taken.
+        """
         named = ((self.beside(direction), direction) for direction in reversed(DIRECTIONS))
         return {square: direction for square, direction in named if square is not None}
 
     def samples(self) -> Samples:
-        """Return the squares that each field of the retina samples."""
+        """Return the squares that each field of the retina samples: offsets from the robot's own square, map frame."""
         return _samples(self.angle)
 
 
 def _nearest_squares(offset: float) -> list[int]:
-    """Return the square into which an offset falls along one axis; both where it falls between two."""
+    """Return the square into which an offset falls along one axis; both, lower one first, where it falls between two.
+
+    The offset is in squares from the centre of the robot's own square, which is 0.
+    """
     return sorted({math.ceil(offset - 0.5 - SAMPLING_TIE_TOLERANCE), math.floor(offset + 0.5 + SAMPLING_TIE_TOLERANCE)})
 
 
@@ -138,9 +169,14 @@ def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Co
     Parameters
     ----------
     x, y : float or float64 array
-        The vectors.
+        The components of the vectors, in any unit; arrays of equal shape.
     degrees : float
         The angle, counter-clockwise positive.
+
+    Returns
+    -------
+    x, y : float or float64 array
+        The rotated components, in the form and unit of the arguments.
     """
     if degrees % 90 == 0:
         for _ in range(int(degrees // 90) % 4):
@@ -152,7 +188,11 @@ def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Co
 
 @cache
 def _samples(angle: int) -> Samples:
-    """Return the squares that each field samples when the robot frame is turned by `angle` degrees."""
+    """Return the squares that each field samples when the robot frame is turned by `angle` degrees.
+
+    The angle is that against the map frame, counter-clockwise positive. The result is cached: nobody may change its
+    arrays.
+    """
     owner, east, north = _field_offsets()
     c, s = turned(1.0, 0.0, angle)
     x, y = east * c - north * s, east * s + north * c
@@ -171,7 +211,11 @@ def _samples(angle: int) -> Samples:
 
 @cache
 def _field_offsets() -> Ints:
-    """Return (3, 1023) int32: field, east and north of every offset under the retina but the robot's own."""
+    """Return the offsets under the retina, but the robot's own square: (3, 1023) int32.
+
+    The rows are the number of the field that covers the offset, and squares to the east and to the north of the robot's
+    own square, robot frame. Cached: nobody may change it.
+    """
     offsets = [
         (number, east, north)
         for number, field in enumerate(FIELDS)

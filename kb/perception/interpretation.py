@@ -21,10 +21,13 @@ SURELY_VERGE = (  # percent: the confidence that something undecided as long as 
 class Kinds(NamedTuple):
     """The kinds that regions are taken for.
 
+    Regions are named `part<n>` on the map, `cells<n>` or `own` in an impression.
+
     Attributes
     ----------
     kind : mapping of str to mapping of str to int
-        Region -> {floor, verge, object or utak: confidence in percent}.
+        Region -> {floor, verge, object or utak: confidence in percent}. A region of which nothing is derived is
+        missing.
     hidden_passages : frozenset of (str, str)
         Pairs of free regions that must be connected by floor that is not seen.
     """
@@ -33,12 +36,30 @@ class Kinds(NamedTuple):
     hidden_passages: frozenset[tuple[str, str]]
 
     def of(self, region: str, kind: str) -> int:
-        """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it."""
+        """Return the confidence that a region is of a kind, in percent; 0 when nothing supports it.
+
+        `region` is the name of a region; `kind` is floor, verge, object or utak.
+        """
         return self.kind.get(region, {}).get(kind, 0)
 
 
 def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> list[str]:
-    """Return the facts for kb/asp/interpretation.lp; `touched` holds pairs (region, colour felt there)."""
+    """Return the facts about regions for kb/asp/interpretation.lp, without full stops.
+
+    Parameters
+    ----------
+    percept : Percept
+        The regions of one impression or of the map.
+    touched : iterable of (str, str)
+        Pairs (name of a region, colour felt there).
+
+    Returns
+    -------
+    list of str
+        For each region R: `region(R,zero|nonzero,Certain)` with percent, `extent(R,N)` in squares, `mass(R,N)` in
+        tenths of squares, and `rim(R)` and `own(R)` where that is so. Then `surrounds(Outer,Inner)` and
+        `touched(R,Colour)`, sorted.
+    """
     facts = []
     for region in percept.regions:
         facts.append(f"region({region.name},{'nonzero' if region.occupied else 'zero'},{region.certain})")
@@ -50,16 +71,22 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
 
 
 def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (), rules: tuple[Path, ...] = ()) -> Kinds:
-    """Decide what every region is.
+    """Decide what every region is: floor, verge, object or utak (the robot itself).
 
     Parameters
     ----------
     percept : Percept
-        The regions.
+        The regions of one impression or of the map.
     touched : iterable of (str, str)
-        Pairs (region, colour felt there).
+        Pairs (name of a region, colour felt there).
     rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/interpretation.lp.
+        Files with the user's own encodings, solved together with kb/asp/interpretation.lp.
+
+    Returns
+    -------
+    Kinds
+        The confidences in percent; empty when the encodings have no answer. Where one kind is derived several times,
+        the greatest confidence counts.
 
     Raises
     ------
@@ -84,14 +111,15 @@ def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mappi
     Parameters
     ----------
     facts : iterable of str
-        The facts fit/4, open_squares/2 and full_squares/2 of kb/asp/shapes.lp.
+        The facts fit/4, open_squares/2 and full_squares/2 of kb/asp/shapes.lp, without full stops, as of
+        `kb.world.objects.shape_facts`.
     rules : tuple of Path
         The user's own encodings, solved together with kb/asp/shapes.lp.
 
     Returns
     -------
     mapping of str to mapping of str to int
-        Node -> {shape class: confidence in percent}.
+        Name of a node -> {shape class: confidence in percent}; nodes of which no shape is derived are missing.
 
     Raises
     ------

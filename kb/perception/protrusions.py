@@ -27,16 +27,17 @@ def protrusions(floor: Bools, solid: Bools, seen: Bools) -> list[Bools]:
     Parameters
     ----------
     floor : (rows, columns) bool
-        Squares of floor.
+        Squares of floor, on the arrays of the map view (row 0 in the south).
     solid : (rows, columns) bool
-        Squares of what bounds the floor, or stands against what does.
+        Squares of what bounds the floor, or stands against what does. Only such squares belong to the parts.
     seen : (rows, columns) bool
         Squares that were seen.
 
     Returns
     -------
     list of (rows, columns) bool
-        The masks of the parts, smaller ones first.
+        One mask for each part, on the same arrays, those of fewer squares first; no mask twice; [] when nothing sticks
+        out.
     """
     bounds = seen & ~floor  # squares beside a thing may be open: what lies askew does not end on a grid line
     across, along = (short & solid for short in (_short_runs(floor, bounds), _short_runs(floor.T, bounds.T).T))
@@ -54,14 +55,19 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     """Return those of some parts that are things, by the colours felt on them.
 
     The smallest part with a square felt not to be verge is a thing. A larger part about it is the thing instead, if
-    more squares of it were felt and have the same colour.
+    more squares of it were felt and have the same colour. No part that was felt in two colours is a thing.
 
     Parameters
     ----------
     parts : list of (rows, columns) bool
-        The parts, smaller ones first, as of `protrusions`.
+        The parts, smaller ones first, as of `protrusions`: masks on the arrays of the map view.
     felt : mapping of (row, column) to str
-        The colour of each square that was felt.
+        The colour of each square of these arrays that was felt; VERGE_TOUCH_COLOUR where it was verge.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The masks of the things, in the order in which `felt` names their squares; [] when there are none.
     """
     things: list[Bools] = []
     for place, colour in felt.items():
@@ -80,12 +86,20 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
 def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:
     """Return what of some parts may be a thing, or more of one, and was not felt yet.
 
+    Left out are parts on which verge was felt; of the others, squares that belong to a thing already known by touch,
+    and then all that has a felt square left.
+
     Parameters
     ----------
     parts : list of (rows, columns) bool
-        The parts, smaller ones first, as of `protrusions`.
+        The parts, smaller ones first, as of `protrusions`: masks on the arrays of the map view.
     felt : mapping of (row, column) to str
-        The colour of each square that was felt.
+        The colour of each square of these arrays that was felt; VERGE_TOUCH_COLOUR where it was verge.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The masks of what is left, none of them empty and none twice.
     """
     things = separate_things(parts, felt)
     known = np.any(things, axis=0) if things else np.False_
@@ -99,12 +113,19 @@ def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
 
 
 def _felt_beyond(thing: Bools, part: Bools, felt: Mapping[RowColumn, str]) -> bool:
-    """Return whether a part contains a thing and a square outside that thing which was felt."""
+    """Return whether a part contains a whole thing, and besides a square outside that thing which was felt.
+
+    `thing` and `part` are (rows, columns) masks; the keys of `felt` are (row, column) on the same arrays.
+    """
     return not (thing & ~part).any() and any(part[place] and not thing[place] for place in felt)
 
 
 def _short_runs(floor: Bools, bounds: Bools) -> Bools:
-    """Return the squares of short runs of a row, between floor to the west and floor to the east."""
+    """Return the squares of short runs of a row, between floor to the west and floor to the east: (rows, columns) bool.
+
+    A run is a maximal series of squares of `bounds` in one row; it is short up to MAX_THING_LENGTH squares. Runs that
+    end at the edge of the array do not count. Both arguments are masks of one shape.
+    """
     short = np.zeros_like(bounds)
     for row in range(len(bounds)):
         line = bounds[row].astype(np.int8)
@@ -118,7 +139,10 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
 
 
 def _small_parts(mask: Bools) -> Iterator[Bools]:
-    """Yield the connected parts of a mask that are no larger than a thing."""
+    """Yield the mask of each edge-connected part whose longer side is at most MAX_THING_EXTENT squares.
+
+    `mask` and the results are (rows, columns) bool, of one shape; longer parts are left out.
+    """
     parts = components(mask)
     for n, (south, west, north, east) in enumerate(bounding_boxes(parts.labels, parts.number)[1:].tolist(), 1):
         if max(north - south, east - west) < MAX_THING_EXTENT:
@@ -126,7 +150,12 @@ def _small_parts(mask: Bools) -> Iterator[Bools]:
 
 
 def _corner_parts(floor: Bools, bounds: Bools) -> Iterator[Bools]:
-    """Yield what lies in a corner of two straight walls, between where floor meets the one and the other."""
+    """Yield the masks of what lies in a corner of two straight walls, between where floor meets the one and the other.
+
+    `floor` and `bounds` are (rows, columns) masks of one shape, and so are the results. Only what measures at most
+    MAX_THING_LENGTH squares along both walls, and is edge-connected, is yielded; all four directions of corners are
+    tried.
+    """
     for up, on in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         ground, full = floor[::up, ::on], bounds[::up, ::on]
         meets = np.zeros_like(full)  # floor with bounds to the south and to the west

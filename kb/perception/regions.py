@@ -16,12 +16,12 @@ from kb.perception.retina import FIELDS, OWN_FIELD, count_ranges, edge_fields, n
 
 
 class Region(NamedTuple):
-    """One region.
+    """One region: a maximal edge-connected set of free, or of occupied, cells of an impression or squares of the map.
 
     Attributes
     ----------
     name : str
-        Of a region of the map `part<n>`; of one of an impression `cells<n>` or `own`.
+        Of a region of the map `part<n>`, n from 1; of one of an impression `cells<n>`, n from 1, or `own`.
     occupied : bool
         Whether it is a region of occupied cells rather than of free ones.
     certain : int
@@ -51,11 +51,11 @@ class Percept(NamedTuple):
     Attributes
     ----------
     regions : tuple of Region
-        The regions.
+        The regions; on the map free ones first.
     adjacent : frozenset of (str, str)
-        Pairs of regions that share an edge, both ways round.
+        Pairs of names of regions that share an edge, both ways round.
     surrounds : frozenset of (str, str)
-        Pairs (outer, inner): no way leads from inner to what was not seen, except across outer.
+        Pairs of names (outer, inner): no way leads from inner to what was not seen, except across outer.
     """
 
     regions: tuple[Region, ...]
@@ -69,14 +69,19 @@ def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, froz
     Parameters
     ----------
     levels : tuple of int
-        The 160 gray levels of the impression.
+        The 160 gray levels of the impression, 0 to 7; a field is occupied from level 1 on.
 
     Returns
     -------
     percept : Percept
-        The regions.
+        The regions: `own` first, then `cells1`, `cells2`, ... by the least number of their fields.
     cells : dict of str to frozenset of int
-        The numbers of the fields that form each region.
+        Name of a region -> the numbers of its fields (0 to 159, in the order of an impression), in the same order.
+
+    Raises
+    ------
+    ValueError
+        A field cannot show its level.
     """
     cells: dict[str, frozenset[int]] = {"own": frozenset({OWN_FIELD})}
     left = set(range(len(FIELDS))) - {OWN_FIELD}
@@ -99,7 +104,7 @@ def map_regions(
     Parameters
     ----------
     occupied : (rows, columns) bool
-        Squares on which something may be.
+        Squares on which something may be, on the arrays of the map view (row 0 in the south).
     seen : (rows, columns) bool
         Squares that were seen. All others belong to no region.
     certain : (rows, columns) bool
@@ -110,7 +115,7 @@ def map_regions(
     Returns
     -------
     percept : Percept
-        The regions, named `part<n>`.
+        The regions in the order of their numbers, named `part<n>`: free regions first, from 1, then occupied ones.
     labels : (rows, columns) int32
         The number n of each square's region; 0 where nothing was seen.
     """
@@ -133,12 +138,16 @@ def map_regions(
 
 
 def label_of(name: str) -> int:
-    """Return the label of a region of the map: n for the name `part<n>`."""
+    """Return the label of a region of the map: n for the name `part<n>`; ValueError for a name of another form."""
     return int(name.removeprefix("part"))
 
 
 def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
-    """Return the region of the cell `first`: cells of `among` connected with it that are free, or occupied, alike."""
+    """Return the numbers of the fields of the region of the cell `first`: those of `among` connected with it.
+
+    They are free, or occupied, as `first` is: gray level 0, or above 0. `levels` are the 160 gray levels of an
+    impression.
+    """
     region, edge = {first}, [first]
     while edge:
         for cell in neighbours()[edge.pop()]:
@@ -149,7 +158,11 @@ def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
 
 
 def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
-    """Return the region formed by some cells of an impression; `ranges` are their counts, as of `count_ranges`."""
+    """Return the region formed by some cells of an impression.
+
+    `members` are the numbers of its fields, at least one, all free or all occupied; `levels` the 160 gray levels;
+    `ranges` the (160, 2) least and greatest counts of occupied squares, as of `count_ranges`.
+    """
     cells = sorted(members)
     occupied = levels[cells[0]] > 0
     area = sum(FIELDS[c].side ** 2 for c in cells)
@@ -164,14 +177,21 @@ def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ran
 
 
 def extents(labels: Labels, count: int) -> Longs:
-    """Return the longer side of each label's containing rectangle, (count + 1,) in squares; 0 of labels not there."""
+    """Return the longer side of each label's containing rectangle, in squares: (count + 1,) int64, [n] for label n.
+
+    `labels` is (rows, columns) int32 with values 0 to `count`. 0 for labels not there.
+    """
     south, west, north, east = bounding_boxes(labels, count).T
     longer: Longs = np.maximum(np.maximum(north - south, east - west) + 1, 0)
     return longer
 
 
 def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int]]:
-    """Return the pairs of regions that touch, both ways round, and the labels of those that touch unseen squares."""
+    """Return the regions that share an edge, and those that touch unseen squares or the edge of the array.
+
+    `labels` is (rows, columns) int32 with values 0 (not seen) to `count`. The first set has pairs of names `part<n>`,
+    both ways round; the second has labels.
+    """
     framed = np.pad(labels, 1).astype(np.int64)
     pairs = [np.zeros(0, np.int64)]
     for a, b in ((framed[:, :-1], framed[:, 1:]), (framed[:-1], framed[1:])):
@@ -185,7 +205,10 @@ def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int
 
 
 def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Percept:
-    """Return regions together with the pairs that touch and those that surround each other."""
+    """Return regions together with the pairs that touch and those that surround each other.
+
+    `touching` has pairs of names of regions that share an edge, both ways round.
+    """
     beside: dict[str, set[str]] = {region.name: set() for region in regions}
     for a, b in touching:
         beside[a].add(b)
@@ -196,7 +219,8 @@ def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Per
 def _surrounding(beside: Mapping[str, set[str]], outside: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the pairs (outer, inner) such that no way leads from inner to the outside, except across outer.
 
-    beside : region -> the regions that touch it. outside : the regions that touch what was not seen.
+    `beside` has for each region, by name, the regions that touch it; `outside` the regions that touch what was not
+    seen. Regions that are connected with no region of `outside` are in no pair.
 
     Strategy: one depth-first search from the outside. If no edge leads from the subtree of a child back past its
     parent, the parent surrounds that subtree. Source: Hopcroft and Tarjan (1973), articulation points.

@@ -25,9 +25,10 @@ class Field(NamedTuple):
     Attributes
     ----------
     east, north : int
-        The offset of its south-west square.
+        The offset of its south-west square from the robot's own square, in squares, robot frame; negative for west,
+        south.
     side : int
-        Its side, in squares.
+        Its side, in squares: 1 in the fovea, 2 in the middle zone, 4 in the outer zone.
     """
 
     east: int
@@ -36,7 +37,7 @@ class Field(NamedTuple):
 
 
 def _fields() -> tuple[Field, ...]:
-    """Return the fields in the order of an impression."""
+    """Return the 160 fields in the order of an impression: zones from the fovea, north row first, west to east."""
     fields, inner = [], 0
     for reach, side in RETINA_ZONES:
         for north in range(reach - side, -reach - 1, -side):
@@ -55,12 +56,14 @@ OWN_FIELD = FIELDS.index(Field(0, 0, 1))  # the field of the robot's own square,
 def level_counts(side: int, level: int) -> tuple[int, int]:
     """Return the least and the greatest number of occupied squares that a field shows as a gray level.
 
+    The result is (least, greatest), from 0 to side x side squares.
+
     Parameters
     ----------
     side : int
-        The side of the field, in squares.
+        The side of the field, in squares: 1, 2 or 4.
     level : int
-        The gray level, 0 to 7.
+        The gray level, 0 (all free) to 7 (all occupied), rounded from the occupied share.
 
     Raises
     ------
@@ -85,7 +88,8 @@ def count_ranges(levels: tuple[int, ...]) -> NDArray[np.int16]:
     Returns
     -------
     (160, 2) int16
-        The field of the robot's own square says nothing: its counts are 0 to 1.
+        Row n for field n, in the order of an impression: (least, greatest). The field of the robot's own square says
+        nothing: its counts are 0 to 1.
 
     Raises
     ------
@@ -99,7 +103,11 @@ def count_ranges(levels: tuple[int, ...]) -> NDArray[np.int16]:
 
 @cache
 def field_plan() -> NDArray[np.int16]:
-    """Return the number of the field that covers each offset: (32, 32), [north + 16, east + 16]."""
+    """Return the number of the field that covers each offset: (32, 32) int16, [north + 16, east + 16].
+
+    Offsets are squares from the robot's own square, robot frame, -16 to 15; row 0 is in the south, column 0 in the
+    west. Values are 0 to 159, in the order of an impression. Cached: nobody may change it.
+    """
     numbers = np.empty((2 * RETINA_REACH, 2 * RETINA_REACH), np.int16)
     for number, (east, north, side) in enumerate(FIELDS):
         row, column = north + RETINA_REACH, east + RETINA_REACH
@@ -109,7 +117,7 @@ def field_plan() -> NDArray[np.int16]:
 
 @cache
 def neighbours() -> tuple[frozenset[int], ...]:
-    """Return for each field the numbers of the fields that share an edge, or part of one, with it."""
+    """Return for each field, by its number, the numbers of the fields that share an edge, or part of one, with it."""
     numbers = field_plan()
     touching: list[set[int]] = [set() for _ in FIELDS]
     for a, b in ((numbers[:, :-1], numbers[:, 1:]), (numbers[:-1], numbers[1:])):
@@ -122,6 +130,6 @@ def neighbours() -> tuple[frozenset[int], ...]:
 
 @cache
 def edge_fields() -> frozenset[int]:
-    """Return the numbers of the fields at the edge of the retina."""
+    """Return the numbers (0 to 159, in the order of an impression) of the fields at the edge of the retina."""
     numbers = field_plan()
     return frozenset(np.concatenate([numbers[0], numbers[-1], numbers[:, 0], numbers[:, -1]]).tolist())

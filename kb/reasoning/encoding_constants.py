@@ -13,7 +13,7 @@ def encoding_constant(encoding: Path, name: str) -> int:
     Parameters
     ----------
     encoding : Path
-        The encoding's file.
+        The encoding's file; a file that does not exist raises OSError.
     name : str
         The constant's name, as in `#const name = 13.`
 

@@ -31,7 +31,7 @@ NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a
 
 
 def _name_argument(name: str) -> ArgumentType:
-    """Return the type of names, with its own name for messages."""
+    """Return the type of plain names (no arguments, no quotes), with its own name for messages."""
     return ArgumentType(name, NAME_ARGUMENT.check)
 
 

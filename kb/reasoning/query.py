@@ -38,9 +38,10 @@ class QueryAnswer:
 
     Attributes
     ----------
-    kind : "bindings", "yes", "no" or "don't know".
+    kind : "bindings", "yes", "no" or "don't know"; "bindings" only for a query with variables.
     variables : the names of the query's variables, in the order in which they appear.
-    rows : the values of the variables, integers or terms as text, sorted; empty unless kind is "bindings".
+    rows : the values of the variables in each binding with which the query certainly holds, in the order of
+        `variables`: integers or terms as text. Sorted; empty unless kind is "bindings".
     more : whether there are more rows than `rows` holds.
     """
 
@@ -50,7 +51,10 @@ class QueryAnswer:
     more: bool = False
 
     def __str__(self) -> str:
-        """Return a table of the rows, or the kind of the answer in words."""
+        """Return a table of the rows under the names of the variables, or the kind of the answer in words.
+
+        Without a line end at the end; a last line says so when there are more rows.
+        """
         if self.kind != "bindings":
             return self.kind
         cells = [list(self.variables), *([str(value) for value in row] for row in self.rows)]
@@ -65,7 +69,7 @@ class QueryEngine:
     Parameters
     ----------
     seconds : the limit of wall-clock time for each query.
-    rules : the names of files with users' rules. Queries can use the predicates that these rules define.
+    rules : the paths of files with users' rules; () for none. Queries can use the predicates that these rules define.
 
     Attributes
     ----------
@@ -82,13 +86,15 @@ class QueryEngine:
         self._worker = Worker()
 
     def __enter__(self) -> "QueryEngine":
+        """Return the engine itself."""
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
+        """End the separate process; an exception is not suppressed."""
         self.close()
 
     def close(self) -> None:
-        """End the separate process."""
+        """End the separate process, if it runs; the next query starts another one."""
         self._worker.close()
 
     def ask(self, facts: Sequence[str], query: str, max_rows: int = MAX_ANSWER_ROWS) -> QueryAnswer:
@@ -96,13 +102,13 @@ class QueryEngine:
 
         Parameters
         ----------
-        facts : the world model, such as `kind(o1,object,95).`, one fact a text.
+        facts : the world model, such as `kind(o1,object,95).`, one fact a text, with full stops.
         query : the body of a rule on one line; `?-` before it and a full stop after it are ignored.
-        max_rows : the greatest number of rows of the answer.
+        max_rows : the greatest number of rows of the answer; further rows are left out.
 
         Returns
         -------
-        The answer with its rows.
+        The answer: yes, no, don't know, or the rows of values for which the query certainly holds.
 
         Raises
         ------
@@ -129,19 +135,25 @@ class QueryEngine:
 
 
 def _request_entry(fact: Fact) -> list[int | str]:
-    """Return a fact as the worker takes it: its name, then its arguments, integers or terms as text."""
+    """Return a fact as the worker takes it: [name, argument, ...], arguments as integers or as the text of terms."""
     return [fact.name, *(term.value if isinstance(term, Number) else str(term) for term in fact.args)]
 
 
 def _query_error(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
-    """Return the error `what` at a character of the query, from 1; at the whole query for 0."""
+    """Return the error with the message `what` at a character of the query, from 1; at the whole query for 0.
+
+    text : the query. hint : a remedy, or '' for none.
+    """
     line = text.split("\n")[0]
     span = SourceSpan(1, at, at) if 1 <= at <= len(line) else SourceSpan(1, 1, max(1, len(line)))
     return BadInputError([Problem("query", span, what, line, hint)])
 
 
 def _check_query(text: str) -> None:
-    """Raise BadInputError when a text cannot be a query; its syntax is checked by the worker."""
+    """Raise BadInputError when a text cannot be a query: empty, too long, of several lines, with too great integers.
+
+    Its syntax is checked by the worker.
+    """
     if not text:
         raise _query_error(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
     if len(text) > MAX_QUERY_CHARACTERS:

@@ -38,7 +38,7 @@ class RuleError(Exception):
 
     Attributes
     ----------
-    error : the ClauseError; its line is the number of the rule, from 1.
+    error : the ClauseError; the line of its place is the number of the rule, from 1.
     """
 
     def __init__(self, error: ClauseError) -> None:
@@ -68,15 +68,16 @@ def answer_query(
     Parameters
     ----------
     facts : of each fact its name and its arguments, integers or terms as text.
-    query : the body of a rule.
-    rules : users' rules, each with one atom as its head. Queries can use the predicates that they define.
+    query : the body of a rule, without a full stop.
+    rules : users' rules, each with one atom as its head, one on a line. Queries can use the predicates that they
+        define.
     max_rows : the greatest number of rows that are kept; None for all.
 
     Returns
     -------
-    A dictionary with "answer" ("bindings", "yes", "no" or "don't know"), "variables" (names), "rows" (values, sorted)
-        and
-    "more" (whether rows were left out).
+    A dictionary of JSON values: "answer" ("bindings", "yes", "no" or "don't know"), "variables" (names, in the order in
+    which they appear), "rows" (values for which the query certainly holds, integers or terms as text, sorted; [] unless
+    the answer is "bindings") and "more" (whether rows were left out).
 
     Raises
     ------
@@ -114,7 +115,10 @@ def answer_query(
 
 
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
-    """Return the clauses of rules; the line of each clause is the number of its rule, from 1."""
+    """Return the clauses of rules; the line of each clause is the number of its rule, from 1.
+
+    A rule with a choice of values (a pool) has several clauses. Raises RuleError for a construct that is not supported.
+    """
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
     try:
@@ -124,7 +128,10 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
 
 
 def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
-    """Return the values of the variables; raise ClauseError when the query does not bind one of them."""
+    """Return the values of the variables, in their order; raise ClauseError when the query does not bind one of them.
+
+    found : the values by name. variables : the names. clause : the query, for its place in messages.
+    """
     missing = [name for name in variables if name not in found]
     if missing:
         raise unsafe_variable_error(missing[0], clause.at)
@@ -137,19 +144,22 @@ def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
 
 
 def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
-    """Yield the name and the values of each fact of a request."""
+    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols."""
     for name, *arguments in entries:
         yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
 
 
 @lru_cache(maxsize=65536)
 def _parse_term(term: str) -> clingo.Symbol:
-    """Return the clingo symbol that a text denotes."""
+    """Return the clingo symbol that a text denotes; RuntimeError when it denotes none."""
     return clingo.parse_term(term)
 
 
 def _query_as_rule(query: str) -> AST:
-    """Return the rule with the query as its body; raise QueryError unless the text is exactly one body."""
+    """Return the syntax tree of a rule with the query as its body.
+
+    Raises QueryError unless the text is exactly one body, and RuntimeError where clingo cannot parse it.
+    """
     parts: list[AST] = []
     parse_string(f"{QUERY_HEAD}{query}\n.", parts.append, logger=_record_message, message_limit=20)
     if len(parts) != 2 or parts[1].ast_type != ASTType.Rule:
@@ -165,7 +175,10 @@ def _json_value(term: Value) -> int | str:
 
 
 def _record_message(code: clingo.MessageCode, message: str) -> None:
-    """Record a message of clingo's as an error; its column counts from the start of the query."""
+    """Append a message of clingo's to `_messages`, as a QueryError whose character counts from the start of the query.
+
+    code : clingo's kind of the message, which is not used. A message without a place gets the character 0.
+    """
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
@@ -178,7 +191,12 @@ _messages: list[QueryError] = []
 
 
 def _respond(line: bytes) -> Response:
-    """Return the response to one request."""
+    """Return the response to one request, a line of JSON: JSON values by key, never an exception.
+
+    A request with "read" has the response of `read_rule_text`, one with "program" that of `solve_with_rules`, any other
+    that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
+    0) in the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
+    """
     _messages.clear()
     try:
         request = json.loads(line)
@@ -205,7 +223,10 @@ def _respond(line: bytes) -> Response:
 
 
 def main() -> None:
-    """Answer requests until the input ends; then end at once."""
+    """Answer requests, lines of the standard input, on the standard output until the input ends; then end at once.
+
+    The first line that is written is `ready`.
+    """
     operating_system.end_with_parent()
     operating_system.limit_resource("AS", MAX_MEMORY_BYTES)
     operating_system.limit_resource("CORE", 0)

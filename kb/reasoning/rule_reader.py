@@ -38,11 +38,11 @@ REFUSED_STATEMENTS = {  # by clingo's name of the statement: the message
 
 
 class RuleSyntaxError(Exception):
-    """A text is no file of rules; the message is clingo's, with its place."""
+    """A text is no file of rules; the message is clingo's, which begins with its place."""
 
 
 def read_statements(text: str) -> list[dict[str, Any]]:
-    """Return the statements of a rule file.
+    """Return the statements of a rule file that have an effect, in order.
 
     Parameters
     ----------
@@ -50,7 +50,9 @@ def read_statements(text: str) -> list[dict[str, Any]]:
 
     Returns
     -------
-    One dictionary a statement that has an effect, with the fields of `kb.reasoning.rulebook.Statement`.
+    One dictionary of JSON values a statement: "at" (line, column), "heads" and "body" (lists of atoms), "text" (with
+    checked arithmetic), "written" (as the user wrote it, constants replaced), "plain" (whether the head is one atom)
+    and "declares" ([name, number of arguments] of a #defined, else None).
 
     Raises
     ------
@@ -68,7 +70,7 @@ def read_statements(text: str) -> list[dict[str, Any]]:
 
 
 def _kept(node: AST) -> bool:
-    """Return whether a statement has an effect; raise ClauseError for one that is not allowed."""
+    """Return whether a statement has an effect in an encoding; raise ClauseError for one that is not allowed."""
     name = str(node.ast_type).rpartition(".")[2]
     if node.ast_type not in KEPT_STATEMENTS and name not in IGNORED_STATEMENTS:
         raise ClauseError(REFUSED_STATEMENTS.get(name, f"{name} is not known here"), place_of(node))
@@ -78,7 +80,7 @@ def _kept(node: AST) -> bool:
 
 
 def _entry(node: AST) -> dict[str, Any]:
-    """Return a statement as a dictionary of JSON values."""
+    """Return a statement as a dictionary of JSON values, with the keys that `read_statements` describes."""
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
         return entry | {"declares": [node.name, node.arity]}
@@ -97,14 +99,17 @@ def _entry(node: AST) -> dict[str, Any]:
 
 
 def _is_plain(node: AST) -> bool:
-    """Return whether a statement is a rule with one atom as its head."""
+    """Return whether a statement is a rule with one atom, not negated, as its head."""
     if node.ast_type != ASTType.Rule or node.head.ast_type != ASTType.Literal:
         return False
     return bool(node.head.sign == Sign.NoSign and node.head.atom.ast_type == ASTType.SymbolicAtom)
 
 
 def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
-    """Return the literals that a head states or chooses, and the literals on which they depend."""
+    """Return the literals that a head states or chooses, and the literals (conditions) on which they depend.
+
+    Raises ClauseError for a theory atom.
+    """
     if head.ast_type == ASTType.Literal:
         return [head], []
     if head.ast_type not in (ASTType.Aggregate, ASTType.Disjunction, ASTType.HeadAggregate):
@@ -118,38 +123,53 @@ def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
 
 
 def _atoms(node: AST) -> Iterator[dict[str, Any]]:
-    """Yield the atoms in a part of a statement, each as a dictionary of JSON values."""
+    """Yield the atoms in a part of a statement, each as a dictionary of JSON values.
+
+    The keys are those of `kb.reasoning.rulebook.RuleAtom`, and "arity": the number of arguments.
+    """
     reader = _AtomCollector()
     reader.visit(node)
     yield from reader.found
 
 
 class _AtomCollector(Transformer):
-    """Collects atoms. An atom in an aggregate or in a condition counts as negated."""
+    """Collects atoms. An atom in an aggregate or in a condition counts as negated.
+
+    clingo calls the `visit` methods; each returns its node, which stays as it is.
+
+    Attributes
+    ----------
+    found : the atoms as dictionaries of JSON values, in the order of the text; it grows.
+    negative : whether the part that is visited now is negated.
+    """
 
     def __init__(self) -> None:
         self.found: list[dict[str, Any]] = []
         self.negative = False
 
     def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Collect the atoms of a literal; those after `not` are negated. Return the node."""
         before, self.negative = self.negative, self.negative or node.sign != Sign.NoSign
         self.visit_children(node)
         self.negative = before
         return node
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Collect the atoms of an aggregate as negated. Return the node."""
         before, self.negative = self.negative, True
         self.visit_children(node)
         self.negative = before
         return node
 
     def visit_ConditionalLiteral(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Collect the atoms of a conditional literal as negated. Return the node."""
         before, self.negative = self.negative, True
         self.visit_children(node)
         self.negative = before
         return node
 
     def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Append an atom to `found`, one for each choice of a pool; raise ClauseError for `-atom`. Return the node."""
         for option in getattr(node.symbol, "arguments", ()) if node.symbol.ast_type == ASTType.Pool else (node.symbol,):
             if option.ast_type == ASTType.UnaryOperation:
                 raise ClauseError("classical negation is not known here", place_of(option))
@@ -168,11 +188,12 @@ class _AtomCollector(Transformer):
         return node
 
     def visit_TheoryAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Raise ClauseError: theory atoms are not known here."""
         raise ClauseError("theory atoms are not known here", place_of(node))
 
 
 def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
-    """Return the values of `#const` definitions: numbers and names."""
+    """Return the values of `#const` definitions, numbers and names, by name; raise ClauseError for any other value."""
     found = {}
     for node in nodes:
         if node.ast_type == ASTType.Definition:
@@ -183,28 +204,35 @@ def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
 
 
 class _ConstantSubstitution(Transformer):
-    """Replaces the constants of a file by their values."""
+    """Replaces the constants of a file, names as of `#const`, by their values; clingo calls the `visit` methods."""
 
     def __init__(self, values: dict[str, clingo.Symbol]) -> None:
         self._values = values
 
     def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return the atom with the constants in its arguments replaced; its own name is no constant."""
         if node.symbol.ast_type == ASTType.SymbolicTerm:
             return node  # an atom without arguments is no constant
         return node.update(**self.visit_children(node))
 
     def visit_SymbolicTerm(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return the value of a constant as a term; any other term as it is."""
         value = self._values.get(str(node))
         return node if value is None else SymbolicTerm(node.location, value)
 
 
 class _ArithmeticRewriter(Transformer):
-    """Replaces arithmetic by calls of the calculator."""
+    """Replaces arithmetic by calls of the calculator, `@calculated(sign, place, operands)`.
+
+    clingo calls the `visit` methods, each of which returns what stands in the place of its node.
+    """
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return the call that computes an operation on two terms."""
         return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return the call that computes an operation on one term; a negative number stays as it is."""
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
             if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
@@ -212,11 +240,16 @@ class _ArithmeticRewriter(Transformer):
         return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a term with the arithmetic in its arguments replaced.
+
+        Raises ClauseError for a function of Python (@name).
+        """
         if node.external:
             raise ClauseError("operation undefined: there are no functions from outside", place_of(node))
         return node.update(**self.visit_children(node))
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return an aggregate with its arithmetic replaced; raise ClauseError for a sum that is given to a variable."""
         summed = node.function in (AggregateFunction.Sum, AggregateFunction.SumPlus)
         guards = [guard for guard in (node.left_guard, node.right_guard) if guard is not None]
         given = [guard.term for guard in guards if guard.comparison == ComparisonOperator.Equal]
@@ -226,37 +259,44 @@ class _ArithmeticRewriter(Transformer):
         return node.update(**self.visit_children(node))
 
     def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
-        """Return the call that computes an operation; it carries the place of the operation."""
+        """Return the call that computes an operation; it carries the place of the operation.
+
+        node : the operation. sign : its operator in ASP syntax. parts : its one or two operands, rewritten already.
+        """
         line, column = place_of(node)
         call_site = [SymbolicTerm(node.location, value) for value in (clingo.String(sign), _place_term(line, column))]
         return Function(node.location, "calculated", [*call_site, *parts], 1)
 
 
 def _has_variable(node: AST) -> bool:
-    """Return whether a term has a variable."""
+    """Return whether a term has a variable: a capital letter before the first quote of its text."""
     return any(char.isupper() for char in str(node).split('"')[0])
 
 
 def _place_term(line: int, column: int) -> clingo.Symbol:
-    """Return a place as the term (line, column)."""
+    """Return a place as the clingo term (line, column), both from 1."""
     return clingo.Function("", [clingo.Number(line), clingo.Number(column)])
 
 
 class Calculator:
-    """The arithmetic of rules; clingo calls `calculated` while it grounds.
+    """The arithmetic of rules; clingo calls `calculated` while it grounds a program.
 
     Attributes
     ----------
-    error : the first error, or None.
+    error : the first error, with its line and column; None while there is none.
     """
 
     def __init__(self) -> None:
         self.error: ClauseError | None = None
 
     def calculated(self, sign: clingo.Symbol, at: clingo.Symbol, *parts: clingo.Symbol) -> list[clingo.Symbol]:
-        """Return a list with the result of an operation; [] when it has none, after recording the error.
+        """Return a list with the result of an operation, a number; [] when it has none, after recording the error.
 
-        sign : the operator as a string. at : the place (line, column). parts : one or two operands.
+        It has none for an operand that is no number, for a division by zero, and beyond 32 bits.
+
+        sign : the operator in ASP syntax, as a string.
+        at : the place (line, column), from 1.
+        parts : one or two operands, the left one first.
         """
         place = (at.arguments[0].number, at.arguments[1].number)
         strange = [part for part in parts if part.type != clingo.SymbolType.Number]

@@ -13,9 +13,10 @@ MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those
 
 
 def read_rule_text(text: str) -> Response:
-    """Return the statements of a rule file: {"statements": [...]}.
+    """Return the statements of a rule file: {"statements": [...]}, dictionaries as of `read_statements`.
 
-    text : the whole file. An error is returned as {"message": clingo's message} or {"error", "at", "hint"}.
+    text : the whole file. An error is returned as {"message": clingo's message}, or as {"error": message, "at": (line,
+    column), "hint"}.
     """
     try:
         return {"statements": read_statements(text)}
@@ -32,19 +33,22 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
 
     Parameters
     ----------
-    program : the encoding and its facts.
+    program : the text of the encoding and its facts.
     rules : the text of each rule, with checked arithmetic.
     heads : [name, number of arguments] of the predicates whose derived atoms are returned.
-    conflicts : the limit of the search; 0 to ground only, which tests whether everything can be computed.
+    conflicts : the limit of the search, in conflicts of clingo's; 0 to ground only, which tests whether everything can
+        be computed.
 
     Returns
     -------
-    One of these dictionaries:
+    One of these dictionaries; atoms are texts, rules are numbered from 0:
 
-    - {"atoms": shown atoms, "derived": atoms of `heads`}; - {} when nothing was searched and no error occurred; -
-    {"message": clingo's message}, with line numbers that count the rules; - {"error", "at", "rule"} for an error of
-    arithmetic; - {"cut": reason} when the search reached the limit; - {"against": numbers of rules} that together leave
-    no answer.
+    - {"atoms": shown atoms, "derived": atoms of `heads`}
+    - {} when nothing was searched and no error occurred
+    - {"message": clingo's message}, with line numbers from 1 that count the rules
+    - {"error": message, "at": (line, column), "rule": number} for an error of arithmetic
+    - {"cut": reason} when the search reached the limit
+    - {"against": numbers of rules} that together leave no answer
     """
     rules = [" ".join(rule.split("\n")) for rule in rules]
     control, failed = _grounded(program, rules)
@@ -59,6 +63,7 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
     priced = [False]
 
     def keep(model: clingo.Model) -> None:
+        """Keep the shown atoms of a model, as text, and whether it has a cost."""
         best[0], priced[0] = [str(atom) for atom in model.symbols(shown=True)], bool(model.cost)
 
     result = control.solve(on_model=keep)
@@ -70,7 +75,7 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
 
 
 def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Response | None]:
-    """Return the grounded program, and the response to an error or None."""
+    """Return the grounded program, and the response to an error (see `solve_with_rules`) or None."""
     messages: list[str] = []
     calculator = Calculator()
     control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
@@ -89,9 +94,10 @@ def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Respo
 
 
 def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
-    """Return the numbers of rules that together leave no answer; without any one of them there is an answer.
+    """Return the numbers, from 0, of rules that together leave no answer; without any one of them there is an answer.
 
-    Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all returned.
+    Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all returned. [0] when the program
+    has no answer without any rule either.
     """
     left = list(range(len(rules)))
     for number in range(min(len(rules), MAX_RULES_TRIED) - 1, -1, -1):
@@ -102,6 +108,6 @@ def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
 
 
 def _satisfiable(program: str, rules: Sequence[str]) -> bool:
-    """Return whether the program with these rules has an answer set."""
+    """Return whether the program with these rules has an answer set; False also when an error occurs."""
     control, failed = _grounded(program, rules)
     return failed is None and bool(control.solve().satisfiable)

@@ -47,8 +47,8 @@ class RuleAtom:
     ----------
     name : the name of the predicate.
     constants : of each argument its text when it is a constant, else None.
-    at : line and column of the atom.
-    places : line and column of each argument.
+    at : line and column of the atom, from 1.
+    places : line and column of each argument, from 1.
     negative : whether `not` stands before the atom, or it stands in an aggregate or a condition.
     """
 
@@ -60,7 +60,7 @@ class RuleAtom:
 
     @property
     def signature(self) -> Signature:
-        """The name and the number of arguments."""
+        """The name of the predicate and its number of arguments."""
         return self.name, len(self.constants)
 
 
@@ -70,14 +70,15 @@ class Statement:
 
     Attributes
     ----------
-    source : the file.
-    at : line and column of the statement.
+    source : the text of the file.
+    at : line and column of the statement, from 1.
     heads : the atoms that it states or chooses.
     body : the atoms on which these depend.
     text : the statement as clingo gets it, with checked arithmetic.
     written : the statement as the user wrote it, with constants replaced.
     is_single_atom_rule : whether it is a rule with one atom as its head.
-    declares : the predicate of a `#defined`, which states nothing; None for other statements.
+    declares : the predicate (name, number of arguments) of a `#defined`, which states nothing; None for other
+        statements.
     """
 
     source: Source
@@ -90,13 +91,19 @@ class Statement:
     declares: Signature | None
 
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
-        """Return the problem `what` at the statement's place, or at another line and column."""
+        """Return the problem `what` at the statement's place, or at another line and column (from 1).
+
+        hint : a remedy, or '' for none. The problem carries the file's name and the source line.
+        """
         line, column = at or self.at
         return self.source.problem(SourceSpan(line, column, column), what, hint)
 
 
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
-    """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader)."""
+    """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements).
+
+    source : the text of the file. entry : one of the dictionaries.
+    """
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
     return Statement(
@@ -112,7 +119,7 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
 
 
 def _atom(entry: Mapping[str, Any]) -> RuleAtom:
-    """Return an atom from the JSON values of the worker."""
+    """Return an atom from the JSON values of the worker: name, constants, at, places, negative."""
     line, column = entry["at"]
     places = tuple((place[0], place[1]) for place in entry["places"])
     return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, entry["negative"])
@@ -123,16 +130,17 @@ class Rulebook:
 
     Parameters
     ----------
-    statements : the statements of all files, in order.
+    statements : the statements of all files, in order, those of `#defined` included.
 
     Attributes
     ----------
-    statements : the statements that state something.
-    own_predicates : the predicates that only these rules define.
+    statements : the statements that state something, a tuple in order.
+    own_predicates : the predicates that only these rules define, a set of (name, number of arguments).
 
     Raises
     ------
-    BadInputError : a rule uses an unknown or forbidden predicate, an impossible constant, or has no effect.
+    BadInputError : a rule uses an unknown or forbidden predicate, an impossible constant, or has no effect; carries all
+        such problems.
     """
 
     def __init__(self, statements: Sequence[Statement]) -> None:
@@ -152,20 +160,23 @@ class Rulebook:
             raise BadInputError(problems)
 
     def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
-        """Return the rules that take part in an encoding, in the order of the files.
+        """Return the rules that take part in an encoding, in the order of the files; () for none.
 
-        encoding : the name of the encoding without `.lp`, or "belief" for queries.
+        encoding : the name of the encoding without `.lp`, or "belief" for the facts that queries read.
         """
         return self._counting.get(encoding, ())
 
     @property
     def self_contained(self) -> tuple[Statement, ...]:
-        """The rules that depend on no predicate but those that they define themselves."""
+        """The rules that depend on no predicate but those that they define themselves, in the order of the files."""
         return self._applicable(frozenset())
 
     @property
     def query_rules(self) -> tuple[Statement, ...]:
-        """The rules over the world model with one atom as the head; queries can use the predicates that they define."""
+        """The rules over the world model with one atom as the head, a predicate of the user's own.
+
+        Queries can use the predicates that they define. In the order of the files.
+        """
         return tuple(
             one
             for one in self.rules_reaching(QUERY_INTERFACE)
@@ -199,7 +210,10 @@ class Rulebook:
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES))
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
-        """Yield the problems of constants that no encoding accepts at their place."""
+        """Yield the problems of constants in a head atom that no encoding accepts at their place.
+
+        one : the statement. atom : one of its head atoms.
+        """
         options = [
             interface[atom.signature] for interface in USER_RULE_INTERFACES.values() if atom.signature in interface
         ]
@@ -214,7 +228,10 @@ class Rulebook:
                     yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
 
     def _applicable(self, known: frozenset[Signature]) -> tuple[Statement, ...]:
-        """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself."""
+        """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself.
+
+        In the order of the files. Predicates of `#defined` count as defined.
+        """
         found = self.statements
         while True:
             defined = {atom.signature for one in found for atom in one.heads} & self.own_predicates | self._declared
@@ -224,12 +241,15 @@ class Rulebook:
             found = left
 
     def _counts(self, one: Statement, known: frozenset[Signature], defined: set[Signature]) -> bool:
-        """Return whether all predicates of a statement are known or defined."""
+        """Return whether all predicates of a statement count.
+
+        Those of its heads must be in `known` or the user's own, those of its body in `known` or in `defined`.
+        """
         stated = all(atom.signature in known or atom.signature in self.own_predicates for atom in one.heads)
         return stated and all(atom.signature in known | defined for atom in one.body)
 
     def _without_effect(self, one: Statement) -> Iterator[Problem]:
-        """Yield the reason why a statement has no effect, if it has none."""
+        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one."""
         where = [name for name in PREDICATES_BY_ENCODING if one in self._counting[name]]
         if not where:
             names = sorted(
@@ -245,12 +265,15 @@ class Rulebook:
 
 
 def _form(signature: Signature) -> str:
-    """Return a predicate as text, such as shape/3."""
+    """Return a predicate (name, number of arguments) as text, such as shape/3."""
     return f"{signature[0]}/{signature[1]}"
 
 
 def _unknown(atom: RuleAtom, known: Iterable[Signature]) -> tuple[str, tuple[int, int], str]:
-    """Return message, place and hint for an atom whose predicate does not exist."""
+    """Return message, place (line, column) and hint for an atom whose predicate does not exist.
+
+    known : the predicates that exist, of which the hint names the most similar one.
+    """
     known = set(known)
     forms = sorted(_form(other) for other in known if other[0] == atom.name)
     hint = f"there is {', '.join(forms)}" if forms else did_you_mean(atom.name, {name for name, _ in known})
@@ -264,7 +287,7 @@ def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Seque
     ----------
     encoding : the name of the encoding without `.lp`.
     atom : the derived atom; its predicate belongs to the interface of the encoding.
-    given : the facts that the encoding gets, by predicate.
+    given : the facts that the encoding gets, by predicate (name, number of arguments).
     """
     types = USER_RULE_INTERFACES[encoding][atom.signature]
     for type_, term in zip(types, atom.args, strict=True):
@@ -277,5 +300,8 @@ def why_not_in_domain(encoding: str, atom: Fact, given: Mapping[Signature, Seque
 
 
 def _domain(type_: ArgumentType, given: Mapping[Signature, Sequence[Fact]]) -> set[str]:
-    """Return the names of all things of a kind that given facts mention."""
+    """Return the names of all things of a kind that given facts mention.
+
+    type_ : an argument type whose name is in DEFINING_FACTS. given : facts by predicate (name, number of arguments).
+    """
     return {str(fact.args[at]) for signature, at in DEFINING_FACTS[type_.name] for fact in given.get(signature, ())}

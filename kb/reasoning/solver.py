@@ -25,18 +25,20 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
     Parameters
     ----------
-    files : paths of encodings, and of files with users' rules.
-    facts : atoms without a full stop.
-    seconds : the limit of wall-clock time of the search, after which the best answer so far is returned.
+    files : paths of encodings, and of files with users' rules: these are all files outside of ENCODING_FOLDERS.
+    facts : atoms as text, without a full stop.
+    seconds : the limit of wall-clock time of the search, after which the best answer so far is returned. With users'
+        rules the limits of kb.reasoning.user_rules count instead.
 
     Returns
     -------
-    The atoms, sorted by their text; None when there is no answer set.
+    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time.
 
     Raises
     ------
     EncodingError : clingo gives any message.
     BadInputError : users' rules cause an error.
+    CannotOpenError : a file with users' rules cannot be read.
     """
     answer = _answer(tuple(files), tuple(facts), seconds)
     return None if answer is None else list(answer)
@@ -44,7 +46,7 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
 @lru_cache(maxsize=256)
 def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
-    """Return the answer of `solve` as a tuple."""
+    """Return the answer of `solve`, the shown atoms sorted by their text or None, as a tuple; cached."""
     users = [path for path in files if path.resolve().parent not in ENCODING_FOLDERS]
     if users:
         from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
@@ -67,6 +69,7 @@ def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> 
     best: list[clingo.Symbol] | None = None
 
     def keep(model: clingo.Model) -> None:
+        """Keep the shown atoms of a model as the best ones so far."""
         nonlocal best
         best = list(model.symbols(shown=True))
 

@@ -53,7 +53,7 @@ def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) ->
 
     Parameters
     ----------
-    paths : the files, in order.
+    paths : the paths of the files, in order.
     limits : of time and search.
 
     Returns
@@ -75,7 +75,7 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
 
     Parameters
     ----------
-    paths : the files, in order.
+    paths : the paths of the files, in order.
     limits : of time and search.
 
     Returns
@@ -104,7 +104,10 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
 
 @lru_cache(maxsize=16)
 def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
-    """Return the checked rules of some sources."""
+    """Return the checked rules of some sources together; raise BadInputError with the problems of all of them.
+
+    seconds : the limit of wall-clock time for each.
+    """
     problems: list[Problem] = []
     statements: list[Statement] = []
     for source in sources:
@@ -118,7 +121,9 @@ def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
 
 
 def _statements(source: Source, seconds: float) -> list[Statement]:
-    """Return the statements of one source; raise BadInputError when it is no file of rules.
+    """Return the statements of one source, in order.
+
+    Raises BadInputError when it is no file of rules, has no rule, or takes too much time or memory.
 
     seconds : the limit of wall-clock time.
     """
@@ -138,7 +143,10 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
 
 
 def _not_allowed(source: Source) -> Iterator[Problem]:
-    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash."""
+    """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
+
+    Nothing is yielded after the first bracket that is nested more than MAX_TERM_DEPTH deep.
+    """
     depth = 0
     for token in tokenize(source, []):
         if token.text == "#include":
@@ -163,7 +171,7 @@ def solve_with_user_rules(
 
     Returns
     -------
-    The atoms; None when none of the rules reaches this encoding.
+    The atoms, clingo symbols; None when none of the rules reaches this encoding.
 
     Raises
     ------
@@ -191,8 +199,13 @@ def solve_with_user_rules(
 def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], limits: RuleLimits) -> dict[str, Any]:
     """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
 
-    name : the name of the program in messages; '' for the rules alone. limits : of time and search; with 0 conflicts
-    the program is only grounded.
+    The response is {"atoms": texts, "derived": texts of atoms that heads of rules may have derived}, or {} without a
+    search.
+
+    name : the name of the program in messages; '' for the rules alone.
+    program : the text of the encoding and its facts; '' for the rules alone.
+    reaching : the rules, at least one.
+    limits : of time and search; with 0 conflicts the program is only grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
@@ -222,7 +235,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
 
 
 def _as_fact(text: str) -> Fact | None:
-    """Return the fact that a derived atom denotes; None when fact files could not express it."""
+    """Return the fact that the text of a derived atom denotes; None when fact files could not express it."""
     try:
         (fact,) = facts_from_text(f"{text}.")
     except (BadInputError, ValueError):
@@ -231,7 +244,13 @@ def _as_fact(text: str) -> Fact | None:
 
 
 def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
-    """Return the error at the first rule that may have derived an atom."""
+    """Return the error at the first rule that may have derived an atom; at the first rule when none may.
+
+    reaching : the rules, at least one.
+    text : the atom as text.
+    atom : the same as a fact; None when it is none, then its name alone decides.
+    what : the message.
+    """
     name = text.partition("(")[0]
     for one in reaching:
         for head in one.heads:
@@ -241,27 +260,30 @@ def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact |
 
 
 def _may_have_derived(constants: Sequence[str | None], atom: Fact) -> bool:
-    """Return whether the constants of a head agree with an atom."""
+    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything."""
     return len(constants) == len(atom.args) and all(
         constant is None or constant == str(term) for constant, term in zip(constants, atom.args, strict=True)
     )
 
 
 def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputError:
-    """Return the error at the first of the rules."""
+    """Return the error with the message `what` at the first of the rules, which are at least one."""
     return BadInputError([reaching[0].problem(what)])
 
 
 @cache
 def _worker() -> Worker:
-    """Return the process that all users' rules of this process share."""
+    """Return the process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)
     return worker
 
 
 def _error_at_place(source: Source, message: str) -> BadInputError:
-    """Return the error for a message of clingo's, at its place in the user's file."""
+    """Return the error for a message of clingo's, at its place in the user's file.
+
+    It stands at the start of the file when the message has no place.
+    """
     place = CLINGO_MESSAGE.search(message)
     if place is None:
         return BadInputError([source.problem(source.start(), _one_line(message))])
@@ -272,12 +294,15 @@ def _error_at_place(source: Source, message: str) -> BadInputError:
 
 
 def _span(at: Sequence[int]) -> SourceSpan:
-    """Return the span of one column."""
+    """Return the span of one column: at is [line, column], both from 1."""
     return SourceSpan(at[0], at[1], at[1])
 
 
 def _one_line(message: str) -> str:
-    """Return the first line of a message of clingo's; the lines below show the rewritten program."""
+    """Return the first line of a message of clingo's, with single blanks and without a colon at its end.
+
+    The lines below show the rewritten program.
+    """
     return " ".join(message.split("\n")[0].split()).rstrip(":")
 
 

@@ -17,7 +17,7 @@ LineQueue = queue.SimpleQueue[bytes]  # the lines that a worker has written
 
 
 class Worker:
-    """A handle of the process, which starts with the first request.
+    """A handle of the process, which starts with the first request (see `exchange`).
 
     After a crash or a timeout, a new process is started for the next request.
     """
@@ -27,7 +27,7 @@ class Worker:
         self._lines: LineQueue = queue.SimpleQueue()
 
     def close(self) -> None:
-        """End the process."""
+        """End the process, if one runs; the next request starts another one."""
         worker, self._process = self._process, None
         if worker is not None:
             _end(worker)
@@ -37,15 +37,19 @@ class Worker:
 
         Parameters
         ----------
-        request : JSON values.
+        request : JSON values, as kb.reasoning.query_worker takes them.
         seconds : the limit of wall-clock time.
 
         Returns
         -------
-        The response; {"limit": reason} when the process gives none in time or ends.
+        The response, JSON values; {"limit": reason} when the process gives none in time or ends.
 
         An exception while the process works, such as a keyboard interrupt, ends the process. Else its late response
         would be taken for that of the next request.
+
+        Raises
+        ------
+        RuntimeError : a new process does not start.
         """
         if self._process is None:
             self._process, self._lines = _start()
@@ -70,7 +74,10 @@ class Worker:
 
 
 def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
-    """Return a new process that is ready, and the queue of the lines that it writes."""
+    """Return a new process that is ready, and the queue of the lines that it writes.
+
+    Raises RuntimeError when it is not ready within MAX_START_SECONDS.
+    """
     worker = subprocess.Popen(
         isolated_command("kb.reasoning.query_worker"),
         stdin=subprocess.PIPE,
@@ -91,7 +98,7 @@ def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
 
 
 def _forward_lines(stream: IO[bytes], lines: LineQueue) -> None:
-    """Put the lines of a stream into a queue, and b"" at its end."""
+    """Put the lines of a stream into a queue, with their line ends, and b"" at its end; close the stream."""
     with suppress(OSError, ValueError):
         for line in stream:
             lines.put(line)
@@ -101,7 +108,7 @@ def _forward_lines(stream: IO[bytes], lines: LineQueue) -> None:
 
 
 def _next_line(lines: LineQueue, seconds: float) -> bytes | None:
-    """Return the next line; b"" when the stream has ended, None after `seconds` seconds."""
+    """Return the next line with its line end; b"" when the stream has ended, None after `seconds` seconds."""
     try:
         return lines.get(timeout=max(0.0, seconds))
     except queue.Empty:
@@ -109,7 +116,7 @@ def _next_line(lines: LineQueue, seconds: float) -> bytes | None:
 
 
 def _end(worker: "subprocess.Popen[bytes]") -> None:
-    """Kill a process and close its input."""
+    """Kill a process, wait for its end, and close its input."""
     worker.kill()
     worker.wait()
     if worker.stdin is not None:

@@ -5,5 +5,5 @@ Modules in reading order:
 task     parameters, claims and goals, read from start.lp and goal.lp
 binding  the object of the world model that each parameter means
 
-Public names: `Task`, `Parameter`, `Claim`, `read_task`, `task_of`, `reconcile`, `Reconciled`.
+Public names: `Task`, `Parameter`, `Claim`, `read_task`, `task_of`, `reconcile`, `Reconciliation`.
 """

@@ -14,9 +14,11 @@ from kb.world.model import Node, WorldModel
 class Reconciliation(NamedTuple):
     """The objects of the world model that the task's parameters mean.
 
+    Parameters and nodes are given by their names.
+
     Attributes
     ----------
-    binding : the node of each bound parameter.
+    binding : parameter -> node, of each bound parameter.
     hypothesised : parameters of goals that match nothing seen so far.
     doubtful : (parameter, node) pairs that need another observation to decide.
     contradicted : (parameter, node, property) where the best match contradicts a claim; property is shape or colour.
@@ -46,14 +48,14 @@ def reconcile(
     ----------
     task : the task.
     model : the world model.
-    distances : the length of the way to each node, in squares, where it is known.
-    before : the binding up to now; it is kept unless another one is clearly better.
-    rules : files with users' rules.
-    carried : the parameters that the goals move.
+    distances : the length of the way to each node, in squares, by its name; nodes without a known way may be missing.
+    before : parameter -> node, the binding up to now; it is kept unless another one is clearly better.
+    rules : files with users' rules, solved together with kb/asp/reconciliation.lp.
+    carried : the names of the parameters that the goals move.
 
     Returns
     -------
-    The binding, and what is open about it.
+    The binding, and what is open about it; nothing is bound when the encodings have no answer.
 
     Raises
     ------
@@ -77,7 +79,11 @@ def reconcile(
 
 
 def _task_facts(task: Task) -> Iterable[str]:
-    """Yield the object parameters and their claims as facts."""
+    """Yield the object parameters and their claims as facts for kb/asp/reconciliation.lp, without full stops.
+
+    These are `wanted(Parameter)`, `named(Parameter)` where a goal mentions it, and
+    `claim(Parameter,shape|colour,Value,Percent)`.
+    """
     for name, parameter in task.parameters.items():
         if parameter.kind == "object":
             yield f"wanted({name})"
@@ -90,7 +96,12 @@ def _task_facts(task: Task) -> Iterable[str]:
 
 
 def _node_facts(node: Node) -> Iterable[str]:
-    """Yield what is believed about an object as facts."""
+    """Yield what is believed about an object as facts for kb/asp/reconciliation.lp, without full stops.
+
+    These are `candidate(Node,Percent)` and `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where
+    no impression can change it; `fixed(Node)` and `moved(Node)`; and
+    `possible_rectangle_shapes(Node,shape,square|brick)`, what a rectangle may be as far as its size is known.
+    """
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):
         yield f"has({node.name},shape,{shape},{confidence})"

@@ -33,9 +33,9 @@ class Parameter:
 
     Attributes
     ----------
-    name : its name in the task.
+    name : its name in the task, a word such as x.
     kind : "object", "door" or "room".
-    span : the place in start.lp that introduces it.
+    span : the place in start.lp that introduces it: line and columns from 1.
     """
 
     name: str
@@ -49,8 +49,8 @@ class Claim:
 
     Attributes
     ----------
-    fact : the claim, such as `shape(x, square)`.
-    confidence : percent, 0 to 100.
+    fact : the claim, such as `shape(x, square)` or `colour(x, r)`.
+    confidence : the user's confidence in it, percent, 0 to 100; 100 when none is given.
     """
 
     fact: Fact
@@ -64,8 +64,8 @@ class Task:
     Attributes
     ----------
     parameters : the parameters by name, in the order of start.lp.
-    claims : the claims about parameters, in order.
-    goals : what shall hold, in order; `first(G)` and `then(G)` are kept as they stand.
+    claims : the claims about objects' shapes and colours, in the order of start.lp.
+    goals : what shall hold, facts in the order of goal.lp; `first(G)` and `then(G)` are kept as they stand.
     """
 
     parameters: Mapping[str, Parameter]
@@ -74,12 +74,12 @@ class Task:
 
     @property
     def goal_parameters(self) -> frozenset[str]:
-        """The names of the parameters that goals mention."""
+        """The names of the parameters that goals mention; goals inside `first(G)` and `then(G)` count."""
         words = {str(term) for goal in self.goals for term in _inner_goal(goal).args}
         return frozenset(words & set(self.parameters))
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return the claims about one parameter."""
+        """Return the claims about one parameter, in the order of start.lp; () when there are none."""
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
@@ -88,11 +88,11 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
 
     Parameters
     ----------
-    start, goal : the files start.lp and goal.lp.
+    start, goal : the paths of the files start.lp and goal.lp.
 
     Returns
     -------
-    The task.
+    The task: parameters, claims and goals, checked.
 
     Raises
     ------
@@ -120,16 +120,16 @@ def read_start(path: Path | str) -> tuple[Fact, ...]:
 
     Parameters
     ----------
-    path : the file.
+    path : the path of the file.
 
     Returns
     -------
-    The facts in order.
+    The facts in order: object/1, door/1, room/1, shape/2, colour/2 and confidence/2.
 
     Raises
     ------
     CannotOpenError : the file cannot be read.
-    BadInputError : the file has errors.
+    BadInputError : the file has errors; carries all of them.
     """
     source = read_source(path)
     problems: list[Problem] = []
@@ -144,10 +144,12 @@ def read_start(path: Path | str) -> tuple[Fact, ...]:
 def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_facts: tuple[Fact, ...]) -> Task:
     """Return the task that the facts of two sources state.
 
+    The vocabulary of the facts, which predicates with which arguments, must have been checked before.
+
     Parameters
     ----------
-    start, start_facts : the source and the facts of start.lp.
-    goal, goal_facts : the source and the facts of goal.lp. The vocabulary of the facts has been checked.
+    start, start_facts : the source (its text, for messages) and the facts of start.lp.
+    goal, goal_facts : the source and the facts of goal.lp.
 
     Returns
     -------
@@ -155,7 +157,7 @@ def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_fac
 
     Raises
     ------
-    BadInputError : parameters, claims or goals contradict each other.
+    BadInputError : parameters, claims or goals contradict each other; carries the problems of both files.
     """
     parameters, claims, problems = _start_problems(start, start_facts)
     problems += _duplicates(goal, goal_facts)
@@ -168,7 +170,7 @@ def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_fac
 def _start_problems(
     source: Source, start_facts: tuple[Fact, ...]
 ) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
-    """Return the parameters and the claims of start.lp, and the problems in it."""
+    """Return the parameters of start.lp by name, its claims in order, and the problems in it; [] for none."""
     problems = _duplicates(source, start_facts)
     parameters = _parameters(source, start_facts, problems)
     claims = _claims(source, start_facts, parameters, problems)
@@ -177,7 +179,10 @@ def _start_problems(
 
 
 def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list[Problem]) -> tuple[Fact, ...]:
-    """Return the facts of a source; append its problems to `problems`."""
+    """Return the facts of a source, in order; append its problems to `problems`.
+
+    () for None and for a text with syntax errors. Facts that the vocabulary does not know are returned, too.
+    """
     if source is None:
         return ()
     try:
@@ -203,7 +208,10 @@ def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
 
 
 def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]) -> dict[str, Parameter]:
-    """Return the parameters that start.lp introduces; append problems to `problems`."""
+    """Return the parameters that start.lp introduces, by name in the order of the facts; append problems to `problems`.
+
+    A reserved word is left out; a name that is introduced as two kinds keeps the first one.
+    """
     found: dict[str, Parameter] = {}
     for fact in facts:
         if fact.name not in PARAMETER_KINDS:
@@ -222,7 +230,10 @@ def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]
 def _claims(
     source: Source, facts: tuple[Fact, ...], parameters: Mapping[str, Parameter], problems: list[Problem]
 ) -> list[Claim]:
-    """Return the claims of start.lp; append problems to `problems`."""
+    """Return the claims of start.lp in order; append problems to `problems`.
+
+    Claims about an unknown parameter, or about one that is no object, are returned, too.
+    """
     claims: list[Claim] = []
     confidences: dict[Fact, int] = {}
     for fact in facts:
@@ -244,7 +255,7 @@ def _claims(
 
 
 def _claim(fact: Fact) -> Claim:
-    """Return the claim that a fact states."""
+    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain."""
     if fact.name != "confidence":
         return Claim(fact)
     inner, degree = fact.args
@@ -254,7 +265,10 @@ def _claim(fact: Fact) -> Claim:
 
 
 def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
-    """Yield a problem for each pair of certain claims about one object that cannot both hold."""
+    """Yield a problem for each certain claim that cannot hold with the first one of its kind on that object.
+
+    Certain are claims with a confidence of 100 percent; kinds are shape and colour.
+    """
     certain: dict[tuple[str, Term], Fact] = {}
     for claim in claims:
         if claim.confidence < CERTAIN_CONFIDENCE:
@@ -268,7 +282,10 @@ def _contradictions(source: Source, claims: list[Claim]) -> Iterator[Problem]:
 
 
 def _compatible(one: Fact, other: Fact) -> bool:
-    """Return whether two claims of the same kind about one object can both hold."""
+    """Return whether two claims of the same kind (shape or colour) about one object can both hold.
+
+    So it is for equal values, and for shapes of which one includes the other: polygon all, rectangle square and brick.
+    """
     first, second = str(one.args[1]), str(other.args[1])
     if first == second:
         return True
@@ -282,7 +299,10 @@ def _compatible(one: Fact, other: Fact) -> bool:
 
 
 def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[str, Parameter]) -> Iterator[Problem]:
-    """Yield the problems of goals: their order, their arguments, and an empty goal."""
+    """Yield the problems of goals: their order, their arguments, and an empty goal.
+
+    source : goal.lp. goals : its facts, in order. parameters : those of start.lp, by name.
+    """
     has_goal = False
     for fact in goals:
         goal = _inner_goal(fact)
@@ -305,7 +325,7 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
 
 
 def _inner_goal(fact: Fact) -> Fact:
-    """Return the goal inside `first(G)` or `then(G)`; other goals as they are."""
+    """Return the goal inside `first(G)` or `then(G)`; any other goal as it is."""
     inner = fact.args[0] if fact.name in ("first", "then") else fact
     assert isinstance(inner, Symbol)
     return inner
@@ -314,7 +334,14 @@ def _inner_goal(fact: Fact) -> Fact:
 def _wrong_kind(
     source: Source, goal: Fact, term: Symbol, kinds: tuple[str, ...], parameters: Mapping[str, Parameter]
 ) -> Iterator[Problem]:
-    """Yield the problem of an argument that is no parameter of an accepted kind."""
+    """Yield the problem of an argument that is no parameter of an accepted kind; nothing when it is one.
+
+    source : goal.lp.
+    goal : the goal, without `first` or `then`.
+    term : its argument, a plain name.
+    kinds : the kinds of parameters (object, door, room) and the words (utak, start) that the argument may be.
+    parameters : those of start.lp, by name.
+    """
     if term.name in kinds:
         return
     wanted = " or ".join(f"a{'n' * (kind == 'object')} {kind}" if kind in PARAMETER_KINDS else kind for kind in kinds)
@@ -331,6 +358,9 @@ def _wrong_kind(
 
 
 def _not_introduced(name: str, parameters: Mapping[str, Parameter]) -> tuple[str, str]:
-    """Return message and hint for a parameter that start.lp does not introduce."""
+    """Return message and hint for a parameter that start.lp does not introduce.
+
+    name : the parameter. parameters : those that are introduced, by name; the hint names the most similar one.
+    """
     hint = did_you_mean(name, [*parameters, "utak", "start"])
     return f"{name} is not introduced in start.lp", hint or f"write object({name}). in start.lp (or door, room)"

@@ -10,7 +10,7 @@ ValueTuple = tuple[Value, ...]  # a tuple of an aggregate
 
 
 class Tally:
-    """Collects the tuples of one aggregate.
+    """Collects the tuples of one aggregate; a tuple that is added twice counts once.
 
     Parameters
     ----------
@@ -26,7 +26,8 @@ class Tally:
     def add(self, values: ValueTuple, possible: bool) -> None:
         """Add a tuple of terms.
 
-        values : the tuple; its first value is the weight. possible : whether the tuple may be absent.
+        values : the tuple; its first value is the weight. For `#count` it may be empty.
+        possible : whether the tuple may be absent; else it is certain.
         """
         if not possible:
             self._certain[values] = None
@@ -36,9 +37,10 @@ class Tally:
             self._vague.append(values)
 
     def value(self) -> Value:
-        """Return the value of the aggregate; an `Unknown` with bounds when it is not certain.
+        """Return the value of the aggregate; an `Unknown`, with bounds for a number, when it is not certain.
 
-        Raises CalculationError for a value beyond 32 bits.
+        It is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
+        Infimum for `#max`. Raises CalculationError for a value beyond 32 bits.
         """
         new_possible = [values for values in self._possible if values not in self._certain]
         if self._function == "#count":
@@ -48,9 +50,9 @@ class Tally:
         return self._least_or_greatest(new_possible)
 
     def _between(self, least: int, up: int, down: int) -> Value:
-        """Return a number from `least` - `down` to `least` + `up`.
+        """Return a number from `least` - `down` to `least` + `up`: an integer when both are 0, else an `Unknown`.
 
-        There is no upper bound where a tuple has unknown values.
+        There is no upper bound where a tuple has unknown values. Raises CalculationError for a `least` beyond 32 bits.
         """
         require_int32(least)
         high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
@@ -58,9 +60,13 @@ class Tally:
         return least if low == high == least else Unknown(low, high)
 
     def _sum(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the sum of the weights; values that are no numbers count 0."""
+        """Return the sum of the weights, an `Unknown` with bounds when it is not certain.
+
+        Weights that are no numbers count 0. new_possible : the tuples that may be absent.
+        """
 
         def weight(values: ValueTuple) -> int:
+            """Return the number with which a tuple counts."""
             value = values[0] if values else 0
             number = value if isinstance(value, int) else 0
             return max(0, number) if self._function == "#sum+" else number
@@ -73,7 +79,10 @@ class Tally:
         return self._between(sum(map(weight, self._certain)), sum(w for w in weights if w > 0), down)
 
     def _least_or_greatest(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the least or the greatest first value; for no tuples, the value beyond all others."""
+        """Return the least (for `#min`) or the greatest first value; for no tuples, the value beyond all others.
+
+        new_possible : the tuples that may be absent. An `Unknown` when one of them, or an unknown value, may change it.
+        """
         least = self._function == "#min"
         best = clingo.Supremum if least else clingo.Infimum
         for values in self._certain:
@@ -94,13 +103,19 @@ class Tally:
 
 
 def _is_beyond(value: Value, best: object, least: bool) -> bool:
-    """Return whether a value is less (for `least`), or greater, than the best one."""
+    """Return whether a known value is less (for `least`), or greater, than the best one in clingo's order.
+
+    best : a clingo symbol.
+    """
     one = as_clingo(value)
     return bool(one < best) if least else bool(one > best)
 
 
 def _may_go_beyond(value: Value, best: object, least: bool) -> bool:
-    """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one."""
+    """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one.
+
+    best : a clingo symbol; the order is clingo's.
+    """
     ends = bounds(value)
     if ends is None:
         return True

@@ -13,7 +13,10 @@ UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
 
 
 def rename_utak_to_org(clause: Clause) -> Clause:
-    """Return a clause with `org` in the place of `utak`, except where `utak` stands for a kind."""
+    """Return a clause with the constant `org` in the place of `utak`, except where `utak` stands for a kind.
+
+    It stands for a kind as such an argument of kind/3, and in comparisons with a variable that is one.
+    """
     kinds = {
         part.name
         for atom in atoms_of(clause.body)
@@ -24,15 +27,15 @@ def rename_utak_to_org(clause: Clause) -> Clause:
 
 
 def _kind_arguments(atom: Atom) -> list[int]:
-    """Return the indices of the arguments of an atom that are kinds."""
+    """Return the indices, from 0, of the arguments of an atom that are kinds; [] for an unknown predicate."""
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     return [at for at, slot in enumerate(slots) if slot is KIND_ARGUMENT]
 
 
 def _renamed(part: Any, kinds: Set[str]) -> Any:
-    """Return a part of a clause with `org` in the place of `utak`.
+    """Return a part of a clause (term, literal, element or tuple of them) with `org` in the place of `utak`.
 
-    kinds : variables that stand for kinds; a comparison with one of them is kept.
+    kinds : names of variables that stand for kinds; a comparison with one of them is kept.
     """
     if isinstance(part, Constant):
         return replace(part, value=ORG_TERM) if part.value == UTAK_TERM else part

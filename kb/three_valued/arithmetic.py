@@ -22,19 +22,19 @@ def require_int32(value: int) -> int:
 
 
 def _divide(a: int, b: int) -> int:
-    """Return the quotient of two integers, rounded towards zero."""
+    """Return the quotient of two integers, rounded towards zero; raise CalculationError for a division by zero."""
     if b == 0:
         raise CalculationError("a division by zero")
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
 
 def _remainder(a: int, b: int) -> int:
-    """Return the remainder of the division rounded towards zero; it has the sign of `a`."""
+    """Return the remainder of the division rounded towards zero; it has the sign of `a`. CalculationError for b = 0."""
     return a - b * _divide(a, b)
 
 
 def _power(a: int, b: int) -> int:
-    """Return a to the power of b; 0 for negative b."""
+    """Return a to the power of b; 0 for negative b. Raises CalculationError where b makes it surely exceed 32 bits."""
     if b < 0:
         return 0
     if abs(a) > 1 and b > MAX_EXPONENT:
@@ -64,7 +64,7 @@ def calculate(sign: str, *values: int) -> int:
     Parameters
     ----------
     sign : the operator in ASP syntax; `|` with one value is the absolute value, `?` is bitwise or, `^` exclusive or.
-    values : one or two integers.
+    values : one or two integers, the left operand first.
 
     Returns
     -------

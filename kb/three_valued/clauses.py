@@ -38,7 +38,7 @@ class ClauseError(Exception):
     Attributes
     ----------
     what : the message.
-    at : line and column.
+    at : line and column, from 1.
     hint : a remedy, or '' for none.
     """
 
@@ -49,7 +49,13 @@ class ClauseError(Exception):
 
 @dataclass(frozen=True)
 class Constant:
-    """A ground term: an integer, or a clingo symbol (a name, a string, a compound term)."""
+    """A term without variables.
+
+    Attributes
+    ----------
+    value : an integer, or a clingo symbol (a name, a string, a compound term).
+    at : line and column, from 1.
+    """
 
     value: Any
     at: tuple[int, int]
@@ -59,7 +65,11 @@ class Constant:
 class Variable:
     """A variable.
 
-    Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name such as `.1`.
+    Attributes
+    ----------
+    name : its name. Each `_` has a unique name such as `?1`; the variable for an interval in an argument has a name
+        such as `.1`.
+    at : line and column, from 1.
     """
 
     name: str
@@ -68,7 +78,14 @@ class Variable:
 
 @dataclass(frozen=True)
 class Operation:
-    """Arithmetic on one or two terms; the sign `..` denotes an interval."""
+    """Arithmetic on one or two terms.
+
+    Attributes
+    ----------
+    sign : the operator in ASP syntax; `..` denotes an interval, `|` the absolute value, `?` bitwise or.
+    parts : the operands, the left one first.
+    at : line and column, from 1.
+    """
 
     sign: str
     parts: tuple["ClauseTerm", ...]
@@ -77,7 +94,14 @@ class Operation:
 
 @dataclass(frozen=True)
 class Compound:
-    """A term with arguments; a tuple has the name ''."""
+    """A term with arguments.
+
+    Attributes
+    ----------
+    name : its name; '' for a tuple.
+    parts : the arguments in order.
+    at : line and column, from 1.
+    """
 
     name: str
     parts: tuple["ClauseTerm", ...]
@@ -96,7 +120,7 @@ class Atom:
     name : the predicate.
     parts : the arguments.
     negations : the number of `not` before the atom, 0 to 2.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     name: str
@@ -106,13 +130,21 @@ class Atom:
 
     @property
     def signature(self) -> tuple[str, int]:
-        """The name and the number of arguments."""
+        """The name of the predicate and its number of arguments."""
         return self.name, len(self.parts)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold."""
+    """A chain of comparisons `first sign term sign term ...`; when `negated`, that the chain does not hold.
+
+    Attributes
+    ----------
+    first : the first term.
+    rest : pairs (sign, term); each sign, in ASP syntax, compares its term with the one before.
+    negated : whether `not` stands before the chain.
+    at : line and column, from 1.
+    """
 
     first: ClauseTerm
     rest: tuple[tuple[str, ClauseTerm], ...]
@@ -122,7 +154,13 @@ class Comparison:
 
 @dataclass(frozen=True)
 class AggregateElement:
-    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold."""
+    """An element of an aggregate: the tuple of terms counts where all literals of the condition hold.
+
+    Attributes
+    ----------
+    terms : the tuple; its first term is the weight.
+    condition : the literals; () for none.
+    """
 
     terms: tuple[ClauseTerm, ...]
     condition: tuple["Literal", ...]
@@ -135,10 +173,10 @@ class Aggregate:
     Attributes
     ----------
     function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
-    elements : what is counted or summed.
-    guards : (sign, term) such that `term sign value` must hold.
+    elements : what is counted, summed or compared.
+    guards : pairs (sign, term) such that `term sign value` must hold.
     negated : whether `not` stands before it.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     function: str
@@ -150,7 +188,14 @@ class Aggregate:
 
 @dataclass(frozen=True)
 class ConditionalLiteral:
-    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold."""
+    """A conditional literal `literal : condition`: the literal holds wherever all literals of the condition hold.
+
+    Attributes
+    ----------
+    literal : the literal before the colon.
+    condition : the literals after it.
+    at : line and column, from 1.
+    """
 
     literal: "Literal"
     condition: tuple["Literal", ...]
@@ -159,7 +204,13 @@ class ConditionalLiteral:
 
 @dataclass(frozen=True)
 class BooleanLiteral:
-    """The literal `#true` or `#false`."""
+    """The literal `#true` or `#false`.
+
+    Attributes
+    ----------
+    value : whether it is true, a `not` before it included.
+    at : line and column, from 1.
+    """
 
     value: bool
     at: tuple[int, int]
@@ -176,7 +227,7 @@ class Clause:
     ----------
     head : the atom that it states; None for a constraint or a query.
     body : its literals.
-    at : line and column.
+    at : line and column, from 1.
     """
 
     head: Atom | None
@@ -193,7 +244,7 @@ def translate_rule(rule: AST) -> list[Clause]:
 
     Returns
     -------
-    The clauses.
+    The clauses, at least one; `at` of each part counts lines and columns from 1.
 
     Raises
     ------
@@ -203,13 +254,13 @@ def translate_rule(rule: AST) -> list[Clause]:
 
 
 def place_of(node: AST) -> tuple[int, int]:
-    """Return the line and the column at which a part of a syntax tree begins."""
+    """Return the line and the column, both from 1, at which a part of a syntax tree begins."""
     begin = node.location.begin
     return begin.line, begin.column
 
 
 class _Translator:
-    """Translates one rule.
+    """Translates one rule of clingo's syntax tree, without pools.
 
     The comparisons for intervals in arguments are collected in `_intervals`, until their conjunction is complete.
     """
@@ -219,13 +270,13 @@ class _Translator:
         self._intervals: list[Literal] = []
 
     def clause(self, rule: AST) -> Clause:
-        """Return a rule without pools as a clause."""
+        """Return a rule without pools as a clause; raise ClauseError for what is not supported."""
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
 
     def _head(self, node: AST) -> Atom | None:
-        """Return the head atom, or None for a constraint."""
+        """Return the head atom, or None for a constraint; raise ClauseError for any other head."""
         if node.ast_type == ASTType.Literal and node.sign == Sign.NoSign:
             if node.atom.ast_type == ASTType.BooleanConstant and not node.atom.value:
                 return None
@@ -234,7 +285,7 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
-        """Return the literals, followed by the comparisons for the intervals in their arguments."""
+        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments."""
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals
@@ -242,7 +293,7 @@ class _Translator:
         return tuple(found)
 
     def _literal(self, node: AST) -> Literal:
-        """Return one literal."""
+        """Return one literal; raise ClauseError for a theory atom."""
         if node.ast_type == ASTType.ConditionalLiteral:
             condition = self._conjunction(node.condition)
             (literal, *intervals) = self._conjunction([node.literal])
@@ -262,7 +313,7 @@ class _Translator:
         raise ClauseError("theory atoms are not known here", at)
 
     def _atom(self, node: AST) -> Atom:
-        """Return an atom with its negations."""
+        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`."""
         found, at = node.atom.symbol, place_of(node.atom.symbol)
         if found.ast_type == ASTType.UnaryOperation:
             raise ClauseError("classical negation is not known here", at, "write not, for what is not believed")
@@ -271,7 +322,11 @@ class _Translator:
         return Atom(found.name, tuple(map(self._term, found.arguments)), int(node.sign), at)
 
     def _aggregate(self, node: AST, negated: bool, at: tuple[int, int]) -> Aggregate:
-        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard."""
+        """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard.
+
+        `{ literal : condition }` becomes a `#count`. negated : whether `not` stands before it. at : its line and
+            column, from 1.
+        """
         sides = ((node.left_guard, 0), (node.right_guard, 1))
         guards = [
             (
@@ -288,7 +343,7 @@ class _Translator:
         return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
     def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
-        """Return an element of an aggregate with terms."""
+        """Return an element of an aggregate: its tuple of terms, and its condition."""
         outer, self._intervals = self._intervals, []
         found = tuple(map(self._term, terms))
         waiting, self._intervals = self._intervals, outer
@@ -307,7 +362,13 @@ class _Translator:
         return AggregateElement((Constant(clingo.String(name), at), *parts), literals)
 
     def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
-        """Return a term; whole : whether it may be an interval, because it is one side of a comparison."""
+        """Return a term; raise ClauseError for a function of Python (@name).
+
+        An interval that is not wanted as such is replaced by a variable; the comparison of this variable with the
+        interval is appended to `_intervals`.
+
+        whole : whether the term may be an interval, because it is one side of a comparison.
+        """
         at = place_of(node)
         if node.ast_type == ASTType.SymbolicTerm:
             value = node.symbol
@@ -336,7 +397,10 @@ class _Translator:
 
 
 def variables_of(part: Any) -> Iterator[str]:
-    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included."""
+    """Yield the names of all variables in a term, a literal or a tuple of them, those inside aggregates included.
+
+    A name is yielded as often as it appears; `_` has names such as `?1`, an interval's variable such as `.1`.
+    """
     if isinstance(part, Variable):
         yield part.name
     elif isinstance(part, tuple):
@@ -357,8 +421,9 @@ def variables_of(part: Any) -> Iterator[str]:
 def global_variables(body: Sequence[Literal]) -> dict[str, None]:
     """Return the named variables of a body, in the order in which they appear.
 
-    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out.
-    The result is a dictionary that serves as an ordered set.
+    A variable that appears only inside the elements of aggregates or in conditional literals is local, and left out. So
+    are `_` and the variables of intervals. The result is a dictionary from each name to None, which serves as an
+    ordered set.
     """
     found: dict[str, None] = {}
     for literal in body:
@@ -371,7 +436,7 @@ def global_variables(body: Sequence[Literal]) -> dict[str, None]:
 
 
 def atoms_of(part: Any) -> Iterator[Atom]:
-    """Yield the atoms in literals, those in aggregates and conditions included."""
+    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order."""
     if isinstance(part, Atom):
         yield part
     elif isinstance(part, tuple):

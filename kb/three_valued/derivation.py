@@ -17,8 +17,8 @@ def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
 
     Parameters
     ----------
-    clauses : rules with heads.
-    beliefs : the facts, to which derived atoms are added.
+    clauses : rules with heads, in any order.
+    beliefs : the facts; changed: derived atoms are added, each as certain or as one that may hold.
 
     Raises
     ------
@@ -31,7 +31,10 @@ def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
 
 
 def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
-    """Add the atoms that a clause derives, and return how many of them are new."""
+    """Add to `beliefs` the atoms that a clause derives, and return how many of them are new.
+
+    possible : whether to add those that may hold, rather than those that are certain.
+    """
     assert clause.head is not None
     head, fixed_confidences = clause.head, fixed_confidence_variables(clause.body, ())
     found = list(find_bindings(clause.body, {}, beliefs, possible, fixed_confidences))
@@ -40,7 +43,10 @@ def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
 
 
 def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
-    """Return the clauses in groups that define each other, each group after those on which it depends."""
+    """Return the clauses in groups that define each other, each group after those on which it depends.
+
+    Raises ClauseError when a group depends on its own negation.
+    """
     heads = {clause.head.signature: clause for clause in clauses if clause.head is not None}
     uses: dict[Signature, set[Signature]] = {head: set() for head in heads}
     for clause in clauses:
@@ -61,7 +67,10 @@ def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
 
 
 def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
-    """Return all predicates on which a predicate depends, directly or not."""
+    """Return all predicates on which a predicate depends, directly or not; itself only if it depends on itself.
+
+    uses : predicate -> the predicates in the bodies of its clauses, as far as clauses define them.
+    """
     found: set[Signature] = set()
     edge = [head]
     while edge:
@@ -72,7 +81,10 @@ def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Si
 
 
 def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
-    """Raise ClauseError when a group of predicates depends on the negation of one of them."""
+    """Raise ClauseError when a group of predicates depends on the negation of one of them.
+
+    group : their clauses. mutual : the predicates.
+    """
     for clause in group:
         for atom in _negated_atoms(clause.body):
             if atom.signature in mutual:
@@ -81,7 +93,7 @@ def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
 
 
 def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
-    """Yield the atoms of a body that are negated or stand in aggregates or conditional literals."""
+    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals."""
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal

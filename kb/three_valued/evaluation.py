@@ -64,15 +64,17 @@ def find_bindings(
 
     Parameters
     ----------
-    body : the literals.
-    given : the values of variables that are bound already.
-    beliefs : the believed facts.
-    possible : whether to use the possible mode.
-    fixed_confidences : variables for confidences that are read as they are believed now, and not as they may turn out.
+    body : the literals, in any order.
+    given : the values of variables that are bound already, by name.
+    beliefs : the believed facts, and the atoms that rules derived; its cache of orders is filled.
+    possible : whether to use the possible mode, and yield the bindings with which the body may hold; else only those
+        with which it certainly holds.
+    fixed_confidences : names of variables for confidences that are read as they are believed now, and not as they may
+        turn out.
 
     Yields
     ------
-    The values of all variables, those of `given` included.
+    The values of all variables by name, those of `given` included. A binding may be yielded several times.
 
     Raises
     ------
@@ -87,13 +89,22 @@ def find_bindings(
 
 
 class _Search:
-    """A search through the literals of a body, one after the other."""
+    """A search through the literals of a body, one after the other.
+
+    Attributes
+    ----------
+    beliefs : the believed facts.
+    possible : whether it finds the bindings with which the body may hold, rather than certainly holds.
+    fixed_confidences : names of variables for confidences that are read as they are believed now.
+
+    Bindings are mappings from the name of a variable to its value: an integer, a clingo symbol, or an `Unknown`.
+    """
 
     def __init__(self, beliefs: Beliefs, possible: bool, fixed_confidences: frozenset[str]) -> None:
         self.beliefs, self.possible, self.fixed_confidences = beliefs, possible, fixed_confidences
 
     def search(self, order: Sequence[Literal], at: int, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings with which the literals from index `at` on hold or may hold."""
+        """Yield the bindings, `given` included, with which the literals from index `at` on hold or may hold."""
         if at == len(order):
             yield given
             return
@@ -101,7 +112,7 @@ class _Search:
             yield from self.search(order, at + 1, found)
 
     def satisfy(self, literal: Literal, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings with which one literal holds or may hold."""
+        """Yield the bindings, `given` included, with which one literal holds or may hold."""
         if isinstance(literal, Atom):
             if literal.negations == 0:
                 yield from self.matches(literal, given, self.possible)
@@ -118,13 +129,16 @@ class _Search:
             yield given
 
     def passes(self, truth: TruthValue) -> bool:
-        """Return whether a truth value suffices in this mode."""
+        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode."""
         return truth is True or (self.possible and truth is None)
 
     # ---- atoms ----
 
     def matches(self, atom: Atom, given: Bindings, possible: bool) -> Iterator[Bindings]:
-        """Yield the bindings with which an atom without negation holds, or may hold."""
+        """Yield the bindings, `given` included, with which an atom without negation holds.
+
+        possible : whether to yield also those with which it only may hold.
+        """
         fixed = [self.settled_value(part, given) for part in atom.parts]
         for row in self.beliefs.rows(atom.signature, fixed, possible, self.reads_fixed_confidence(atom)):
             found = self.unify_all(atom.parts, row, given, possible)
@@ -134,7 +148,11 @@ class _Search:
     def unify_all(
         self, terms: Sequence[ClauseTerm], row: Sequence[Value], given: Bindings, possible: bool
     ) -> Bindings | None:
-        """Return the bindings with which all terms have the values of a row; None when there are none."""
+        """Return the bindings, `given` included, with which all terms have the values of a row.
+
+        None when there are none. terms, row : of equal length. possible : whether values that may be equal count as
+            equal.
+        """
         found: Bindings | None = given
         for term, value in zip(terms, row, strict=True):
             if found is not None:
@@ -142,24 +160,30 @@ class _Search:
         return found
 
     def reads_fixed_confidence(self, atom: Atom) -> bool:
-        """Return whether the last argument is a variable for a confidence that is read as it is believed now."""
+        """Return whether an atom's last argument is a variable for a confidence that is read as it is believed now."""
         return (
             bool(atom.parts) and isinstance(atom.parts[-1], Variable) and atom.parts[-1].name in self.fixed_confidences
         )
 
     def truth_of_negated(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return the truth of an atom with `not` before it. A variable `_` in it matches anything."""
+        """Return the truth of an atom with `not`, or `not not`, before it; None when it is not known.
+
+        A variable `_` in it matches anything.
+        """
         held = self.truth_of_atom(atom, given)
         return held if held is None or atom.negations == 2 else not held
 
     def truth_of_atom(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return whether an atom holds for some values of its unbound variables; None when that is not known."""
+        """Return whether an atom, its negations left out, holds for some values of its unbound variables.
+
+        None when that is not known.
+        """
         if next(self.matches(atom, given, False), None) is not None:
             return True
         return None if next(self.matches(atom, given, True), None) is not None else False
 
     def settled_value(self, term: ClauseTerm, given: Bindings) -> Value:
-        """Return the value of an argument; None when it is unbound or not known."""
+        """Return the value of an argument; None when a variable in it is unbound, or its value is not known."""
         if set(variables_of(term)) <= given.keys():
             value = value_of(term, given)
             return None if isinstance(value, Unknown) else value
@@ -168,7 +192,8 @@ class _Search:
     def unify(self, term: ClauseTerm, value: Value, given: Bindings, possible: bool) -> Bindings | None:
         """Return the bindings with which a term has a value; None when there are none.
 
-        A value that is not known matches in the possible mode only.
+        The bindings include `given`. A value that is not known matches with `possible` only, or where a variable takes
+        it.
         """
         if isinstance(term, Variable):
             before = given.get(term.name)
@@ -186,12 +211,15 @@ class _Search:
         return given if self.may_equal(value_of(term, given), value, possible) else None
 
     def may_equal(self, a: Value, b: Value, possible: bool) -> bool:
-        """Return whether two values are equal; in the possible mode, whether they may be equal."""
+        """Return whether two values are certainly equal; with `possible`, whether they may be equal."""
         truth = compare("=", a, b, self.beliefs.known_names)
         return truth is True or (possible and truth is None)
 
     def unify_compound(self, term: Compound, value: Value, given: Bindings, possible: bool) -> Bindings | None:
-        """Return the bindings with which a term with arguments has a value; None when there are none."""
+        """Return the bindings, `given` included, with which a term with arguments has a value.
+
+        None when there are none. possible : whether an unknown value, that is no number and no new name, matches.
+        """
         if isinstance(value, Unknown):
             return given if possible and value.low is None and not value.new else None
         if isinstance(value, int) or value.type != clingo.SymbolType.Function:
@@ -203,7 +231,7 @@ class _Search:
     def unify_inverse(self, term: Operation, value: Value, given: Bindings, possible: bool) -> Bindings | None:
         """Return the bindings with which arithmetic with one unbound variable has a value; None when there are none.
 
-        The arithmetic is inverted: X in `X + 1` is computed from the sum.
+        The arithmetic is inverted: X in `X + 1` is computed from the sum. The bindings include `given`.
         """
         if not isinstance(value, int | Unknown) or (isinstance(value, Unknown) and value.low is None):
             return None
@@ -231,7 +259,7 @@ class _Search:
     # ---- comparisons ----
 
     def satisfy_comparison(self, literal: Comparison, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings with which a comparison holds or may hold; `X = term` binds X."""
+        """Yield the bindings, `given` included, with which a comparison holds or may hold; `X = term` binds X."""
         found = assignment(literal, set(given))
         if found is not None:
             pattern, source = found
@@ -245,7 +273,10 @@ class _Search:
             yield self.narrow_bindings(literal, given) if truth is None else given
 
     def truth_of_comparison(self, literal: Comparison, given: Bindings) -> TruthValue:
-        """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not."""
+        """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not.
+
+        None when that is not known.
+        """
         truth: TruthValue = True
         left = literal.first
         for sign, right in literal.rest:
@@ -255,7 +286,10 @@ class _Search:
         return truth if not literal.negated or truth is None else not truth
 
     def truth_of_pair(self, sign: str, left: ClauseTerm, right: ClauseTerm, given: Bindings) -> TruthValue:
-        """Return the truth of one comparison; between intervals, whether it holds for some of their numbers."""
+        """Return the truth of one comparison; between intervals, whether it holds for some of their numbers.
+
+        None when it is not known. sign : the operator between left and right, in ASP syntax.
+        """
         names = self.beliefs.known_names
         firsts, seconds = values_of(left, given), values_of(right, given)
         pairs = product(deciding_numbers(firsts, seconds), deciding_numbers(seconds, firsts))
@@ -263,7 +297,10 @@ class _Search:
         return True if True in truths else None if None in truths else False
 
     def narrow_bindings(self, literal: Comparison, given: Bindings) -> Bindings:
-        """Return the bindings with unknown values narrowed to those for which a comparison may hold."""
+        """Return the bindings with unknown values narrowed to those for which a comparison may hold.
+
+        A negated comparison, or a chain of several, narrows nothing.
+        """
         if literal.negated or len(literal.rest) != 1:
             return given
         ((sign, right),) = literal.rest
@@ -276,7 +313,7 @@ class _Search:
     # ---- aggregates and conditions ----
 
     def truth_of_conditional(self, literal: ConditionalLiteral, given: Bindings) -> TruthValue:
-        """Return whether the literal holds wherever the condition holds."""
+        """Return whether the literal holds wherever the condition holds; None when that is not known."""
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(literal.condition, (literal.literal,))
         truth: TruthValue = True
         for possible in (False, True):
@@ -293,7 +330,10 @@ class _Search:
         return truth
 
     def satisfy_aggregate(self, literal: Aggregate, given: Bindings) -> Iterator[Bindings]:
-        """Yield the bindings with which an aggregate holds or may hold; a guard `X = ...` binds X."""
+        """Yield the bindings, `given` included, with which an aggregate holds or may hold; a guard `X = ...` binds X.
+
+        At most one is yielded. Raises ClauseError for a value beyond 32 bits.
+        """
         outer = set(given)
         tally = Tally(literal.function)
         for element in literal.elements:
@@ -314,7 +354,7 @@ class _Search:
             yield found
 
     def count_element(self, element: AggregateElement, given: Bindings, tally: Tally) -> None:
-        """Add to a tally the tuples of one element, certain and possible ones."""
+        """Add to `tally` the tuples of one element of an aggregate: certain ones, and those that only may be there."""
         fixed_confidences = self.fixed_confidences | fixed_confidence_variables(element.condition, element.terms)
         for possible in (False, True):
             for found in find_bindings(element.condition, given, self.beliefs, possible, fixed_confidences):
@@ -322,12 +362,12 @@ class _Search:
 
 
 def fixed_confidence_variables(body: Sequence[Literal], given_out: Any) -> frozenset[str]:
-    """Return the variables that are passed on, or compared with other variables.
+    """Return the names of the variables that are passed on, or compared with other variables.
 
     A confidence in such a variable is read as it is believed now: it is a value to report, not a condition that may
     change.
 
-    body : the literals. given_out : terms whose values are reported.
+    body : the literals. given_out : a term, a literal or a tuple of them, whose values are reported; () for none.
     """
     found = set(variables_of(given_out))
     for literal in body:

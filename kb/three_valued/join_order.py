@@ -30,11 +30,11 @@ def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Liter
     Parameters
     ----------
     body : the literals.
-    given : the names of variables that are bound already.
+    given : the names of variables that are bound before.
 
     Returns
     -------
-    The literals in the order of evaluation.
+    The literals in the order of evaluation, with the comparisons for such intervals.
 
     Raises
     ------
@@ -61,13 +61,16 @@ def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Liter
 
 
 def unsafe_variable_error(name: str, at: tuple[int, int]) -> ClauseError:
-    """Return the error that no literal binds a variable."""
+    """Return the error that no literal binds a variable.
+
+    name : the variable; one that stands for `_` or an interval is shown as `_`. at : line and column, from 1.
+    """
     shown = "_" if name.startswith(("?", ".")) else name
     return ClauseError(f"nothing says what {shown} can be: it must be in an atom that holds", at)
 
 
 def _body_names(literal: Literal) -> list[str]:
-    """Return the variables of a literal outside of elements and conditions, `_` included."""
+    """Return the names of the variables of a literal outside of elements and conditions, `_` included."""
     if isinstance(literal, Atom | Comparison):
         return list(variables_of(literal))
     if isinstance(literal, Aggregate):
@@ -76,9 +79,9 @@ def _body_names(literal: Literal) -> list[str]:
 
 
 def _needs(literal: Literal, own: set[str]) -> set[str]:
-    """Return the variables that must be bound before a literal can be tested.
+    """Return the names of the variables that must be bound before a literal can be tested.
 
-    own : the variables of the body itself.
+    own : the names of the variables of the body itself, which are not local to an aggregate or a condition.
     """
     if isinstance(literal, Atom) and literal.negations:
         return {name for name in variables_of(literal) if not name.startswith("?")}
@@ -88,7 +91,11 @@ def _needs(literal: Literal, own: set[str]) -> set[str]:
 
 
 def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
-    """Return whether a literal can be evaluated now and binds variables by that."""
+    """Return whether a literal can be evaluated now and binds variables by that.
+
+    bound : the names of the bound variables.
+    own : the names of the variables of the body itself, not local to an aggregate or a condition.
+    """
     if isinstance(literal, Atom):
         return literal.negations == 0 and all(_matchable(part, bound) for part in literal.parts)
     if isinstance(literal, Aggregate):
@@ -98,7 +105,10 @@ def _can_bind(literal: Literal, bound: set[str], own: set[str]) -> bool:
 
 
 def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
-    """Return whether a term can be matched with values, which inverts arithmetic with one unbound variable."""
+    """Return whether a term can be matched with values, which inverts arithmetic with one unbound variable.
+
+    bound : the names of the bound variables.
+    """
     if isinstance(term, Constant | Variable):
         return True
     if isinstance(term, Compound):
@@ -107,7 +117,10 @@ def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
 
 
 def _invertible(term: Operation, bound: set[str]) -> bool:
-    """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result."""
+    """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result.
+
+    bound : the names of the bound variables.
+    """
     open_ = [part for part in term.parts if not set(variables_of(part)) <= bound]
     if term.sign not in ("+", "-", "*") or len(open_) != 1:
         return False
@@ -116,7 +129,12 @@ def _invertible(term: Operation, bound: set[str]) -> bool:
 
 
 def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, ClauseTerm] | None:
-    """Return the pattern and the term that gives its value, for a comparison that binds variables; else None."""
+    """Return the pattern and the term that gives its value, for a comparison that binds variables; else None.
+
+    It is the first `pattern = term`, either way round, of which the term is bound and the pattern is not but can be
+    matched.
+    bound : the names of the bound variables.
+    """
     if literal.negated:
         return None
     terms = [literal.first, *(term for _, term in literal.rest)]
@@ -131,7 +149,10 @@ def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, Clause
 
 
 def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str]) -> Variable | None:
-    """Return the variable to which an aggregate gives its value, or None."""
+    """Return the variable to which an aggregate gives its value: that of the first guard `X = ...`, or None.
+
+    guards : pairs (sign, term). bound : the names of the variables that are bound already, which do not count.
+    """
     for sign, term in guards:
         if sign == "=" and isinstance(term, Variable) and term.name not in bound:
             return term
@@ -141,7 +162,8 @@ def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str])
 def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparison | None:
     """Return `X = low..high` for a variable X that only comparisons with numbers bound; None when there is none.
 
-    clingo binds such variables in the same way.
+    literals : those that are left. bound : the names of the bound variables. clingo binds such variables in the same
+        way.
     """
     lows: dict[str, int] = {}
     highs: dict[str, int] = {}
@@ -165,7 +187,7 @@ def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparis
 
 
 def _bound_by(literal: Literal, bound: set[str]) -> set[str]:
-    """Return the variables that a literal binds."""
+    """Return the names of the variables that a literal binds; those of `bound` are bound before."""
     if isinstance(literal, Atom):
         return set() if literal.negations else set(variables_of(literal))
     if isinstance(literal, Comparison):

@@ -31,11 +31,11 @@ def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Const
 
     Parameters
     ----------
-    rows : the facts by predicate.
+    rows : the arguments of the facts, by predicate (name, number of arguments).
 
     Returns
     -------
-    The constants as text, by the name of the argument type.
+    The constants as text, by the name of the argument type. Numbers are left out.
     """
     found: dict[str, set[str]] = {}
     for signature, stated in rows.items():
@@ -69,7 +69,7 @@ def check_body(body: Sequence[Literal], known: Collection[Signature], names: Con
 
 
 def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
-    """Raise ClauseError unless the predicate of an atom exists."""
+    """Raise ClauseError unless the predicate of an atom is in `known`: pairs (name, number of arguments)."""
     if atom.signature in known:
         return
     name, arity = atom.signature
@@ -79,7 +79,12 @@ def check_predicate(atom: Atom, known: Collection[Signature]) -> None:
 
 
 def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -> None:
-    """Raise ClauseError when a term is a constant that an argument type does not accept."""
+    """Raise ClauseError when a term is a constant that an argument type does not accept.
+
+    slot : the type.
+    term : the argument; anything but a constant is accepted.
+    names : constants that are accepted, too, as text by the name of the type.
+    """
     if not isinstance(term, Constant) or str(term.value) in names.get(slot.name, ()):
         return
     complaint = slot.check(as_fact_term(term.value))
@@ -92,7 +97,10 @@ def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -
 
 
 def as_fact_term(value: Value) -> Term:
-    """Return a known value as a term of a fact file, which argument types can check."""
+    """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check.
+
+    Its place is NO_PLACE. A value that no fact file can express becomes a name with its text.
+    """
     if isinstance(value, int):
         return Number(value, NO_PLACE)
     if value.type == clingo.SymbolType.String:
@@ -106,7 +114,10 @@ def as_fact_term(value: Value) -> Term:
 
 
 def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
-    """Yield a body, and each conjunction inside it together with the atoms around it."""
+    """Yield a body, and each conjunction inside it together with the atoms around it.
+
+    Those inside are the conditions of elements, and a conditional literal with its condition.
+    """
     yield tuple(body)
     for literal in body:
         inner = [element.condition for element in literal.elements] if isinstance(literal, Aggregate) else []
@@ -116,7 +127,10 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
 
 
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
-    """Yield each variable among the arguments of an atom with its argument type; numbers are left out."""
+    """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out.
+
+    Nothing for a predicate that is not of the world model.
+    """
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     for slot, part in zip(slots, atom.parts, strict=False):
         if isinstance(part, Variable) and slot.limits is None:
@@ -124,7 +138,7 @@ def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
 
 
 def _equated(literals: Iterable[Literal]) -> Iterator[tuple[str, Constant]]:
-    """Yield each variable that is compared with a constant by `=` or `!=`, and the constant."""
+    """Yield the name of each variable that is compared with a constant by `=` or `!=`, and the constant."""
     for literal in literals:
         if not isinstance(literal, Comparison):
             continue

@@ -15,11 +15,11 @@ class Beliefs:
 
     Parameters
     ----------
-    facts : predicate name and arguments of each fact.
+    facts : predicate name and arguments of each fact; arguments are integers or clingo symbols.
 
     Attributes
     ----------
-    known_names : the names of all things that facts are about.
+    known_names : the names of all things that facts are about, as text.
     everything_seen : whether no part of the table is unseen, so that no new things can appear.
     join_orders : a cache of kb.three_valued.evaluation: bodies and their orders of evaluation.
     """
@@ -43,12 +43,19 @@ class Beliefs:
         self._objects = sorted(row[0] for row in self._rows.get(OBJECT_SIGNATURE, ()))
 
     def signatures(self) -> dict[Signature, list[FactRow]]:
-        """Return the predicates that facts state, with their rows."""
+        """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows.
+
+        These are those of facts, `object/1` where an object is believed in, and those that rules derived.
+        """
         return {signature: list(rows) for signature, rows in self._rows.items()}
 
     def add_derived(self, signature: Signature, row: FactRow, possible: bool) -> bool:
         """Add a row of a predicate that rules define. Return whether it is new.
 
+        A row that only may hold is not new when it holds certainly, or is covered by one that may hold already.
+
+        signature : the predicate (name, number of arguments).
+        row : its arguments.
         possible : whether the row only may hold.
         """
         rows = (self._possible if possible else self._rows).setdefault(signature, {})
@@ -62,7 +69,7 @@ class Beliefs:
         return True
 
     def _already_possible(self, signature: Signature, row: FactRow) -> bool:
-        """Return whether a row with unknown values is covered by a row that may hold already."""
+        """Return whether a row that may hold is covered by one, perhaps with unknown values, that may hold already."""
         return any(
             all(_includes(a, b) for a, b in zip(other, row, strict=True)) for other in self._possible.get(signature, ())
         )
@@ -74,8 +81,9 @@ class Beliefs:
 
         Parameters
         ----------
-        signature : the predicate.
-        fixed : the values of known arguments, None for the others. Rows that differ in one of them may be left out.
+        signature : the predicate, (name, number of arguments).
+        fixed : for each argument its value when it is known, else None. Rows that differ in one of them may be left
+            out.
         possible : whether to yield rows that only may hold.
         confidence_fixed : whether confidences are read as they are believed now, and not as they may turn out.
 
@@ -98,7 +106,10 @@ class Beliefs:
         yield from self._open_rows(signature, declared, fixed[declared.subject])
 
     def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[FactRow]:
-        """Return the certain rows that agree with the first known argument."""
+        """Return the certain rows that agree with the first known argument; all of them when none is known.
+
+        fixed : for each argument its value when it is known, else None.
+        """
         rows = self._rows.get(signature, {})
         at = next((number for number, value in enumerate(fixed) if value is not None), None)
         if at is None:
@@ -111,7 +122,11 @@ class Beliefs:
         return index.get(fixed[at], [])
 
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
-        """Yield the rows that may hold for things not seen yet, and for known things without such a fact."""
+        """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
+
+        declared : what the vocabulary says of the predicate.
+        subject : the value of the argument that the fact is about; None when it is open.
+        """
         if declared.open is Openness.NEVER:
             return
         if not self.everything_seen and (subject is None or str(subject) not in self.known_names):
@@ -123,14 +138,17 @@ class Beliefs:
                     yield self._row(declared, thing)
 
     def _row(self, declared: BeliefPredicate, subject: Value) -> FactRow:
-        """Return a row of which only the subject is known."""
+        """Return a row of which only the subject is known; all other values are `Unknown`.
+
+        They have the limits of their argument's type, if it has any.
+        """
         values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
         return tuple(values)
 
 
 def _includes(a: Value, b: Value) -> bool:
-    """Return whether value `a` may be all that `b` may be."""
+    """Return whether the value `a` may be all that `b` may be; equal values include each other."""
     if not isinstance(a, Unknown):
         return not isinstance(b, Unknown) and a == b
     if a.anything:

@@ -19,11 +19,11 @@ def value_of(term: ClauseTerm, given: Bindings) -> Value:
     Parameters
     ----------
     term : the term; no interval.
-    given : the values of the variables.
+    given : the values of the variables, by name.
 
     Returns
     -------
-    The value, which may be unknown.
+    The value: an integer, a clingo symbol, or an `Unknown`.
 
     Raises
     ------
@@ -48,7 +48,10 @@ def value_of(term: ClauseTerm, given: Bindings) -> Value:
 
 
 def number_of(term: ClauseTerm, given: Bindings) -> Value:
-    """Return the value of a term that must be a number, known or not; raise ClauseError for other values."""
+    """Return the value of a term that must be a number: an integer, or an `Unknown`.
+
+    Raises ClauseError for other values, and for an unbound variable. given : the values of variables, by name.
+    """
     value = value_of(term, given)
     if isinstance(value, int | Unknown):
         return value
@@ -56,9 +59,10 @@ def number_of(term: ClauseTerm, given: Bindings) -> Value:
 
 
 def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
-    """Return the values of a term: all numbers of an interval, or one value.
+    """Return the values of a term: all numbers of an interval, a range; or one value, in a list.
 
-    An interval of which an end is not known gives one unknown number.
+    An interval of which an end is not known gives one unknown number with bounds. given : the values of variables, by
+    name.
     """
     if isinstance(term, Operation) and is_interval(term):
         low, high = (number_of(part, given) for part in term.parts)
@@ -70,7 +74,7 @@ def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
 
 
 def is_interval(term: ClauseTerm) -> bool:
-    """Return whether a term is an interval."""
+    """Return whether a term is an interval, `low..high`."""
     return isinstance(term, Operation) and term.sign == ".."
 
 
@@ -87,7 +91,7 @@ def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterab
 
     Returns
     -------
-    Numbers with which every comparison has the same truth value as with all numbers of the interval.
+    Numbers, ascending, with which every comparison has the same truth value as with all numbers of the interval.
     """
     if not isinstance(values, range) or not values:
         return values
@@ -99,18 +103,18 @@ def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterab
 
 
 def from_clingo(value: clingo.Symbol) -> Value:
-    """Return a clingo symbol as a value: numbers become Python integers."""
+    """Return a clingo symbol as a value: numbers become Python integers, all else stays."""
     return value.number if value.type == clingo.SymbolType.Number else value
 
 
 def _ends(value: Value) -> list[int]:
-    """Return a number, or the bounds of a number that is not known, in a list."""
+    """Return a number, or the bounds of a number that is not known, in a list; [] for all else."""
     if isinstance(value, Unknown):
         return [end for end in (value.low, value.high) if end is not None]
     return [value] if isinstance(value, int) else []
 
 
 def _calculation_text(sign: str, numbers: Sequence[Value]) -> str:
-    """Return a calculation as messages show it."""
+    """Return a calculation with one or two operands as messages show it, such as `3 / 0`; `?` for what is not known."""
     shown = ["?" if isinstance(number, Unknown) else str(number) for number in numbers]
     return f" {sign} ".join(shown) if len(shown) == 2 else f"|{shown[0]}|" if sign == "|" else f"{sign}{shown[0]}"

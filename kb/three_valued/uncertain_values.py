@@ -33,7 +33,7 @@ class Unknown:
 
     Attributes
     ----------
-    low, high : the bounds of a number; None for a value that is no number.
+    low, high : the bounds of a number, both included; None for a value that is no number.
     new : whether it is the name of a thing not seen yet, and so differs from all known names.
     anything : whether it may be a number or something else.
     """
@@ -47,7 +47,10 @@ class Unknown:
 
 
 def as_clingo(value: Value) -> clingo.Symbol:
-    """Return a known value as a clingo symbol. clingo orders all symbols: numbers, names, strings, terms."""
+    """Return a known value, an integer or a clingo symbol, as a clingo symbol.
+
+    clingo orders all symbols: numbers, names, strings, terms.
+    """
     return clingo.Number(value) if isinstance(value, int) else value
 
 
@@ -57,8 +60,8 @@ def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
     Parameters
     ----------
     sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
-    a, b : values.
-    known : the names of all things seen, from which new things differ.
+    a, b : values: integers, clingo symbols or `Unknown`; one `Unknown` object equals itself.
+    known : the names of all things seen, as text, from which new things differ.
     """
     if not isinstance(a, Unknown) and not isinstance(b, Unknown):
         if isinstance(a, int) and isinstance(b, int):
@@ -79,7 +82,7 @@ def compare(sign: str, a: Value, b: Value, known: frozenset[str]) -> TruthValue:
 
 
 def bounds(value: Value) -> tuple[int, int] | None:
-    """Return the least and the greatest number that a value can be; None when it is no number."""
+    """Return the least and the greatest number that a value can be; None when it is no number, or may be anything."""
     if isinstance(value, int):
         return value, value
     if isinstance(value, Unknown) and value.low is not None and value.high is not None:
@@ -88,7 +91,10 @@ def bounds(value: Value) -> tuple[int, int] | None:
 
 
 def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
-    """Return whether `a sign b` holds for numbers of which only bounds are known."""
+    """Return whether `a sign b` holds for numbers of which only bounds (least, greatest) are known.
+
+    None when that is not known.
+    """
     if sign in (">", ">="):
         return _within(MIRRORED_SIGNS[sign], b, a)
     if sign in ("<", "<="):
@@ -99,7 +105,10 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
 
 
 def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
-    """Return whether two values certainly differ: a known name from a new thing, a number from anything else."""
+    """Return whether two values certainly differ: a known name from a new thing, a number from anything else.
+
+    known : the names of all things seen.
+    """
     if (bounds(a) is None) != (bounds(b) is None):
         return True
     pairs = ((a, b), (b, a))
@@ -108,6 +117,8 @@ def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
 
 def narrow(value: Unknown, sign: str, other: Value) -> Value:
     """Return what an unknown value can still be where `value sign other` holds.
+
+    other : the value with which it is compared, known or not. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
 
     Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
     """
@@ -130,7 +141,7 @@ def calculate_uncertain(sign: str, *values: Value) -> Value:
     Parameters
     ----------
     sign : the operator in ASP syntax.
-    values : one or two integers or `Unknown` numbers.
+    values : one or two integers or `Unknown` numbers, the left operand first.
 
     Returns
     -------

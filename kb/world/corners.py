@@ -29,11 +29,13 @@ class Corner(NamedTuple):
     Attributes
     ----------
     point : (x, y)
-        The corner, in squares, in the frame of the view's arrays.
+        The corner, in squares, in the frame of the view's arrays: origin at the south-west corner of the map view's
+        square [0, 0], x to the east, y to the north, along the grid.
     square : (column, row)
-        The square of floor that has it, on the view's arrays.
+        The square of floor that has it: (column, row) on the view's arrays, row 0 in the south.
     walls : two (x, y) or None
-        The outward unit normals of the walls that form it, if at least one of these lies askew to the grid.
+        The unit normals of the walls that form it, pointing out of the floor, same frame, if at least one of these lies
+        askew to the grid; None otherwise.
     """
 
     point: XY
@@ -42,11 +44,11 @@ class Corner(NamedTuple):
 
 
 def known_floor(model: WorldModel) -> Bools:
-    """Return all squares known to be floor, (rows, columns) bool.
+    """Return all squares known to be floor: (rows, columns) bool, on the arrays of the map view (row 0 in the south).
 
-    These are the floor on which the robot stands, all other free regions that are large enough, and the floor under
-    objects that were moved: squares that were floor before the object came there, or that it surely covers by its
-    outline. Other squares that a moved object may cover may be wall, even where they were seen to be occupied.
+    These are the floor on which the robot stands, all other free regions of at least MIN_FLOOR_SQUARES squares, and the
+    floor under objects that were moved: squares that were floor before the object came there, or that it surely covers
+    by its outline. Other squares that a moved object may cover may be wall, even where they were seen to be occupied.
     """
     sizes = np.bincount(model.labels.ravel())
     large = (sizes >= MIN_FLOOR_SQUARES)[model.labels]
@@ -75,7 +77,8 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
     Returns
     -------
     mapping of str to Corner
-        By side: northeast, northwest, southeast, southwest.
+        By side of the robot frame: northeast, northwest, southeast, southwest. The corner furthest northeast is the one
+        with the greatest east + north, and so on. Empty when no floor is known or the encodings have no answer.
 
     Raises
     ------
@@ -92,7 +95,11 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
 
 
 def _convex_corners(floor: Bools) -> list[Corner]:
-    """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it."""
+    """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it.
+
+    `floor` is (rows, columns) bool with at least one square. Points are in the frame of the mask: squares, origin at
+    the south-west corner of its square [0, 0].
+    """
     rows = np.flatnonzero(floor.any(axis=1))
     first = floor[rows].argmax(axis=1)
     last = floor.shape[1] - 1 - floor[rows, ::-1].argmax(axis=1)
@@ -107,10 +114,12 @@ def _convex_corners(floor: Bools) -> list[Corner]:
 
 
 def _wall_normals(ring: shapely.LinearRing, point: XY) -> tuple[XY, XY] | None:
-    """Return the outward unit normals of the two walls at a corner of a convex ring.
+    """Return the outward unit normals of the two walls at a corner of a convex ring, in the ring's frame.
 
-    None where both walls lie along the grid, or where they are nearly one wall. A wall is followed as far as
-    WALL_SAMPLE_LENGTH; one that leaves its row of squares within that lies askew.
+    `point` is one of the ring's corners, in squares. None where both walls lie along the grid, or where they are nearly
+    one wall. A wall is followed as far as WALL_SAMPLE_LENGTH; one that leaves its row of squares within that lies
+    askew. The first normal is that of the wall before the corner in the order of the ring, the second that of the wall
+    after it.
     """
     along, length = ring.project(shapely.Point(point)), ring.length
     ends = [ring.interpolate((along + way * min(WALL_SAMPLE_LENGTH, length / 8)) % length) for way in (-1, 1)]

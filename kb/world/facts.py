@@ -33,7 +33,8 @@ class Places(NamedTuple):
     rooms : Rooms
         The rooms of the floor and the doors between them.
     corners : mapping of str to Corner
-        The corner of the known floor towards each side: northeast, northwest, southeast, southwest.
+        The corner of the known floor furthest towards each side of the robot frame: northeast, northwest, southeast,
+        southwest. Sides without a corner are missing.
     """
 
     rooms: Rooms
@@ -52,14 +53,16 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
     accommodated : Accommodation
         How the impression was explained, and the status of each of its fields.
     bound : mapping of str to str
-        Parameter of the task -> node of the model.
+        Name of a parameter of the task -> name of the node of the model that it means.
 
     Returns
     -------
     dict
-        place: where the robot believes it is, [east, north] in squares, robot frame. lattice: the orientation of the
-        grid of squares, degrees. pose: how the place was explained. cells: how many fields were predicted, explained
-        or noise. bound: the bindings. facts: the facts of the world model, sorted, with full stops.
+        place: where the robot believes it is, [east, north] in squares, robot frame. lattice: the angle by which the
+        robot frame is turned against the grid of squares, in degrees, counter-clockwise positive, -44 to 45. pose: the
+        kind of the explanation, such as predicted, blocked or lost. cells: how many of the 160 fields were predicted,
+        explained or noise; kinds without any are left out. bound: the bindings, as given. facts: the facts of the world
+        model as text, sorted, with full stops.
     """
     cells = Counter(str(status) for status in accommodated.cells)
     east, north = model.frame.place_to_utak(*model.place)
@@ -76,12 +79,21 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """Yield the world model, its rooms, doors and corners as facts without their full stops.
 
+    The predicates are node/1, kind/3, child/2, offset/3, held/1, rect/5, segment/7, shape/3, colour/3, movable/2, in/2,
+    adjacent/2, room/1, unseen/2, door/1, width/2, connects/3 and corner/3. Coordinates are hundredths of squares in the
+    robot frame, those of offset/3 relative to the parent node; confidences are percent.
+
     Parameters
     ----------
     model : WorldModel
         The world model.
     places : Places
         Its rooms and corners.
+
+    Yields
+    ------
+    str
+        One fact, such as `kind(o1,object,95)`.
     """
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
@@ -96,7 +108,10 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 
 
 def _root_facts(model: WorldModel) -> Iterator[str]:
-    """Yield the facts of the robot, the floor and the verge."""
+    """Yield the facts of the robot, the floor and the verge, without full stops.
+
+    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand.
+    """
     east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ROOT_NODE})"
     yield f"kind({ROOT_NODE},utak,100)"
@@ -112,18 +127,27 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
 
 
 def _share_settled(model: WorldModel, kind: str) -> int:
-    """Return the mean confidence in the squares of the floor or the verge, in percent."""
+    """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none.
+
+    `kind` is floor; any other word stands for verge.
+    """
     mask = model.floor if kind == "floor" else model.verge
     return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
 
 
 def _square_confidence(model: WorldModel) -> Longs:
-    """Return the confidence in what the counts settle of each square, (rows, columns) percent; 0 if not settled."""
+    """Return the confidence in what the counts settle of each square, in percent: (rows, columns) int64.
+
+    100 beyond doubt, SETTLED_CONFIDENCE when settled otherwise, 0 when not settled; on the view's arrays.
+    """
     return np.where(model.certain, 100, SETTLED_CONFIDENCE * (model.view.state != OPEN))
 
 
 def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the facts of one object, its outline apart."""
+    """Yield the facts of one object, its outline apart, without full stops.
+
+    These are node/1, child/2, kind/3, offset/3, shape/3, colour/3, movable/2, and in/2 and adjacent/2 where they hold.
+    """
     name = node.name
     yield f"node({name})"
     yield f"child({FLOOR_NODE},{name})"
@@ -152,7 +176,11 @@ def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
 
 
 def _object_rings(node: Node) -> list[Floats]:
-    """Return the boundary of an object as rings of (n, 2) points, map frame: its polygon, or that of its squares."""
+    """Return the boundary of an object as rings of (n, 2) points (x, y), in squares, map frame.
+
+    It is its believed outline, one ring; or that of the squares that it may cover, while no outline is known. The first
+    point of a ring is not repeated at its end.
+    """
     if node.polygon is not None:
         return [np.array(node.polygon.exterior.coords)[:-1]]
     corner = np.array([node.patch.west, node.patch.south])
@@ -161,20 +189,31 @@ def _object_rings(node: Node) -> list[Floats]:
 
 @lru_cache(maxsize=4096)
 def _patch_outline(squares: bytes, shape: tuple[int, int]) -> list[Ring]:
-    """Return the outline of a small mask; most objects look the same from one impression to the next."""
+    """Return the outline of a small mask as rings of corners (x, y), the first corner not repeated.
+
+    `squares` are the bytes of the mask, row by row from the south, one byte a square; `shape` is (rows, columns).
+    Corners are in squares, origin at the south-west corner of the mask. Cached: most objects look the same from one
+    impression to the next.
+    """
     return outline(np.frombuffer(squares, np.bool_).reshape(shape))
 
 
 def _mask_rings(mask: Bools, model: WorldModel) -> list[Floats]:
-    """Return the outline of a mask on the view's arrays as rings of (n, 2) points, map frame."""
+    """Return the outline of a mask on the view's arrays as rings of (n, 2) points (x, y), in squares, map frame.
+
+    Outer rings run counter-clockwise, holes clockwise; the first point is not repeated.
+    """
     corner = np.array([model.view.west, model.view.south])
     return [corner + ring for ring in outline(mask)]
 
 
 def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel) -> Iterator[str]:
-    """Yield the containing rectangles and the boundaries of nodes, ring after ring.
+    """Yield the containing rectangles and the boundaries of nodes, ring after ring, without full stops.
 
-    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame.
+    `rect(Node,West,South,East,North)`, then `segment(Node,Number,East,North,East,North,Confidence)` from a point to the
+    next one, numbered from 0 for each node. Coordinates are hundredths of squares, robot frame; confidences percent.
+
+    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated.
     """
     names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
     starts = np.concatenate(rings)
@@ -196,16 +235,22 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
 
 
 def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
-    """Return (n, 2) points of the map frame in hundredths of squares of the robot frame."""
+    """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame.
+
+    The results are hundredths of squares, rounded.
+    """
     placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
     answer: Longs = np.rint(FACT_UNITS_PER_SQUARE * placed).astype(np.int64)
     return answer
 
 
 def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list[int]:
-    """Return for each segment the mean confidence in the squares on both sides of it, in percent.
+    """Return for each segment the mean confidence in the squares on both sides of it, in percent, rounded down.
 
-    starts, ends : (n, 2) points, map frame. Each segment is sampled at SEGMENT_SAMPLES places.
+    Each segment is sampled at SEGMENT_SAMPLES places, half a square to its left and to its right; squares beyond the
+    view count as 0.
+
+    starts, ends : (n, 2) points (x, y), in squares, map frame.
     """
     parts = (np.arange(SEGMENT_SAMPLES) + 0.5) / SEGMENT_SAMPLES
     step = ends - starts
@@ -220,7 +265,11 @@ def _segment_confidence(starts: Floats, ends: Floats, model: WorldModel) -> list
 
 
 def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
-    """Yield the facts of rooms and doors."""
+    """Yield the facts of rooms and doors, without full stops.
+
+    These are room/1, unseen/2 (the number of squares of the room that no count settles), in/2 for the robot, and for
+    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round.
+    """
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
         yield f"room(r{room})"
@@ -235,5 +284,5 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _hundredths(length: float) -> int:
-    """Return a length in squares as a whole number of hundredths."""
+    """Return a length in squares as a whole number of hundredths of squares, rounded."""
     return round(FACT_UNITS_PER_SQUARE * length)

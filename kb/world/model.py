@@ -50,7 +50,7 @@ class Node:
     Attributes
     ----------
     name : str
-        o1, o2, ...
+        o1, o2, ... from 1, in the order in which they were first seen.
     kind : str
         What it is believed to be: object.
     confidence : int
@@ -66,11 +66,11 @@ class Node:
     shape : mapping of str to int
         Shape class -> confidence in percent.
     polygon : shapely Polygon or None
-        Its believed outline, map frame; None while nothing fits.
+        Its believed outline, map frame, in squares; None while nothing fits.
     colour : str or None
-        The colour felt on it; None when it was not touched.
+        The colour felt on it, one lower-case letter; None when it was not touched.
     support : tuple of int
-        Numbers of the impressions that settled its squares.
+        Numbers of the impressions, from 0, that settled its squares, ascending.
     movable : int
         Percent of belief that it can be moved.
     moved : bool
@@ -123,9 +123,10 @@ class WorldModel:
     frame : Frame
         Where the robot frame lies in the map frame.
     place : (x, y)
-        Where the robot stands, map frame.
+        Where the robot stands, in squares, map frame.
     view : MapView
-        The occupancy of the squares seen.
+        The occupancy of the squares seen, and of a margin of unseen ones. Arrays of (rows, columns) lie on it: row 0 in
+        the south, column 0 in the west.
     labels : (rows, columns) int32
         The number n of each square's region `part<n>`; 0 where nothing was seen.
     percept : Percept
@@ -145,7 +146,8 @@ class WorldModel:
     likely_spread : float
         Radians by which it is likely to differ.
     leeway : (west, south, east, north)
-        How far from the believed point the robot may have woken in its square, in squares; the first two are at most 0.
+        How far from the believed point the robot may have woken in its square, in squares, map frame; the first two are
+        at most 0, the last two at least 0.
     imagined : CompletionSummary
         Completions: sampled maps that agree with all counts.
     floor_under_moved : (rows, columns) bool or None
@@ -153,7 +155,7 @@ class WorldModel:
     touch : tuple of str or None
         The colours felt in the eight DIRECTIONS with this impression, None for floor; () when not known.
     felt : mapping of (x, y) to str
-        The colour of each square that was ever touched, map frame.
+        The colour of each square that was felt not to be floor, map frame.
     lost : bool
         Whether localisation failed: the last impressions agree with no belief.
     anew : bool
@@ -188,11 +190,12 @@ class WorldModel:
 
     @cached_property
     def certain(self) -> Bools:
-        """Squares that the counts settle beyond doubt, (rows, columns) bool.
+        """Squares that the counts settle beyond doubt, (rows, columns) bool on the view's arrays.
 
         While the orientation of the frame is uncertain by a few degrees, squares far from the waking point are not
         among them: a small rotation would put others in their place, and nothing may have shown it yet. A large error
-        of orientation would have shown, wherever there is something to see.
+        of orientation would have shown, wherever there is something to see. None at all while several frames may be
+        right, or impressions contradict each other.
         """
         mask: Bools = (self.view.state != OPEN) & self.view.sure
         if 0 < self.spread <= MAX_SMALL_FRAME_DOUBT:
@@ -203,12 +206,15 @@ class WorldModel:
 
     @cached_property
     def told(self) -> Bools:
-        """Squares that are determined, (rows, columns) bool: see `determined_squares`."""
+        """Squares that are determined, (rows, columns) bool on the view's arrays.
+
+        They are settled by the counts, or have a probability close to 0 or 1 (see `determined_squares`).
+        """
         return determined_squares(self.view)
 
     @cached_property
     def floor(self) -> Bools:
-        """The free region in which the robot stands, (rows, columns) bool.
+        """The free region in which the robot stands, (rows, columns) bool on the view's arrays.
 
         When the robot believes itself in a wall: the nearest free region.
         """
@@ -222,28 +228,40 @@ class WorldModel:
 
     @cached_property
     def space(self) -> Bools:
-        """All squares that were seen and are taken for floor, reachable or not, (rows, columns) bool."""
+        """All squares that were seen and are taken for floor, reachable or not: (rows, columns) bool.
+
+        On the view's arrays. They are occupied with a probability of at most MAX_FREE_PROBABILITY.
+        """
         return free_squares(self.view)
 
     @cached_property
     def verge(self) -> Bools:
-        """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool."""
+        """Squares of regions that are taken for verge rather than for objects, (rows, columns) bool.
+
+        On the view's arrays. The regions are verge with a confidence of at least PROBABLY_VERGE percent.
+        """
         return self._believed_verge(PROBABLY_VERGE)
 
     @cached_property
     def walls(self) -> Bools:
-        """Squares of regions that are almost surely verge, (rows, columns) bool."""
+        """Squares of regions that are almost surely verge, (rows, columns) bool on the view's arrays.
+
+        The regions are verge with a confidence of at least SURELY_VERGE percent.
+        """
         return self._believed_verge(SURELY_VERGE)
 
     def _believed_verge(self, least: int) -> Bools:
-        """Return the squares of regions believed to be verge with at least so many percent."""
+        """Return the squares of regions believed to be verge with at least `least` percent: (rows, columns) bool."""
         names = [f"part{n}" for n in range(int(self.labels.max()) + 1)]
         mask: Bools = np.array([self.kinds.of(name, "verge") >= least for name in names])[self.labels]
         return mask
 
     @cached_property
     def protruding(self) -> list[Bools]:
-        """(rows, columns) masks of parts of the bounds that stick out into the floor and were not touched yet."""
+        """Masks of parts of the bounds that stick out into the floor and were not touched yet, smaller ones first.
+
+        Each is (rows, columns) bool on the view's arrays. Such a part may be a thing that stands against the verge.
+        """
         height, width = self.labels.shape
         felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
         within = {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
@@ -253,26 +271,32 @@ class WorldModel:
         return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
 
     def object(self, name: str) -> Node | None:
-        """Return the object of this name; None when there is none."""
+        """Return the node of the object with this name, `o<n>`; None when there is none."""
         return next((node for node in self.objects if node.name == name), None)
 
     @property
     def place_on_view(self) -> XY:
-        """The robot's place in the frame of the view's arrays, (x, y) in squares."""
+        """The robot's place (x, y) in the frame of the view's arrays.
+
+        In squares from the south-west corner of square [0, 0].
+        """
         return self.place[0] - self.view.west, self.place[1] - self.view.south
 
     def place_to_utak(self, x: float, y: float) -> XY:
-        """Return a point in the robot frame: squares east and north of where the robot woke.
+        """Return a point in the robot frame: (east, north), squares from where the robot woke.
 
         Parameters
         ----------
         x, y : float
-            The point in the frame of the view's arrays, in squares.
+            The point in the frame of the view's arrays, in squares from the south-west corner of its square [0, 0].
         """
         return self.frame.place_to_utak(x + self.view.west, y + self.view.south)
 
     def point_in_words(self, place: XY) -> str:
-        """Return a point of the frame of the view's arrays as text: `POINT (east north)`, robot frame, in squares."""
+        """Return a point as text: `POINT (east north)`, robot frame, in squares with one decimal.
+
+        `place` is (x, y) in the frame of the view's arrays: squares from the south-west corner of its square [0, 0].
+        """
         east, north = self.place_to_utak(*place)
         return f"POINT ({east:.1f} {north:.1f})"
 
@@ -287,6 +311,7 @@ class WorldModel:
         Returns
         -------
         (rows, columns) bool
+            Row 0 in the south. Squares beyond the arrays are left out.
         """
         mask: Bools = np.zeros(self.labels.shape, np.bool_)
         for x, y in squares:
@@ -296,14 +321,20 @@ class WorldModel:
         return mask
 
     def mask(self, patch: Patch) -> Bools:
-        """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them."""
+        """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them.
+
+        A patch of the map frame; for one that may reach beyond them see `mask_within`.
+        """
         mask = np.zeros(self.labels.shape, np.bool_)
         row, column = patch.south - self.view.south, patch.west - self.view.west
         mask[row : row + patch.mask.shape[0], column : column + patch.mask.shape[1]] = patch.mask
         return mask
 
     def mask_within(self, patch: Patch) -> Bools:
-        """Return the (rows, columns) mask of the part of a patch that lies on the view's arrays."""
+        """Return the (rows, columns) mask, on the view's arrays, of the part of a patch that lies on them.
+
+        Empty when the patch, which is of the map frame, lies beyond them.
+        """
         mask: Bools = np.zeros(self.labels.shape, np.bool_)
         height, width = mask.shape
         row, column = patch.south - self.view.south, patch.west - self.view.west
@@ -318,6 +349,9 @@ class WorldModel:
 def count_open_squares(mask: Bools, view: MapView) -> tuple[int, int]:
     """Return how many squares of a region and its edge neighbours are not determined, and how many are doubtful.
 
+    Determined is what the counts settle, or whose probability is within MAX_FREE_PROBABILITY of 0 or 1; doubtful what
+    they do not settle, and whose probability is further than MAX_CLEAR_PROBABILITY from both.
+
     mask : (rows, columns) bool, the squares of the region on the view's arrays.
     """
     about = with_edge_neighbours(mask)
@@ -325,19 +359,28 @@ def count_open_squares(mask: Bools, view: MapView) -> tuple[int, int]:
 
 
 def free_squares(view: MapView) -> Bools:
-    """Return the squares that were seen and are taken for floor, (rows, columns) bool."""
+    """Return the squares that were seen and are taken for floor: (rows, columns) bool on the view's arrays.
+
+    They are occupied with a probability of at most MAX_FREE_PROBABILITY.
+    """
     mask: Bools = view.seen & (view.probability <= MAX_FREE_PROBABILITY)
     return mask
 
 
 def occupied_squares(view: MapView) -> Bools:
-    """Return the squares that were seen and are more likely occupied than not, (rows, columns) bool."""
+    """Return the squares that were seen and are at least as likely occupied as not, (rows, columns) bool.
+
+    The mask is on the view's arrays, row 0 in the south.
+    """
     mask: Bools = view.seen & (view.probability >= MIN_OBSTACLE_PROBABILITY)
     return mask
 
 
 def determined_squares(view: MapView) -> Bools:
-    """Return the squares that the counts settle or whose probability is close to 0 or 1, (rows, columns) bool."""
+    """Return the squares that the counts settle or whose probability is close to 0 or 1, (rows, columns) bool.
+
+    Close is within MAX_FREE_PROBABILITY. The mask is on the view's arrays, row 0 in the south.
+    """
     mask: Bools = (
         (view.state != OPEN)
         | (view.probability <= MAX_FREE_PROBABILITY)
@@ -347,7 +390,10 @@ def determined_squares(view: MapView) -> Bools:
 
 
 def doubtful_squares(view: MapView) -> Bools:
-    """Return the squares that no count settles and whose probability is far from 0 and 1, (rows, columns) bool."""
+    """Return the squares that no count settles and whose probability is far from 0 and 1, (rows, columns) bool.
+
+    Far is more than MAX_CLEAR_PROBABILITY away. The mask is on the view's arrays, row 0 in the south.
+    """
     mask: Bools = (
         (view.state == OPEN)
         & (view.probability > MAX_CLEAR_PROBABILITY)

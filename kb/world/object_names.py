@@ -11,7 +11,7 @@ from kb.mapping.patch import Patch
 
 
 class ObjectNames:
-    """The names of patches: o1, o2, ... in the order in which they were first seen. No name is given twice."""
+    """The names of patches: `o1`, `o2`, ... in the order in which they were first seen. No name is given twice."""
 
     def __init__(self) -> None:
         self._squares: dict[str, set[Square]] = {}
@@ -20,7 +20,7 @@ class ObjectNames:
     def assign(self, patches: list[Patch], reserved: Container[str] = ()) -> list[str]:
         """Return a name for each patch: that of the known patch it overlaps most, else a new one.
 
-        Names that no patch continues are forgotten.
+        Names that no patch continues are forgotten. The patches are kept for the next call.
 
         Parameters
         ----------
@@ -32,7 +32,7 @@ class ObjectNames:
         Returns
         -------
         list of str
-            The names, in the order of the patches.
+            The names `o<n>`, in the order of the patches.
         """
         squares = [patch.squares() for patch in patches]
         owner = {square: name for name, known in self._squares.items() if name not in reserved for square in known}

@@ -39,7 +39,7 @@ class MapRegions(NamedTuple):
     ----------
     percept : Percept
         The regions, and which of them touch or surround each other.
-    labels : (rows, columns) int32
+    labels : (rows, columns) int32 on the arrays of the map view, row 0 in the south
         The number n of each square's region `part<n>`; 0 where nothing was seen.
     kinds : Kinds
         What each region is taken for.
@@ -60,7 +60,13 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     view : MapView
         The occupancy of the squares.
     felt : mapping of (x, y) to str
-        The colours of squares that were felt, map frame.
+        The colours of squares that were felt, map frame; VERGE_TOUCH_COLOUR where it was verge.
+
+    Returns
+    -------
+    MapRegions
+        `regions` itself where nothing but verge was felt. Else each thing has a label and a name `part<n>` beyond all
+        others, and is an object with FELT_OBJECT_CONFIDENCE percent; regions of which no square is left are dropped.
     """
     percept, labels, kinds = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
@@ -81,7 +87,10 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
-    """Return the region of a thing that stands against the verge; `thing` is its (rows, columns) mask."""
+    """Return the region `part<label>` of a thing that stands against the verge.
+
+    `thing` is its (rows, columns) mask on the view's arrays, with at least one square.
+    """
     rows, columns = np.nonzero(thing)
     settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
     extent = int(max(np.ptp(rows), np.ptp(columns))) + 1
@@ -102,18 +111,23 @@ def seen_objects(
     model : WorldModel
         The world model without objects.
     assign_names : function
-        Returns a name for each patch (ObjectNames.assign).
+        Returns a name `o<n>` for each patch of squares, in the order of the patches (ObjectNames.assign).
     measurer : ShapeMeasurer
         Fits shapes to patches.
     touches : Touches
-        What was felt.
+        What was felt, for the objects' colours.
     rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/shapes.lp.
+        Files with the user's own encodings, solved together with kb/asp/shapes.lp.
 
     Returns
     -------
     tuple of Node
-        By number of the name.
+        By the number in their names; () when there are none.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
     """
     regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds)]
     windows = _windows(model, [label_of(r.name) for r in regions])
@@ -130,19 +144,30 @@ def seen_objects(
 
 
 def _may_be_object(region: Region, kinds: Kinds) -> bool:
-    """Return whether a region is short enough for an object, and not surely something else."""
+    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
     return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
 
 
 class _Window(NamedTuple):
-    """The part of a map about one region, one square wider on each side, and the mask of the region on it."""
+    """The part of a map about one region.
+
+    Attributes
+    ----------
+    view : MapView
+        The region's containing rectangle, one square wider on each side where the map goes on.
+    mask : (rows, columns) bool
+        The squares of the region, on the arrays of that part.
+    """
 
     view: MapView
     mask: Bools
 
 
 def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
-    """Return the parts of the map about the regions with these labels."""
+    """Return the parts of the map about the regions with these labels, in their order.
+
+    A label n is that of the region `part<n>`.
+    """
     framing = bounding_boxes(model.labels, int(model.labels.max()))
     found = []
     for label in labels:
@@ -162,7 +187,16 @@ def _seen_node(
     kinds: Kinds,
     touches: Touches,
 ) -> Node:
-    """Return the node of a region of the map."""
+    """Return the node of a region of the map.
+
+    name : that of the node, `o<n>`.
+    window : the map about the region.
+    patch : the region's squares, map frame.
+    measured : its fits and outline.
+    shape : shape class -> confidence in percent.
+    kinds : what each region is taken for.
+    touches : felt colours.
+    """
     open_, doubtful = count_open_squares(window.mask, window.view)
     return Node(
         name=name,
@@ -182,13 +216,20 @@ def _seen_node(
 
 
 def _support(mask: Bools, view: MapView) -> tuple[int, ...]:
-    """Return the numbers of the impressions that settled the squares of a mask, ascending."""
+    """Return the numbers of the impressions that settled the squares of a mask, ascending; () when nothing is settled.
+
+    The mask is (rows, columns) bool on the view's arrays.
+    """
     numbers = np.unique(view.settled_by[mask & ((view.state == OCCUPIED) | (view.state == FREE))])
     return tuple(int(n) for n in numbers if n >= 0)
 
 
 def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
-    """Return the facts for kb/asp/shapes.lp from the measurements of objects by name."""
+    """Return the facts for kb/asp/shapes.lp from the measurements of objects by name, without full stops.
+
+    For each object N: `open_squares(N,Count)`, `full_squares(N,Count)`, and for each shape class that fits
+    `fit(N,Class,Misfit,Rank)`: the number of squares that it leaves wrong, and its rank from 1, the likeliest.
+    """
     facts = []
     for name, result in measured.items():
         facts += [f"open_squares({name},{result.open})", f"full_squares({name},{result.full})"]
@@ -197,7 +238,24 @@ def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
 
 
 def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
-    """Return an object that was held, classified anew if its shape is open, since it was found to be larger."""
+    """Return an object that was held, classified anew if its shape is open, since it was found to be larger.
+
+    Its shape is then measured from where it lay when it was first held.
+
+    Parameters
+    ----------
+    load : HeldObject
+        The object; it is returned as it is when its shape is not {}.
+    measurer : ShapeMeasurer
+        Fits shapes to the squares of its outline.
+    rules : tuple of Path
+        Files with the user's own encodings, solved together with kb/asp/shapes.lp.
+
+    Raises
+    ------
+    BadInputError
+        The user's encodings are wrong.
+    """
     if load.shape:
         return load
     measured = measurer.measure_whole(patch_of_polygon(load.first))
@@ -205,7 +263,10 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
 
 
 def grasped(node: Node) -> HeldObject:
-    """Return an object as it is when it is held for the first time; its outline must be known."""
+    """Return an object as it is when it is held for the first time.
+
+    The outline of the node must be known. The object lies where the node's outline lies, map frame, and was not turned.
+    """
     return HeldObject(
         name=node.name,
         polygon=node.polygon,
@@ -240,6 +301,11 @@ def within_reach(
         The robot's square, map frame.
     direction : str
         One of the eight DIRECTIONS of the robot frame.
+
+    Returns
+    -------
+    list of Node
+        In the order of `objects`; [] when there is none.
     """
     x, y = square
     adjacent = frame.beside(direction)
@@ -251,7 +317,13 @@ def within_reach(
 def _felt_objects(
     objects: Iterable[Node], touches: Touches, frame: Frame, occupancy: OccupancyMap, square: Square, direction: str
 ) -> list[Node]:
-    """Return the objects near the adjacent square in a direction that may have the colour felt there."""
+    """Return the objects near the adjacent square in a direction that may have the colour felt there.
+
+    Near are those that may cover one of the squares that the direction may name, or one of the 8 squares about these.
+    An object whose colour is not known may have any. [] when floor is felt, or when the squares that the direction may
+    name are all settled as occupied. For the parameters see `within_reach`: `square` is the robot's own, map frame,
+    `direction` one of the eight DIRECTIONS of the robot frame.
+    """
     colour = touches.felt_in(direction)
     x, y = square
     named = [(x + i, y + j) for i, j in frame.adjacent_squares(direction)]
@@ -267,6 +339,10 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
 
     The robot's own square stays its own, since the robot is a point; but if the object may cover a part of that square,
     the square is no longer settled. Walls that the object would enter only by the tolerance of its outline stay walls.
+
+    The squares that it surely covers become occupied. Those that it may cover become unsettled where they were free;
+    they are occupied with LAID_PROBABILITY within its believed outline, and with PLAY_PROBABILITY at least outside of
+    it.
 
     Parameters
     ----------
@@ -297,6 +373,7 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return (rows, columns) probabilities of squares to be occupied, changed for the object."""
         may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
         return np.where(sure, np.float32(1), np.where(open_, may, chance))
 
@@ -313,6 +390,9 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
 def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held.
 
+    It can be moved with 99 percent belief when it was seen to move, with 0 after MIN_STUCK_MOTIONS motions in a row
+    that did not move it, else with 50.
+
     Parameters
     ----------
     load : HeldObject
@@ -320,7 +400,7 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     patch : Patch
         The squares that it covers, or may cover; map frame.
     label : int
-        The number of its region.
+        The number n of its region `part<n>`.
     """
     movable = 99 if load.proven else 0 if load.stuck >= MIN_STUCK_MOTIONS else 50
     return Node(

@@ -41,11 +41,12 @@ class Door:
     Attributes
     ----------
     name : str
-        d1, d2, ... It may name another door in another world model.
+        d1, d2, ... in the order of `Rooms.doors`. It may name another door in another world model.
     a, b : (x, y)
-        The ends of its neck, on the walls; view frame.
+        The ends of its neck, on the walls, in squares, view frame (origin at the south-west corner of the map view's
+        square [0, 0]): the left and the right one as seen by a robot that goes from the first of `sides` to the second.
     sides : (int, int)
-        The numbers of the rooms on its two sides.
+        The numbers of the rooms on its two sides; the same twice when both sides are one room.
     confidence : int
         Percent of belief that it is a door.
     """
@@ -58,22 +59,25 @@ class Door:
 
     @property
     def sure(self) -> bool:
-        """Whether it counts as a door."""
+        """Whether it counts as a door: a confidence of at least MIN_DOOR_CONFIDENCE percent."""
         return self.confidence >= MIN_DOOR_CONFIDENCE
 
     @property
     def likely(self) -> bool:
-        """Whether it is likely enough to be a door to be tried."""
+        """Whether it is likely enough to be a door to be tried: at least MIN_TRIED_DOOR_CONFIDENCE percent."""
         return self.confidence >= MIN_TRIED_DOOR_CONFIDENCE
 
     @property
     def width(self) -> float:
-        """The width from wall to wall, in squares."""
+        """The width of its neck from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
     def place(self) -> XY:
-        """The middle of its neck, (x, y) in the view frame."""
+        """The middle of its neck, (x, y) in squares, view frame.
+
+        The view frame has its origin at the south-west corner of the map view's square [0, 0].
+        """
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
@@ -83,11 +87,12 @@ class Opening(NamedTuple):
     Attributes
     ----------
     a, b : (x, y)
-        Its ends, on the walls; view frame.
+        Its ends, on the walls, in squares, view frame (origin at the south-west corner of the map view's square [0,
+        0]).
     least : float
         The width of the floor on the narrower side, in squares.
     narrow, wide : (x, y)
-        The centres of squares just beyond it, on the narrower side and on the wider one; view frame.
+        The centres of squares just beyond it, on the narrower side and on the wider one; (x, y) in squares, view frame.
     """
 
     a: XY
@@ -98,12 +103,15 @@ class Opening(NamedTuple):
 
     @property
     def width(self) -> float:
-        """The width from wall to wall, in squares."""
+        """The width of the neck from wall to wall, in squares."""
         return math.dist(self.a, self.b)
 
     @property
     def place(self) -> XY:
-        """The middle of its neck, (x, y) in the view frame."""
+        """The middle of the neck, (x, y) in squares, view frame.
+
+        The view frame has its origin at the south-west corner of the map view's square [0, 0].
+        """
         return (self.a[0] + self.b[0]) / 2, (self.a[1] + self.b[1]) / 2
 
 
@@ -116,11 +124,12 @@ class Rooms:
     doors : tuple of Door
         All necks that may be doors, likely or not; rooms end at each of them.
     labels : (rows, columns) int32
-        The room of each square of known floor, 0 for none; the room in which the robot woke is 1.
+        The number of the room of each square of known floor, 0 for none; the room in which the robot woke is 1. On the
+        arrays of the map view: row 0 in the south, column 0 in the west.
     doorways : (rows, columns) bool
         Squares between the walls of a door, and those close to it: they belong to no room for certain.
     opening : Opening or None
-        Of the necks that are no doors the one that comes nearest to being one.
+        Of the necks that are no doors the one that comes nearest to being one; None when there is none.
     """
 
     doors: tuple[Door, ...]
@@ -130,11 +139,11 @@ class Rooms:
 
     @property
     def sure(self) -> tuple[Door, ...]:
-        """The doors that count as such."""
+        """The doors that count as such: with a confidence of at least MIN_DOOR_CONFIDENCE percent."""
         return tuple(door for door in self.doors if door.sure)
 
     def leading(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> list[Door]:
-        """Return the doors of a room.
+        """Return the doors of a room, in the order of `doors`; [] when it has none.
 
         Parameters
         ----------
@@ -158,6 +167,7 @@ class Rooms:
         Returns
         -------
         (rows, columns) bool
+            On the arrays of `labels`; the room itself is left out, and nothing is set when it has no such door.
         """
         others = {side for door in self.leading(room, least) for side in door.sides} - {room}
         mask: Bools = np.isin(self.labels, sorted(others)) & ~self.doorways
@@ -175,14 +185,14 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
     model : WorldModel
         The world model.
     rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/rooms.lp.
+        Files with the user's own encodings, solved together with kb/asp/rooms.lp.
     verge : (rows, columns) bool, optional
-        Squares that bound the rooms; without it all that the model takes for verge.
+        Squares that bound the rooms, on the view's arrays; without it all that the model takes for verge.
 
     Returns
     -------
     Rooms
-        One room without doors where nothing bounds the floor.
+        One room without doors, on all squares, where there is no verge; no room where no floor is known.
 
     Raises
     ------
@@ -216,7 +226,11 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
 def _judge_necks(
     necks: list[DoorwayNeck], rules: tuple[Path, ...]
 ) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
-    """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door."""
+    """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door.
+
+    The first is a list of (neck, percent) in the order of `necks`; the second is None when every neck is a door. Necks
+    with a certainty of 0 percent are no doors.
+    """
     known = [neck for neck in necks if neck.certainty > 0]
     facts = []
     for number, (passage, _, certainty) in enumerate(known):
@@ -231,13 +245,16 @@ def _judge_necks(
 
 
 def _opening(neck: DoorwayNeck) -> Opening:
-    """Return a neck that is no door as an Opening."""
+    """Return a neck that is no door as an Opening: the width and the square of its narrower side come first."""
     (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
     return Opening(*neck.line, 2 * least, narrow, wide)
 
 
 def _numbers_from(number: int, start: int) -> Ints:
-    """Return new numbers for the parts 0 to `number`: `start` becomes 1, and 1 becomes `start`; 0 stays."""
+    """Return new numbers for the parts 0 to `number`: `start` becomes 1, and 1 becomes `start`; 0 stays.
+
+    The result is (number + 1,) int32: index a part by its old number. Nothing changes for a `start` of 0 or less.
+    """
     order = np.arange(number + 1, dtype=np.int32)
     if start > 0:
         order[[1, start]] = order[[start, 1]]
@@ -247,7 +264,10 @@ def _numbers_from(number: int, start: int) -> Ints:
 def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
     """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place.
 
-    Where nothing is seen beyond the doorway, its half of the doorway is a room of its own.
+    `labels` is (rows, columns) int32 on the view's arrays: numbers of rooms, NO_ROOM on floor of no room, -1 where
+    there is no floor. The passage is in the view frame. Each square between its mouths gets the room of the nearer one.
+    Where nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room
+    counts as that of the other one; (0, 0) when neither has one.
     """
     columns, rows = np.array(passage.between, np.int64).reshape(-1, 2).T
     away = [_distances_to_line(mouth, columns, rows) for mouth in passage.mouths]
@@ -262,13 +282,18 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
 
 
 def _within(labels: Labels, columns: Longs, rows: Longs) -> Bools:
-    """Return which of some squares lie within an array, (n,) bool."""
+    """Return which of some squares, given by index, lie within an array: (n,) bool."""
     inside: Bools = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
     return inside
 
 
 def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
-    """Return the label of the room that begins beyond mouth `number` (0 or 1) of a passage; 0 where none is seen."""
+    """Return the label of the room that begins beyond mouth `number` (0 or 1) of a passage; 0 where none is seen.
+
+    It is that of the nearest square of a room to the passage's gate there, within MAX_MOUTH_DISTANCE squares of the
+    mouth. `labels` is (rows, columns) int32 on the view's arrays, numbers of rooms above 0; the passage is in the view
+    frame.
+    """
     (x, y), mouth = passage.gates[number], passage.mouths[number]
     rows, columns = np.nonzero(labels > 0)
     (ax, ay), (bx, by) = mouth if number == 0 else mouth[::-1]
@@ -282,7 +307,11 @@ def _label_beyond(passage: Passage, number: int, labels: Labels) -> int:
 
 
 def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
-    """Return the distances of the centres of squares from a line segment, (n,) in squares."""
+    """Return the distances of the centres of squares from a line segment: (n,) float64, in squares.
+
+    `line` holds two different points (x, y) in the view frame; columns, rows : (n,) indices of the view's arrays. The
+    results are rounded to 9 decimals.
+    """
     a, along = np.array(line[0]), np.subtract(line[1], line[0])
     points = np.stack([columns + 0.5, rows + 0.5], axis=-1) - a
     part = np.clip(points @ along / (along @ along), 0.0, 1.0)
@@ -291,7 +320,11 @@ def _distances_to_line(line: Segment, columns: Longs, rows: Longs) -> Floats:
 
 
 def _doorway(passage: Passage, shape: tuple[int, int]) -> Bools:
-    """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH: (rows, columns) bool."""
+    """Return the squares in front of both mouths of a passage, up to DOORWAY_REACH squares away: (rows, columns) bool.
+
+    They are as wide as the mouth and one square more on both ends. The passage is in the view frame; `shape` is (rows,
+    columns) of the view's arrays.
+    """
     mask = np.zeros(shape, np.bool_)
     for mouth, outward in zip(passage.mouths, (-1, 1), strict=True):
         middle, along = np.add(*mouth) / 2, np.subtract(mouth[1], mouth[0])
@@ -312,14 +345,15 @@ def count_crossings(points: Floats, door: Door) -> int:
     Parameters
     ----------
     points : (n, 2) float64
-        The track, (x, y) in squares, view frame.
+        The track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square [0, 0]),
+        oldest point first.
     door : Door
         The door.
 
     Returns
     -------
     int
-        Not negative.
+        Not negative, whichever way the passes lead.
     """
     a, along = np.array(door.a), np.subtract(door.b, door.a)
     turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
@@ -328,12 +362,13 @@ def count_crossings(points: Floats, door: Door) -> int:
 
 
 def went_through(track: Floats, door: Door) -> bool:
-    """Return whether a track was ever on the other side of a door than it began.
+    """Return whether a track was ever on the other side of a door than it began; True also when it came back later.
 
     Parameters
     ----------
     track : (n, 2) float64
-        The points of the track, (x, y) in squares, view frame.
+        The points of the track, (x, y) in squares, view frame (origin at the south-west corner of the map view's square
+        [0, 0]), oldest first.
     door : Door
         The door.
     """

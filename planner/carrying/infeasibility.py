@@ -20,7 +20,9 @@ class Refutation:
     Attributes
     ----------
     name : of the object.
-    plans : each refuted plan with the certainty level of the squares that it was asked for, in the order of asking.
+    plans : each refuted plan (squares, view frame) with the certainty level of the squares that it was asked for, in
+        the order of asking; at least one. Level 0 allows the surest squares only; the higher, the more squares it
+        allows.
     model : what was believed.
     """
 
@@ -29,12 +31,15 @@ class Refutation:
     model: WorldModel
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, view frame; None for none."""
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
         passage = closest_refuted(self.plans).passage
         return None if passage is None else passage.place
 
     def reason(self) -> str:
-        """Return why the object cannot be carried there, in words."""
+        """Return why the object cannot be carried there, in words: a clause without full stop.
+
+        It names the passage that is too narrow, if any, with widths in squares and its place in the robot frame.
+        """
         closest = closest_refuted(self.plans)
         passage = closest.passage
         if passage is None:
@@ -46,7 +51,10 @@ class Refutation:
         return f"the passage for {self.name}, {where}, is too narrow by {closest.missing:.2f} squares"
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        """Return the open fact by which the passage may be wide enough, in words; "" for none.
+
+        Also "" when no passage is too narrow, or a wider one would not help.
+        """
         closest = closest_refuted(self.plans)
         passage = closest.passage
         if passage is None or _is_blocked_elsewhere(closest):
@@ -61,8 +69,8 @@ class Infeasibility:
     Attributes
     ----------
     proved : whether there is none, whatever the unseen squares hold.
-    message : why, in words; "" where the refutation tells it.
-    refutation : what geometry refuted; None when nothing was proved.
+    message : why, in words, without full stop; "" where the refutation tells it.
+    refutation : what geometry refuted; None when nothing was proved, or when it needed no geometry.
     """
 
     proved: bool
@@ -70,15 +78,18 @@ class Infeasibility:
     refutation: Refutation | None = None
 
     def reason(self) -> str:
-        """Return why nothing can be done, in words. May take time, to find the passage that is too narrow."""
+        """Return why nothing can be done, in words, without full stop; "" when nothing is known.
+
+        May take time, to find the passage that is too narrow.
+        """
         return self.message or (self.refutation.reason() if self.refutation is not None else "")
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, view frame; None for none."""
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
         return None if self.refutation is None else self.refutation.neck()
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words; "" for none."""
+        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""
         return "" if self.refutation is None else self.refutation.unless()
 
 
@@ -88,15 +99,15 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
     Parameters
     ----------
     node : the object.
-    plans : every plan that geometry did not find, with the certainty level of the squares that it was asked for, in the
-        order of asking.
+    plans : every plan that geometry did not find (squares, view frame), with the certainty level of the squares that it
+        was asked for (0 allows the fewest squares), in the order of asking; none when there was nothing to ask for.
     model : what is believed.
 
     Returns
     -------
     Infeasibility
         Proved when every plan was refuted, whatever the unseen squares hold, and the object surely lies where it is
-        believed to lie.
+        believed to lie. Never proved when there are no plans.
     """
     if not plans:
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
@@ -109,7 +120,14 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
 
 
 def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
-    """Return why an object may lie elsewhere than believed, in words; "" for no reason. plans : all refuted."""
+    """Return why an object may lie elsewhere than believed, in words; "" for no reason.
+
+    Parameters
+    ----------
+    node : the object.
+    plans : all refuted, each with its certainty level, in the order of asking; at least one.
+    model : what is believed.
+    """
     _, last = plans[-1]
     if last.reason == "start":  # nothing lies in a wall
         return "it would overlap a wall"
@@ -131,7 +149,9 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     """Return the refuted plan that comes closest to leading somewhere.
 
     It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
-    one of that level. plans : each with its level.
+    one of that level. The most permissive level is the greatest number: it allows the most squares, 0 only the surest.
+
+    plans : refuted plans, each with its certainty level, in the order of asking; at least one, else ValueError.
     """
     most_permissive = max(level for level, _ in plans)
     asked = [plan for level, plan in reversed(plans) if level == most_permissive]
@@ -139,5 +159,8 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
 
 
 def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
-    """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help."""
+    """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help.
+
+    False when no passage is too narrow.
+    """
     return plan.passage is not None and not plan.opens

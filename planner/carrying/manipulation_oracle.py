@@ -62,7 +62,7 @@ class OtherObjects(StrEnum):
     Attributes
     ----------
     CLEAR : lead round all of them.
-    ASIDE : lead as if those that may be moved were not there.
+    ASIDE : lead as if those that may be moved were not there; they are then moved aside first.
     """
 
     CLEAR = "clear"
@@ -75,10 +75,11 @@ class ManipulationPlan:
 
     Attributes
     ----------
-    plan : what geometry found, in squares, view frame.
+    plan : what geometry found, in squares, view frame: legs, each a walk, a grasp, pushes and turns, a release.
     target : the name of the end that it leads to.
     level : the certainty level of the squares that it needs, 0 the surest.
-    swept : (rows, columns) bool, the squares that the object, or the robot holding it, crosses.
+    swept : (rows, columns) bool on the arrays of the view, the squares that the object, or the robot holding it,
+        crosses.
     aside : the names of objects that must be moved out of the way first.
     hopes : whether it is begun over squares that are only hoped to be free, without a look at them first.
     """
@@ -92,13 +93,13 @@ class ManipulationPlan:
 
     @property
     def askew(self) -> bool:
-        """Return whether the object is turned otherwise than by quarter turns."""
+        """Return whether some turn of the plan is not a multiple of a quarter turn (90 degrees)."""
         turns = (m for leg in self.plan.legs for m in leg.motions if isinstance(m, Rotate))
         return any(turn.degrees % 90.0 != 0.0 for turn in turns)
 
     @property
     def is_simple(self) -> bool:
-        """Return whether it takes one grasp, one or two pushes and no turn."""
+        """Return whether the plan takes one grasp, at most two pushes and no turn."""
         legs = self.plan.legs
         return len(legs) == 1 and len(legs[0].motions) <= 2 and all(isinstance(m, Translate) for m in legs[0].motions)
 
@@ -109,9 +110,10 @@ class Request:
 
     Attributes
     ----------
-    node : the object.
+    node : the object; its outline is known.
     ends : where it shall lie, by name, in squares, view frame.
-    avoid : grasps that failed, as (x, y) of the robot from the middle of the object.
+    avoid : grasps that failed, as (x, y) of the robot from the middle of the object, in squares along the axes of the
+        map.
     last_target : the name of the end that was chosen last time; "" for none.
     contacts : how often the object stood against something unexpectedly. Each time more room is wanted about it.
     held : whether the robot holds it and may go on with that grasp.
@@ -130,9 +132,11 @@ class Request:
 class CarryingFloor(NamedTuple):
     """The places of an object and the robot, and the squares that they may use, all in one frame.
 
+    It is the frame of the two arrays: x = column, y = row, (0, 0) the outer corner of square [0, 0].
+
     Attributes
     ----------
-    shape : the outline of the object, shapely, in squares.
+    shape : the outline of the object, shapely Polygon, in squares.
     utak : the place (x, y) of the robot, in squares.
     free : (rows, columns) bool, squares for the object and the robot holding it.
     walk : (rows, columns) bool, squares for the robot alone.
@@ -145,10 +149,17 @@ class CarryingFloor(NamedTuple):
 
 
 class ManipulationOracle:
-    """Finds manipulation plans, and remembers what geometry answered to the same question."""
+    """Finds manipulation plans, and remembers what geometry answered to the same question.
+
+    It asks geometry for one end, one certainty level of squares and one treatment of other objects at a time; an
+    encoding chooses the order.
+    """
 
     def __init__(self, pull: bool = True) -> None:
-        """Make an oracle that has been asked nothing. pull : whether a held object may be pulled."""
+        """Make an oracle that has been asked nothing.
+
+        pull : whether a held object may be pulled; False when it may only be pushed.
+        """
         self._pull = pull
         self._answers: dict[tuple[Any, ...], CarryingPlan] = {}
         self._found_nothing = False  # whether the last request had no plan
@@ -162,13 +173,14 @@ class ManipulationOracle:
         ----------
         request : what is to be carried, and where to.
         situation : what is believed.
-        hoped : returns the ends as they are if the floor goes on as it is hoped to. It is called only when a plan was
-            found that a bolder one may replace.
+        hoped : returns the ends (by name, squares, view frame) as they are if the floor goes on as it is hoped to; none
+            by default. It is called only when a plan was found that a bolder one may replace.
 
         Returns
         -------
         ManipulationPlan or Infeasibility
-            The plan is in the view frame.
+            The plan is in the view frame. At most MAX_ORACLE_ROUNDS options are tried: with more, the Infeasibility may
+            be about a part of them.
         """
         shape, utak = to_view_frame(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
@@ -206,7 +218,16 @@ class ManipulationOracle:
         """Return the plan that planner/asp/boldness.lp chooses: the one that was found, or a more optimistic one.
 
         A plan over squares that are surely free is compared with optimistic ones if one of these may take fewer
-        commands. A plan over hoped squares is begun without a look where it does not leave the object askew.
+        commands. A plan over hoped squares is begun without a look where it does not leave the object askew. The facts
+        for the encoding, without full stops: `plan(number, commands)`, `hopes(number)`, `askew(number)`,
+        `aside(number)`, `short(number)`; number 0 is the plan that was found.
+
+        Parameters
+        ----------
+        request : what the plan was asked for.
+        found : the plan, view frame.
+        situation : what is believed.
+        hoped : returns the hoped ends, by name, in squares, view frame.
         """
         if found.level == OPTIMISTIC_LEVEL:
             return replace(found, hopes=not found.askew)
@@ -230,7 +251,14 @@ class ManipulationOracle:
         """Yield a plan for each end over squares that are hoped to be free, also beyond all that was seen.
 
         Yields nothing where nothing is hoped for. While the frame is open, plans end within what was seen: beyond it no
-        impression tells well where a motion was stopped.
+        impression tells well where a motion was stopped. The plans are in the view frame and of UNSEEN_LEVEL, in the
+        order of the names of the ends.
+
+        Parameters
+        ----------
+        request : what is to be carried, and where to.
+        situation : what is believed.
+        hoped : returns the hoped ends, by name, in squares, view frame; they replace the ends of the same name.
         """
         model, node = situation.model, request.node
         own, walk = with_unseen_margin(model.mask(node.patch)), with_unseen_margin(situation.cost_maps.free(0))
@@ -249,7 +277,18 @@ class ManipulationOracle:
                 yield replace(_manipulation_plan(shifted, shape, name, UNSEEN_LEVEL, situation, node), hopes=True)
 
     def _ask_geometry(self, request: Request, end: End, floor: CarryingFloor, model: WorldModel) -> CarryingPlan:
-        """Return what geometry says of one end; from memory where the same was asked before."""
+        """Return what geometry says of one end; from memory where the same was asked before.
+
+        The plan is in squares, in the frame of `end` and `floor`, which is one: the view frame, or that with the margin
+        for unseen squares. Its status is found, impossible or limit (neither found nor refuted).
+
+        Parameters
+        ----------
+        request : what is to be carried; its own ends are not read.
+        end : where the object shall lie.
+        floor : where object and robot are, and the squares that they may use.
+        model : what is believed; it tells from which squares the object cannot be grasped for sure.
+        """
         shape, utak, free, walk = floor
         held, turn, contacts = request.held, request.turn_cost, request.contacts
         avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
@@ -261,6 +300,11 @@ class ManipulationOracle:
             margin = min(INEXACT_MARGIN * (contacts + (not is_grid_aligned(shape))), MAX_MARGIN)
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
+                """Return what geometry says for some free squares and walls.
+
+                free : (rows, columns) bool. walls : shapely geometry in squares, same frame; None for all that is not
+                    free.
+                """
                 return plan_carrying(
                     shape, free, utak, end, margin, self._pull, avoid, walk, walls=walls, held=held, turn=turn
                 )
@@ -274,14 +318,28 @@ def _may_use_other_doors(node: Node, situation: Situation) -> bool:
     """Return whether the doors forbidden here prove nothing.
 
     Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
-    the object may pass where the robot may not.
+    the object may pass where the robot may not. False when no door is forbidden.
     """
     own = situation.forbidden(node.name)
     return bool(len(own) > 1 or (not own and situation.forbidden("utak")))
 
 
 def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
-    """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches."""
+    """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches.
+
+    Walls are thickened by WALL_CLEARANCE squares except near the object; squares beside blocked ones no longer count as
+    free.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool.
+    shape : the outline of the object, shapely Polygon, in squares, frame of `free`.
+
+    Returns
+    -------
+    tuple
+        (rows, columns) bool, and a shapely geometry in squares in the same frame.
+    """
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(mask_to_polygon(free))
     near_shape = shape.buffer(2 * WALL_CLEARANCE, join_style="mitre")
@@ -292,7 +350,8 @@ def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
 def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
     """Yield the grasps, as (x, y) from the object's middle, from which no compass direction surely names its squares.
 
-    In a frame that is turned these are squares at its corners.
+    In squares along the axes of the map, from the middle of the outline to the centre of the square where the robot
+    would stand. In a frame that is turned these are squares at its corners.
     """
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in ADJACENT_OFFSETS} - covered
@@ -302,25 +361,28 @@ def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
 
 
 def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
-    """Return each certainty level that is tried, with other objects where they are and, if there are any, without."""
+    """Return each certainty level that is tried, with other objects where they are and, if there are any, without.
+
+    The surest level first, and for each level CLEAR before ASIDE.
+    """
     several = len(situation.model.objects) > 1
     choices = (OtherObjects.CLEAR, OtherObjects.ASIDE) if several else (OtherObjects.CLEAR,)
     return [(level, others) for level in TRIED_LEVELS for others in choices]
 
 
 def usable_squares(node: Node, situation: Situation, level: int, others: OtherObjects) -> Bools:
-    """Return the mask (rows, columns) of squares that may be used to carry an object.
+    """Return the squares that may be used to carry an object, (rows, columns) bool on the arrays of the view.
 
     These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
     objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
     where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
-    what may be an object, or its hidden part, in what seems to be wall.
+    what may be an object, or its hidden part, in what seems to be wall. Necks of forbidden doors are never among them.
 
     Parameters
     ----------
     node : the object to carry.
     situation : what is believed.
-    level : the certainty level of squares, 0 the surest.
+    level : the certainty level of squares, 0 the surest, UNSEEN_LEVEL the most permissive.
     others : what is done about the other objects.
     """
     model = situation.model
@@ -347,7 +409,10 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
 
 
 def _least_way(end: End, shape: Any) -> float:
-    """Return the straight distance from a shape to an end, in squares: a lower bound of the way."""
+    """Return the straight distance from a shape to an end, in squares: a lower bound of the way.
+
+    For an At end it is the length of its translation; for a Roomy end 0. shape : shapely Polygon, frame of the end.
+    """
     if isinstance(end, At):
         return math.hypot(end.pose.x, end.pose.y)
     if isinstance(end, InCorner | Between):
@@ -356,7 +421,13 @@ def _least_way(end: End, shape: Any) -> float:
 
 
 def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None:
-    """Return the end, the level and the treatment of other objects that are tried next; None when none is left."""
+    """Return the end, the level and the treatment of other objects that are tried next; None when none is left.
+
+    The end is given by its name, the level as 0 (the surest) and up.
+
+    facts : strings without full stop, for planner/asp/transport.lp: `option(end, level, others, cost)` with the cost in
+        tenths of squares, `last(end)`, `refuted(end, level, others)`, `undecided(end, level, others)`, `hopeless`.
+    """
     answer = solve([PLANNER_ASP / "transport.lp"], facts)
     if not answer:
         return None
@@ -367,7 +438,19 @@ def _choose_option(facts: Sequence[str]) -> tuple[str, int, OtherObjects] | None
 def _manipulation_plan(
     plan: CarryingPlan, shape: Any, name: str, level: int, situation: Situation, node: Node
 ) -> ManipulationPlan:
-    """Return the manipulation plan of what geometry found for the end `name` over squares of a level."""
+    """Return the manipulation plan of what geometry found for the end `name` over squares of a level.
+
+    Objects whose squares it crosses, where these are not free at that level, are to be moved aside first.
+
+    Parameters
+    ----------
+    plan : what geometry found, in squares, view frame.
+    shape : the outline of the object where it lies, shapely Polygon, in squares, view frame.
+    name : of the end.
+    level : the certainty level of the squares, 0 the surest.
+    situation : what is believed.
+    node : the object.
+    """
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
     # What seems to stand where the object itself lies is not in its way, nor is what may not be there at all.
@@ -378,12 +461,14 @@ def _manipulation_plan(
 
 
 def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Bools:
-    """Return the mask of squares that an object, and the robot holding it, cross on a plan.
+    """Return the mask of squares that an object, and the robot holding it, cross on a plan, (rows, columns) bool.
+
+    The squares where the object lies at first are among them. Motions are sampled every SWEEP_STRIDE squares.
 
     Parameters
     ----------
-    plan : the plan, view frame.
-    shape : the outline of the object where it lies before the plan, shapely, view frame.
+    plan : the plan, in squares, view frame.
+    shape : the outline of the object where it lies before the plan, shapely Polygon, in squares, view frame.
     size : (rows, columns) of the mask.
     """
     rows, columns = size

@@ -22,9 +22,12 @@ from planner.screen.moves import orientation_is_settled
 def qualify(decision: Decision, model: WorldModel) -> Decision:
     """Return a decision with `possible_if` in place of `impossible` where an open fact would overturn that.
 
+    The fact is added to the reason.
+
     Parameters
     ----------
-    decision : what was decided; its `unless` may name the open fact already.
+    decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
+        says that there can be none.
     model : what is believed.
 
     Returns
@@ -49,8 +52,8 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     Parameters
     ----------
     model : what is believed.
-    immovable : an object fits, but did not move when it was pushed. While the frame is open, the robot may have pushed
-        at another object: then it is `limit`, too.
+    immovable : an object fits, but did not move when it was pushed. While the angle of the map frame is open, the robot
+        may have pushed at another object: then it is `limit`, too.
 
     Returns
     -------
@@ -63,6 +66,9 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
 
 def nearest_open_fact(model: WorldModel, near: XY) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
+
+    A wall that was never felt comes first, then floor that goes on unseen, then an object that was never moved. A
+    clause without full stop, places in the robot frame.
 
     Parameters
     ----------
@@ -80,7 +86,10 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
 
 
 def unfelt_walls(model: WorldModel) -> Bools:
-    """Return the mask (rows, columns) of squares beside known floor on which a wall was seen and never felt."""
+    """Return the squares beside known floor on which a wall was seen and never felt.
+
+    (rows, columns) bool on the arrays of the view; squares of objects do not count.
+    """
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     things: Bools = np.zeros_like(felt)
     for node in model.objects:
@@ -99,7 +108,7 @@ def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: st
     ----------
     width : of the passage as it is believed, in squares.
     missing : how much wider it must be, in squares.
-    sides : a point (x, y) on each of its two walls, in squares.
+    sides : a point (x, y) on each of its two walls, in squares, in any frame along the axes of the map.
     where : the place of the passage, in words.
     """
     across = np.abs(np.subtract(*sides)) / max(math.dist(*sides), 1e-9)
@@ -110,7 +119,10 @@ def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: st
 
 
 def _nearest_square(mask: Bools, near: XY) -> XY | None:
-    """Return the middle of the marked square nearest to a place, the first of several; None for an empty mask."""
+    """Return the middle (x, y) of the marked square nearest to a place, the first of several; None for an empty mask.
+
+    In squares, in the frame of the mask, (rows, columns) bool; `near` is a point (x, y) of the same frame.
+    """
     rows, columns = np.nonzero(mask)
     if not len(rows):
         return None

@@ -58,7 +58,7 @@ class PlanExecutor:
     ----------
     pull : whether a held object may be pulled.
     failed : the grasps by which an object did not move. Only this class changes it.
-    missed : plans that ended, with the object in hand, before they led to their end, since `forget_misses`.
+    missed : how many plans ended, with the object in hand, before they led to their end, since `forget_misses`.
     """
 
     def __init__(
@@ -72,9 +72,9 @@ class PlanExecutor:
 
         Parameters
         ----------
-        pull : whether a held object may be pulled.
+        pull : whether a held object may be pulled; False when it may only be pushed.
         oracle : what finds plans; a new one if None. It belongs to this executor from now on.
-        plan : a plan that is under way already; None for none.
+        plan : a plan that is under way already, map frame; None for none.
         operations : the functions on remaining plans; the real ones if None.
         """
         self.pull = pull
@@ -93,25 +93,27 @@ class PlanExecutor:
 
     @property
     def turns(self) -> bool:
-        """Return whether the plan under way turns its object."""
+        """Return whether what is left of the plan under way turns its object; False when there is no plan."""
         legs = () if self._plan is None else self._plan.legs
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
         """Return what to do to carry an object to one of several ends.
 
-        The plan under way is followed while it holds; else the failure is answered, or another plan is made.
+        The plan under way is followed while it holds; else the failure is answered, or another plan is made. The
+        command of an Act counts as given: the plan goes on behind it at the next call.
 
         Parameters
         ----------
-        node : the object.
-        ends : where it shall lie, by name, view frame.
+        node : the object; its outline is known.
+        ends : where it shall lie, by name, in squares, view frame.
         situation : what is believed.
-        hoped : returns the ends as they are if the floor goes on as it is hoped to.
+        hoped : returns the ends, likewise, as they are if the floor goes on as it is hoped to; none by default.
 
         Returns
         -------
         Act, Go, See or Infeasibility
+            A command; a square to walk to first; squares to see first; or why nothing can be done.
         """
         before, self._plan = self._plan, None
         plan = None
@@ -136,21 +138,26 @@ class PlanExecutor:
     def infeasibility(self, node: Node, ends: Mapping[str, End], situation: Situation) -> Infeasibility | None:
         """Return why an object cannot be carried to any of several ends; None when a plan is found.
 
+        The plan under way is not touched.
+
         Parameters
         ----------
-        node : the object.
-        ends : where it shall lie, by name, view frame.
+        node : the object; its outline is known.
+        ends : where it shall lie, by name, in squares, view frame.
         situation : what is believed.
         """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
 
     def forget_misses(self) -> None:
-        """Count missed plans from zero again."""
+        """Count missed plans (`missed`) from zero again."""
         self.missed = 0
 
     def release_looping(self, model: WorldModel) -> Act:
-        """Return the release of a held object that was carried in a loop, and mark its grasp as failed."""
+        """Return the release of a held object that was carried in a loop, and mark its grasp as failed.
+
+        The plan under way is dropped. An object must be held: else AssertionError.
+        """
         assert model.held is not None
         self._plan = None
         self.failed.record(model.object(model.held), model)
@@ -159,7 +166,13 @@ class PlanExecutor:
     def continue_plan(self, node: Node, situation: Situation) -> Act | None:
         """Return the next command of the plan under way for the held object; None when there is no such plan.
 
-        Returns None, too, when the plan no longer holds.
+        Returns None, too, when the plan no longer holds. Wherever it leads, it is not asked whether that is still
+        wanted.
+
+        Parameters
+        ----------
+        node : the object; None is returned unless it is held and the plan carries it.
+        situation : what is believed.
         """
         if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
             return None
@@ -177,7 +190,8 @@ class PlanExecutor:
         Parameters
         ----------
         node : the object.
-        squares : flat indices of the squares from which the robot wants to look.
+        squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
+            wants to look.
         fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
             and one or two pushes.
         situation : what is believed.
@@ -193,12 +207,14 @@ class PlanExecutor:
     def detour(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | None:
         """Return the push with the held object to one of some squares, from which one more leads to the plan's end.
 
-        It may take the place of the command that was advised last. Returns None when there is no such push.
+        It may take the place of the command that was advised last. Returns None when there is no such push, or when
+        what is left of the plan is not one leg of pushes with the object in hand.
 
         Parameters
         ----------
         node : the held object.
-        squares : flat indices of the squares from which the robot wants to look.
+        squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
+            wants to look.
         situation : what is believed.
         """
         plan = self._plan
@@ -215,7 +231,8 @@ class PlanExecutor:
     def lead_out(self, node: Node, situation: Situation) -> Act | None:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed.
 
-        Returns None where no push does that.
+        Returns None, and marks nothing, where no push does that, where pulling is not allowed, when the last motion did
+        not move the object, and after MAX_PLANS plans.
         """
         push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
         if push is None:
@@ -224,17 +241,25 @@ class PlanExecutor:
         return unplanned_act(push, f"{node.name} is led out of the nook, to be grasped from elsewhere", situation.model)
 
     def drop_other_plan(self, name: str) -> None:
-        """Drop the plan under way unless it carries the object `name`."""
+        """Drop the plan under way unless it carries the object `name`; nothing happens when there is none."""
         if self._plan is not None and self._plan.name != name:
             self._plan = None
 
     def depart(self, act: Act) -> None:
-        """Note that a command is given. A push that no plan asks for ends the plan under way."""
+        """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan.
+
+        act : what is given; nothing is noted for a command of a plan.
+        """
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
     def _bring_near(self, node: Node, squares: SquareIndices, situation: Situation) -> Act | Go | None:
-        """Return the next command to bring an object near to some squares by one grasp and one or two pushes."""
+        """Return the next command to bring an object near to some squares by one grasp and one or two pushes.
+
+        Returns None when that cannot be done over squares that are surely free.
+
+        squares : flat indices (row * columns + column) on the arrays of the view.
+        """
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
         if end is None:
@@ -258,8 +283,13 @@ class PlanExecutor:
         """Return what to do when a motion did not move the held object: draw it back once, then release it.
 
         An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
-        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. plan :
-        the one that no longer holds. Returns None when nothing failed.
+        degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
+        None when nothing failed, or when nothing is held: then a grasp that the plan relied on is marked as failed.
+
+        Parameters
+        ----------
+        plan : the one that no longer holds; None for none.
+        model : what is believed.
         """
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
@@ -283,7 +313,17 @@ class PlanExecutor:
     def _make_plan(
         self, request: Request, situation: Situation, hoped: EndsFunction
     ) -> RemainingPlan | See | Infeasibility:
-        """Return a new plan; or what must be seen before it is begun, or why there is none."""
+        """Return a new plan (map frame); or what must be seen before it is begun, or why there is none.
+
+        Where an obstacle must be moved aside first, the plan is for that obstacle. Failed grasps are tried again when
+        nothing else is found and nothing is proved.
+
+        Parameters
+        ----------
+        request : what is to be carried, and where to.
+        situation : what is believed.
+        hoped : returns the hoped ends, by name, in squares, view frame.
+        """
         node, asked = request.node, request
         found = self._oracle.find(request, situation, hoped)
         if isinstance(found, Infeasibility) and situation.model.held == node.name and not request.held:
@@ -316,7 +356,16 @@ class PlanExecutor:
     def _clear_way(
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
-        """Return the first object that a plan needs moved aside, with a plan for that; or a look at it, or why not."""
+        """Return the first object that a plan needs moved aside, with a plan for that; or a look at it, or why not.
+
+        First of all it is felt whether the obstacle is an object, where that is not certain.
+
+        Parameters
+        ----------
+        found : the plan, view frame; its `aside` names at least one obstacle.
+        node : the object that it carries.
+        situation : what is believed.
+        """
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
             return touch
@@ -331,7 +380,15 @@ class PlanExecutor:
         return Infeasibility(False, why)
 
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
-        """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress."""
+        """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress.
+
+        Parameters
+        ----------
+        node : the object.
+        ends : where it shall lie, by name, in squares, view frame.
+        last : the name of the end of the plan before; "" for none.
+        model : what is believed.
+        """
         stalled = self._went_on is not None and math.dist(self._went_on, model.place) < NO_PROGRESS
         held = model.held == node.name and not stalled
         contacts = self._contacts.get(node.name, 0)
@@ -341,7 +398,17 @@ class PlanExecutor:
     def _plan_aside(
         self, other: Node, found: ManipulationPlan, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | None:
-        """Return an object and a plan that carries it off the squares that another plan needs; None for no such."""
+        """Return an object and a plan that carries it off the squares that another plan needs; None for no such.
+
+        None, too, when the other plan does not name it as an obstacle, or when it could only go once a further object
+        is moved.
+
+        Parameters
+        ----------
+        other : the object that may be in the way.
+        found : the other plan, view frame.
+        situation : what is believed.
+        """
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
         room = situation.cost_maps.free(0) | situation.model.mask(other.patch)
@@ -355,7 +422,13 @@ class PlanExecutor:
     def _next_step(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """Return the next step of a plan; None when the object is not felt where it should be grasped.
 
-        ends : where the plan may lead, if that is known.
+        The plan, without that step, becomes the plan under way.
+
+        Parameters
+        ----------
+        plan : the remaining plan, map frame; it has at least one leg.
+        ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
+        situation : what is believed.
         """
         self._plan = plan
         leg, model = plan.legs[0], situation.model
@@ -376,7 +449,15 @@ class PlanExecutor:
     def _take(self, plan: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """Return the step to where the object is grasped, or the grasp; from the present place if that does as well.
 
-        Returns None where nothing is felt that could be the object: it lies otherwise than believed.
+        A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
+        the object: it lies otherwise than believed.
+
+        Parameters
+        ----------
+        plan : the remaining plan, map frame.
+        leg : its first leg, before the grasp.
+        ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
+        situation : what is believed.
         """
         model = situation.model
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)

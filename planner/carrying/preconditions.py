@@ -23,10 +23,16 @@ DETOUR_ROOM = 2  # squares beside the way of a long plan within which more room 
 def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> See | None:
     """Return what of the way of a plan must be seen before it is begun; None when no look tells more of it.
 
-    All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release
-    the object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the
-    present grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the
-    room for a shorter one, and may be free, is looked at too.
+    All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release the
+    object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the present
+    grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the room for a
+    shorter one, and may be free, is looked at too.
+
+    Parameters
+    ----------
+    found : the plan, view frame.
+    node : the object that it carries; its own squares need not be seen.
+    situation : what is believed.
     """
     model, is_long = situation.model, found.plan.commands > LONG_PLAN
     if found.hopes or (found.plan.goes_on and not is_long):
@@ -48,6 +54,8 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
 def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
     """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none.
 
+    Also None when there is no floor beside it from which the robot did not feel it yet.
+
     Parameters
     ----------
     found : the plan; its `aside` names the obstacles.
@@ -62,6 +70,8 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
 def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
     """Return a look at the first obstacle of a plan of which squares are open; None when there is none.
 
+    Also None when the robot looked at each of them from everywhere. Open squares are not determined yet.
+
     Parameters
     ----------
     found : the plan; its `aside` names the obstacles.
@@ -73,7 +83,7 @@ def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | Non
 
 
 def turn_cost(model: WorldModel) -> float:
-    """Return how many commands a turn counts for.
+    """Return how many commands a turn of a held object counts for: 1.0 or more.
 
     A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
     place of the robot within its square is open.
@@ -84,5 +94,5 @@ def turn_cost(model: WorldModel) -> float:
 
 
 def _first_see(looks: Iterable[Viewpoint]) -> See | None:
-    """Return the advice to use the first of some viewpoints that has squares; None for none."""
+    """Return the advice to use the first of some viewpoints that has squares; None when none has."""
     return next((See(look) for look in looks if len(look.squares)), None)

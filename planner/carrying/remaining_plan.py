@@ -40,11 +40,11 @@ class RemainingPlan:
     ----------
     name : of the object that is carried.
     target : the name of the end that it leads to.
-    polygon : the outline (shapely) that the object must have now for the plan to hold.
-    legs : what is left to do; the first one is under way.
+    polygon : the outline (shapely Polygon) that the object must have now for the plan to hold.
+    legs : what is left to do; the first one is under way. A leg is a walk, a grasp, pushes and turns, and a release.
     needed : the squares that must stay free.
     level : the certainty level at which they were free, 0 the surest.
-    place : where the robot must stand now for the plan to hold; None while it walks.
+    place : (x, y) where the robot must stand now for the plan to hold; None while it walks.
     grasped : whether the robot should hold the object.
     """
 
@@ -59,12 +59,15 @@ class RemainingPlan:
 
     @property
     def ended(self) -> bool:
-        """Return whether nothing is left but to release the object. That is done only when the hand is needed."""
+        """Return whether nothing is left but to release the object, or nothing at all.
+
+        The release is done only when the hand is needed.
+        """
         return not self.legs or (self.grasped and len(self.legs) == 1 and not self.legs[0].motions)
 
     @property
     def end(self) -> Any:
-        """Return the outline (shapely) of the object after the plan, map frame."""
+        """Return the outline (shapely Polygon, squares, map frame) of the object after the plan."""
         polygon = self.polygon
         for motion in (motion for leg in self.legs for motion in leg.motions):
             polygon = motion.carry(polygon)
@@ -77,8 +80,8 @@ def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> Remain
     Parameters
     ----------
     found : the plan, view frame.
-    node : the object that it carries.
-    model : what is believed.
+    node : the object that it carries; its outline is known.
+    model : what is believed; its view tells where the view frame lies.
     """
     west, south = model.view.west, model.view.south
     legs = tuple(shifted(leg, west, south) for leg in found.plan.legs)
@@ -90,12 +93,13 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     """Return a plan, with the object where it is now believed to lie, if the plan still holds; else None.
 
     It holds while robot and object are where it says, the squares that it needs are believed free, and it leads to one
-    of the ends. Where the object lies otherwise than it says, the motions are verified anew from there.
+    of the ends. Where the object lies otherwise than it says, the motions are verified anew from there. A plan with
+    nothing left to do does not hold.
 
     Parameters
     ----------
-    plan : the remaining plan.
-    ends : where it must lead, by name, view frame; None when it only clears the way for another object.
+    plan : the remaining plan, map frame.
+    ends : where it must lead, by name, in squares, view frame; None when it only clears the way for another object.
     situation : what is believed.
     """
     model = situation.model
@@ -129,8 +133,8 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 
     Parameters
     ----------
-    plan : the remaining plan, before its first grasp.
-    ends : where it must lead, by name, view frame.
+    plan : the remaining plan, map frame, before its first grasp.
+    ends : where it must lead, by name, in squares, view frame; None is returned for {}.
     situation : what is believed.
     """
     model = situation.model
@@ -146,12 +150,13 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> ManipulationPlan | None:
     """Return as much of a plan as leads over squares known to be free; None when that brings the object hardly on.
 
-    From its end the robot sees what it could otherwise only see by a walk there and back. Plans with turns or several
-    grasps have no such part, for these depend on what is not seen.
+    It must bring the robot at least MIN_PREFIX squares on. From its end the robot sees what it could otherwise only see
+    by a walk there and back. Plans with turns or several grasps have no such part, for these depend on what is not
+    seen.
 
     Parameters
     ----------
-    found : the plan.
+    found : the plan, view frame.
     node : the object that it carries.
     situation : what is believed.
     """
@@ -184,7 +189,10 @@ class PlanOperations:
 
     Attributes
     ----------
-    begin_plan, revalidate, start_from_robot, safe_prefix : the functions above, or others in their place.
+    begin_plan : makes a remaining plan of a manipulation plan.
+    revalidate : returns a plan if it still holds, else None.
+    start_from_robot : returns a plan with its first grasp where the robot stands, or None.
+    safe_prefix : returns the part of a plan over squares known to be free, or None.
     """
 
     begin_plan: Callable[[ManipulationPlan, Node, WorldModel], RemainingPlan] = begin_plan
@@ -194,27 +202,30 @@ class PlanOperations:
 
 
 def square_index(place: XY, model: WorldModel) -> SquareIndices:
-    """Return the flat index, as an array of one, of the view's square in which a point (x, y) of the map frame lies."""
+    """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies.
+
+    It is row * columns + column; without meaning for a point outside of the arrays of the view.
+    """
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
 
 
 def is_at(model: WorldModel, place: XY) -> bool:
-    """Return whether the robot stands exactly at a point (x, y) of the map frame, but for rounding."""
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
 def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | None:
     """Return the compass direction in which the object of a plan is grasped; None where it is not felt.
 
-    It is the planned direction, or another one in which the object is felt. While touches are not known, the planned
-    direction counts.
+    One of the eight of the robot frame, such as "northeast", as seen from where the robot stands. It is the planned
+    direction, or another one in which the object is felt. While touches are not known, the planned direction counts.
 
     Parameters
     ----------
-    leg : the leg that begins with the grasp.
+    leg : the leg that begins with the grasp, map frame.
     plan : the plan that it belongs to.
-    model : what is believed and felt.
+    model : what is believed and felt; it knows the object: else AssertionError.
     """
     node = model.object(plan.name)
     assert node is not None
@@ -235,7 +246,17 @@ def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | N
 
 
 def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) -> Translate | None:
-    """Return the longest part of a push, rounded to whole squares, that is free; None for none."""
+    """Return the longest part of a push, rounded to whole squares, that is free; None for none.
+
+    It is shorter than the push, in squares along the axes of the map.
+
+    Parameters
+    ----------
+    workspace : what is free for the object and the robot.
+    shape : the outline of the object before the push, shapely Polygon, in squares, view frame.
+    place : the robot's place (x, y) before the push, view frame.
+    push : (dx, dy) in squares, not free to its end.
+    """
     steps = math.floor(math.hypot(push.dx, push.dy))
     parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
     pushes = (Translate(float(dx), float(dy)) for dx, dy in parts)
@@ -243,13 +264,27 @@ def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) 
 
 
 def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bools:
-    """Return the mask (rows, columns) of squares over which a plan made before may still lead."""
+    """Return the squares over which a plan made before may still lead, (rows, columns) bool on the arrays of the view.
+
+    These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
+    own, without the necks of forbidden doors.
+    """
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~forbidden_necks(node, situation)
 
 
 def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:
-    """Return the outline after a plan from where the object really lies, frame of the view; None if it is blocked."""
+    """Return the outline after a plan from where the object really lies, view frame; None if it is blocked.
+
+    A shapely Polygon, in squares. Also None when a grasp would reach nothing.
+
+    Parameters
+    ----------
+    plan : the remaining plan, map frame.
+    node : the object; its outline is known.
+    free : (rows, columns) bool on the arrays of the view, the squares that may be used.
+    situation : what is believed.
+    """
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs
     legs = [first if plan.place is None else replace(first, place=plan.place), *others]

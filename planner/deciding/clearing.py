@@ -44,7 +44,7 @@ class Obstacle(NamedTuple):
     Attributes
     ----------
     node : the object.
-    aside : where it shall lie so that the way is free, or so that all of it is seen; view frame.
+    aside : where it shall lie so that the way is free, or so that all of it is seen; in squares, view frame.
     """
 
     node: Node
@@ -56,6 +56,7 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
 
     The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
     stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
+    Nothing is yielded when no object blocks.
 
     Parameters
     ----------
@@ -78,7 +79,12 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
 
 
 def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
-    """Return the route, if any, to floor that is reached only if some squares are free; none into a mere nook."""
+    """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
+
+    At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
+
+    under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
+    """
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (
         (without.distances[UNSEEN_LEVEL] != GEODESIC_UNREACHED)
@@ -91,7 +97,16 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
-    """Return the first of some objects that a route over their squares comes to."""
+    """Return the first of some objects that a route over their squares comes to.
+
+    Raises StopIteration when the route crosses none of them.
+
+    Parameters
+    ----------
+    way : the route, from the robot on, on the arrays of the view.
+    things : the objects.
+    model : what is believed.
+    """
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
@@ -99,7 +114,15 @@ def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> N
 def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
     """Yield an object that blocks the robot if it goes on by `depth` squares in what seems to be wall.
 
-    It is drawn out by one square more than that, or as far as there is room: so all of it is seen.
+    It is drawn out by one square more than that, or as far as there is room: so all of it is seen. One Obstacle for
+    each side on which that is so, its end relative to where the object lies; nothing for an object that does not block
+    so.
+
+    Parameters
+    ----------
+    thing : the object.
+    depth : in squares, 1 or more.
+    situation : what is believed.
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
     for side in SIDE_DIRECTIONS:
@@ -111,15 +134,20 @@ def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[
 
 
 class ObstacleClearer:
-    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile."""
+    """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile.
+
+    An obstacle is an object that blocks the robot's way to some part of the floor.
+    """
 
     def __init__(self) -> None:
-        """Be moving nothing."""
+        """Make a clearer that is moving nothing."""
         self._moving = ""
         self._stays: frozenset[str] = frozenset()
 
     def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the next command for the obstacle that is being moved; None when there is none that blocks still.
+
+        Also None when its command would close a loop: then it is no longer being moved.
 
         Parameters
         ----------
@@ -148,7 +176,7 @@ class ObstacleClearer:
 
         Parameters
         ----------
-        decision : what was decided towards the goals.
+        decision : what was decided towards the goals; one with a command is returned unchanged.
         goals : the goals that the decision is about.
         stage : of the task.
         situation : what is believed.
@@ -166,14 +194,28 @@ class ObstacleClearer:
         return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
-        """Return the objects that may be moved aside. stays : the names of those that may not."""
+        """Return the objects that may be moved aside, in the order of the model; [] for none.
+
+        Only those that are objects with at least POSSIBLE_OBJECT percent, and not known to be immovable.
+
+        stays : the names of those that must stay where they are.
+        """
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in stays]
 
     def _move_first(
         self, things: Sequence[Node], stage: Stage, situation: Situation, tools: Tools, name: str = ""
     ) -> Decision | None:
-        """Return the next command to move aside the first object that blocks; name : only the object of that name."""
+        """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
+
+        Parameters
+        ----------
+        things : the objects in question.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the command is worked out with.
+        name : only the object of that name is moved; "" for any of `things`.
+        """
         for node, aside in obstacles(things, situation):
             instead = _move_aside(node, aside, stage, situation, tools) if name in ("", node.name) else None
             if instead is not None:
@@ -183,7 +225,16 @@ class ObstacleClearer:
 
 
 def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-    """Return the next command to move an object aside, or to find out what it is; None when there is none."""
+    """Return the next command to move an object aside, or to find out what it is; None when there is none.
+
+    Parameters
+    ----------
+    node : the object.
+    aside : where it shall lie, in squares, view frame.
+    stage : of the task.
+    situation : what is believed.
+    tools : what the command is worked out with.
+    """
     if node.confidence < CERTAIN_OBJECT:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
         look = tools.pursuer.pursue_look(touch, stage, situation)

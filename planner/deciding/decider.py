@@ -47,11 +47,11 @@ class Decider:
 
     Attributes
     ----------
-    task, paths, rules : as given.
+    task, paths, rules : the task, the name of the path-finder and the user's encodings, as given.
     stages : the stages of the task, in order.
     attained : how many of them are attained.
     bound : what the task's parameters mean: parameter -> name of a node.
-    rooms, corners : as last believed.
+    rooms, corners : as last believed, in squares, view frame; none before the first decision.
     pursuer : walks after subgoals.
     executor : follows manipulation plans.
     """
@@ -74,7 +74,7 @@ class Decider:
         paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
         rules : the user's own encodings.
         pull : whether a held object may be pulled.
-        bound : what parameters of the task are known to mean.
+        bound : what parameters of the task are known to mean: parameter -> name of a node; nothing if None.
         executor : follows manipulation plans; a new one if None. It belongs to this decider from now on.
         pursuer : walks after subgoals; a new one if None. It belongs to this decider from now on.
         """
@@ -96,6 +96,8 @@ class Decider:
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
 
+        Stages that are attained are counted as such for good.
+
         Parameters
         ----------
         model : what is believed.
@@ -105,6 +107,11 @@ class Decider:
         -------
         Decision
             The next command, or the verdict.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
         """
         cost_maps = CostMaps(model)
         self.rooms = rooms_of(model, self.rules)
@@ -132,7 +139,15 @@ class Decider:
     def _towards(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
     ) -> Decision | None:
-        """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is."""
+        """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is.
+
+        Parameters
+        ----------
+        stage : of the task.
+        situation : what is believed.
+        reconciled : what the parameters of the task mean.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
             return conflict
@@ -152,7 +167,15 @@ class Decider:
     def _go(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
     ) -> Decision | None:
-        """Return the next command towards where the robot itself shall be, or the verdict; None when it is there."""
+        """Return the next command towards where the robot itself shall be, or the verdict; None when it is there.
+
+        Parameters
+        ----------
+        stage : of the task; it has a goal for the robot itself.
+        situation : what is believed.
+        reconciled : what the parameters of the task mean.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
         goals = stage.own
         if situation.model.held is not None:
             why = f"{situation.model.held} is released, because the robot must walk; {stage}"
@@ -183,7 +206,10 @@ class Decider:
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
     def _doubt(self, stage: Stage, situation: Situation) -> Subgoal | None:
-        """Return what to look at before a stage is believed to be attained; None for nothing."""
+        """Return what to look at before a stage is believed to be attained; None for nothing.
+
+        First what the last impression contradicts, then what the origin of a thing depends on (doors, walls).
+        """
         model, doubt = situation.model, look_at_contradiction(situation)
         for goal in (goal for goal in stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
@@ -196,7 +222,14 @@ class Decider:
     def _make_sure(self, goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation) -> Decision | None:
         """Return a look at the objects of some goals before these are believed to hold; None when all are settled.
 
+        The next command of it, or the verdict `limit` when no way leads to where it is looked from.
+
+        Parameters
+        ----------
+        goals : of the stage, for the robot itself.
         there : whether the goals seem to hold.
+        stage : of the task.
+        situation : what is believed.
         """
         nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
         doubted = [n for n in nodes if n is not None and (self._verifier.is_unsettled(n) or (there and n.vague))]
@@ -205,7 +238,17 @@ class Decider:
         return next((look for look in looks if look is not None), None)
 
     def _go_round(self, stage: Stage, name: str, situation: Situation, track: Sequence[XY]) -> Decision | None:
-        """Return the next command on the way round an object; None when the robot has gone round it and is back."""
+        """Return the next command on the way round an object; None when the robot has gone round it and is back.
+
+        The verdict `impossible` when no way leads round it.
+
+        Parameters
+        ----------
+        stage : of the task.
+        name : of the object; the model knows it: else AssertionError.
+        situation : what is believed.
+        track : where the robot has been, (x, y) in squares, map frame; the first point is where the round began.
+        """
         model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)
         assert node is not None
@@ -226,7 +269,7 @@ class Decider:
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
-        """Return what the parameters of the task mean now, and remember it as bound."""
+        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound."""
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)

@@ -38,7 +38,7 @@ class Pursuer:
         Parameters
         ----------
         paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
-        contacts : returns what is felt before the robot gives up.
+        contacts : returns the subgoals from which something is felt before the robot gives up.
         circles : detects loops; a new guard if None. It belongs to this pursuer from now on.
         """
         self._paths = paths
@@ -48,7 +48,10 @@ class Pursuer:
         self._feeling = False  # whether the robot is about to feel what may stand against a wall
 
     def closes_loop(self, model: WorldModel, command: Command) -> bool:
-        """Record a command that is about to be given, and return whether it was given before in the same state."""
+        """Record a command that is about to be given, and return whether it was given before in the same state.
+
+        The state is the robot's place, what it holds, and what is known (planner.navigation.loop_guard).
+        """
         return self._circles.noticed(model, command)
 
     def pursue(
@@ -62,14 +65,18 @@ class Pursuer:
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict when none can be reached.
 
+        A held object that is not taken along is released first. A subgoal that leads in a loop becomes dearer until
+        another one is chosen.
+
         Parameters
         ----------
-        subgoals : what is worth doing.
+        subgoals : what is worth doing, with squares on the arrays of the view.
         stage : of the task.
         situation : what is believed.
         missing : returns what is missing, in words. It is called only for a verdict, for it may take time.
         verdict : the verdict when none can be reached. It is `limit` when one was dropped for leading in circles.
-        along : returns how an object is taken along to a subgoal; None when it had better stay.
+        along : returns how an object is taken along to a subgoal, or None when it had better stay; None when no object
+            is to be taken along.
         """
         model = situation.model
         fewest = FewestMoves(situation.cost_maps) if stage.carried else None
@@ -91,13 +98,19 @@ class Pursuer:
             self._circles.tire(to_map_squares(subgoal.squares, model))
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
+        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
+
+        look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
+        """
         if look is None:
             return None
         return self.pursue([look], stage, situation, lambda: look.what, TaskVerdict.LIMIT)
 
     def go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
-        """Return the next command to a square where an object is grasped, so that the last move halts at its place."""
+        """Return the next command to a square where an object is grasped, so that the last move halts at its place.
+
+        The verdict `impossible`, or `limit` after loops, when no way leads there.
+        """
         subgoal = Subgoal(SubgoalKind.ATTAIN, go.square, go.why)
         walk = self.pursue([subgoal], stage, situation, lambda: "no way leads there")
         return replace(walk, command=halt_exactly_at(walk.command, go.place, situation.model))
@@ -105,7 +118,7 @@ class Pursuer:
     def prepare(self, advice: Advice, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command to where an object is grasped, or to see what must be seen first.
 
-        Returns None when the advice is neither, or cannot be followed.
+        Returns None when the advice is neither (an Act or an Infeasibility), or cannot be followed: never a verdict.
         """
         walk: Decision | None = None
         if isinstance(advice, Go):
@@ -121,8 +134,8 @@ class Pursuer:
 
         Parameters
         ----------
-        ask : returns what is decided otherwise. It is called only while nothing is on the way to be felt, or when
-            nothing is left to feel.
+        ask : returns what is decided otherwise, a command or a verdict. It is called only while nothing is on the way
+            to be felt, or when nothing is left to feel.
         stage : of the task.
         situation : what is believed.
         """
@@ -135,7 +148,17 @@ class Pursuer:
         return decision
 
     def _walk(self, subgoal: Subgoal, stage: Stage, situation: Situation, fewest: FewestMoves | None) -> Decision:
-        """Return the next command towards a subgoal. fewest : finds routes of few moves; None for short routes."""
+        """Return the next command towards a subgoal, and remember the route.
+
+        The verdict `impossible` when every route leads through a forbidden door.
+
+        Parameters
+        ----------
+        subgoal : one of its squares can be reached at some certainty level: else AssertionError.
+        stage : of the task.
+        situation : what is believed.
+        fewest : finds routes of few moves; None for short routes.
+        """
         model, cost_maps = situation.model, situation.cost_maps
         reached = cost_maps.nearest(subgoal.squares)
         assert reached is not None
@@ -154,20 +177,33 @@ class Pursuer:
         return Decision(move, f"{subgoal.what}; {stage}")
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
-        """Return what is left of the present route, if it leads to a subgoal and through no forbidden door."""
+        """Return what is left of the present route, if it leads to a subgoal and through no forbidden door; else None.
+
+        On the arrays of the view. level : the certainty level at which the subgoal is reached, 0 the surest.
+        """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.forbidden("utak") else rest
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
-        """Remember the present route. towards : the flat indices of the subgoal's squares; None for no subgoal."""
+        """Remember the present route.
+
+        Parameters
+        ----------
+        route : on the arrays of the view.
+        model : the world model with that view.
+        towards : the flat indices (row * columns + column) of the subgoal's squares on the arrays of the view; None for
+            no subgoal.
+        """
         self._kept.keep(route, frozenset() if towards is None else to_map_squares(towards, model), model)
 
     def choose_route(self, offered: Sequence[PlannedRoute], situation: Situation) -> PlannedRoute | None:
         """Return the route that planner/asp/routes.lp chooses; None when all lead through forbidden doors.
 
+        None, too, when no route is offered.
+
         Parameters
         ----------
-        offered : the routes that there are, possibly none.
+        offered : the routes that there are, on the arrays of the view, possibly none.
         situation : what is believed.
         """
         if not offered:
@@ -178,7 +214,15 @@ class Pursuer:
 
 
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:
-    """Return the verdict when no subgoal can be reached. in_circles : some were dropped for leading in circles."""
+    """Return the verdict when no subgoal can be reached.
+
+    Parameters
+    ----------
+    stage : of the task.
+    missing : what is missing, in words.
+    verdict : the verdict, unless some subgoals led in circles: then it is `limit`.
+    in_circles : some were dropped for leading in circles.
+    """
     end = "the robot goes round in circles" if in_circles else "nothing is left to look at"
     why = f"{stage} cannot be attained: {missing}, and {end}"
     return Decision(None, why, TaskVerdict.LIMIT if in_circles else verdict)

@@ -35,8 +35,8 @@ class Candidate(NamedTuple):
 
     Attributes
     ----------
-    squares : the flat indices of the squares where it lies.
-    subgoal : a look at it.
+    squares : the flat indices (row * columns + column) on the arrays of the view of the squares where it lies, (n,).
+    subgoal : a look at it; its chance is the percent of belief that it is what is looked for.
     """
 
     squares: SquareIndices
@@ -48,15 +48,16 @@ def subgoals_towards(
 ) -> list[Subgoal]:
     """Return the subgoals that may lead to where all of some goals hold.
 
-    When all destinations are known, the only subgoal is to go there. Else they are looks, first those where just the
-    missing thing may be.
+    When all destinations are known, the only subgoal is to go there: to the squares where all goals hold, possibly
+    none. Else they are looks, first those where just the missing thing may be; and these alone, with objects that may
+    be it, while one of them can surely be reached.
 
     Parameters
     ----------
-    where : the destination of each goal.
+    where : the destination of each goal, at least one.
     situation : what is believed.
     reconciled : what the parameters of the task mean.
-    to : what the robot goes up to a missing object for.
+    to : what the robot goes up to a missing object for; to take it by default.
     """
     cost_maps = situation.cost_maps
     missing = [d for d in where if d.missing]
@@ -78,6 +79,8 @@ def subgoals_towards(
 def contact_subgoals(situation: Situation) -> list[Subgoal]:
     """Return where to feel what may be an object against a wall; if there is no such, what may be part of a wall.
 
+    Subgoals of kind INSPECT; [] when nothing is left to feel.
+
     Parameters
     ----------
     situation : what is believed.
@@ -86,13 +89,19 @@ def contact_subgoals(situation: Situation) -> list[Subgoal]:
 
 
 def wall_contacts(situation: Situation) -> list[Subgoal]:
-    """Return, for each part of a wall that may be an object standing against it, where it can be felt."""
+    """Return, for each part of a wall that may be an object standing against it, where it can be felt.
+
+    Subgoals of kind INSPECT; parts that were felt, or have no floor beside them, are left out.
+    """
     looks = [frontiers.wall_touch_viewpoint(situation.cost_maps, mask) for mask in situation.model.protruding]
     return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
 
 
 def island_contacts(situation: Situation) -> list[Subgoal]:
-    """Return, for each free-standing object that would make more doors if it were wall, where it can be felt."""
+    """Return, for each free-standing object that would make more doors if it were wall, where it can be felt.
+
+    Subgoals of kind INSPECT; objects that were touched or moved, or have no floor beside them, are left out.
+    """
     model = situation.model
     subgoals = []
     for node in model.objects:
@@ -105,7 +114,7 @@ def island_contacts(situation: Situation) -> list[Subgoal]:
 
 
 def chance_of_none(candidates: Sequence[Candidate]) -> float:
-    """Return the probability that none of some candidates is what is looked for.
+    """Return the probability, 0 to 1, that none of some candidates is what is looked for; 1 for no candidates.
 
     Of candidates that share squares, only the first counts.
     """
@@ -120,7 +129,15 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
 def _doubtful_objects(
     situation: Situation, reconciled: Reconciliation, likely: Floats | None, to: Approach
 ) -> list[Candidate]:
-    """Return the objects of the world model that may be what is looked for. likely : as of `_object_heat`."""
+    """Return the objects of the world model that may be what is looked for, each with a look at it or a touch of it.
+
+    Parameters
+    ----------
+    situation : what is believed.
+    reconciled : what the parameters of the task mean; its doubtful pairs name the objects.
+    likely : the probability (rows, columns) that a square belongs to the shape looked for; None when no shape is told.
+    to : what the robot goes up to an object for.
+    """
     cost_maps, model = situation.cost_maps, situation.model
     found = []
     for x, name in reconciled.doubtful:
@@ -137,7 +154,16 @@ def _doubtful_objects(
 
 
 def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
-    """Return the probability that an object is what is looked for, by map completions or by the part that is seen."""
+    """Return the probability, 0 to 1, that an object is what is looked for, by map completions.
+
+    Where the object may go on unseen, the chance by the number of its seen squares counts if that is greater.
+
+    Parameters
+    ----------
+    node : the object.
+    likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
+    model : what is believed.
+    """
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
     cut = (dilate(mask, 1) & ~model.view.seen).any()
@@ -145,7 +171,14 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
 
 
 def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
-    """Return the places where map completions show what is looked for."""
+    """Return the places where map completions show what is looked for, with looks at them; [] for none.
+
+    Parameters
+    ----------
+    cost_maps : of the present world model.
+    likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
+    to : what the robot goes there for.
+    """
     seen = sightings(cost_maps, likely, "what is looked for may be there", to)
     return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]
 
@@ -153,8 +186,12 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Ca
 def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
     """Return looks at what was never seen, and at what bounds the floor.
 
-    unseen : the probability that what is missing was not seen yet. A robot that is to carry it counts moves: it looks
-    from where most comes into sight, and must set out once more to what it sees from there.
+    Parameters
+    ----------
+    cost_maps : of the present world model.
+    unseen : the probability, 0 to 1, that what is missing was not seen yet.
+    to : what the robot goes up to it for. A robot that is to carry it counts moves: it looks from where most comes into
+        sight, and must set out once more to what it sees from there.
     """
     views = (
         frontiers.best_views(cost_maps, one_move_squares(cost_maps, SubgoalKind.EXPLORE), MOVE_COST, SQUARE_COST)
@@ -182,7 +219,11 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
 
 
 def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | None:
-    """Return the probability (rows, columns) that a square belongs to the shape looked for; None when none is."""
+    """Return the probability that a square belongs to the shape looked for; None when no shape is told.
+
+    (rows, columns) on the arrays of the view, 0 to 1, by map completions (sampled maps that agree with all counts). Of
+    the shapes that the task tells of parameters that match nothing seen so far, it is the first by name.
+    """
     wanted = sorted(
         str(claim.fact.args[1])
         for claim in situation.task.claims
@@ -194,6 +235,9 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
 
 
 def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
-    """Return whether a subgoal can be reached over squares that are surely free."""
+    """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0).
+
+    False for a subgoal without squares.
+    """
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

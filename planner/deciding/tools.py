@@ -12,9 +12,9 @@ class Tools(NamedTuple):
 
     Attributes
     ----------
-    executor : follows manipulation plans.
-    pursuer : walks after subgoals.
-    verifier : makes sure of what is believed.
+    executor : follows manipulation plans, and remembers the one under way.
+    pursuer : walks after subgoals, and remembers the present route.
+    verifier : makes sure of what is believed, and remembers what was looked at for that.
     """
 
     executor: PlanExecutor

@@ -41,7 +41,10 @@ MAX_MISSED_PLANS = 2  # plans that miss their end, after which that end is looke
 
 
 class Transporter:
-    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that."""
+    """Brings objects where goals hold, and remembers where they began and what the robot looked at for that.
+
+    It decides for one goal at a time; the tools that it decides with are lent for the time of a call.
+    """
 
     def __init__(
         self,
@@ -52,8 +55,10 @@ class Transporter:
 
         Parameters
         ----------
-        place : returns where a goal holds for an object; as planner.goals.object_goals.goal_placement.
-        search : returns what is worth doing while something is missing; as planner.deciding.search.subgoals_towards.
+        place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
+            frame) and the situation; as planner.goals.object_goals.goal_placement.
+        search : returns the subgoals that are worth doing while something is missing; as
+            planner.deciding.search.subgoals_towards.
         """
         self._place, self._search = place, search
         self._origins = Origins()
@@ -71,7 +76,7 @@ class Transporter:
         Parameters
         ----------
         parameter : of the task.
-        node : the object that it means.
+        node : the object that it means; its outline is known.
         situation : what is believed.
         """
         return self._origins.at(parameter, node, situation)
@@ -85,8 +90,8 @@ class Transporter:
         ----------
         goal : one goal of the stage; its first argument is the parameter that means the object.
         stage : of the task.
-        situation : what is believed.
-        reconciled : what the parameters of the task mean.
+        situation : what is believed; its binding tells which object the parameter means, if any is known.
+        reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
         tools : what the decision is worked out with.
         """
         x = str(goal.args[0])
@@ -139,7 +144,9 @@ class Transporter:
         return self._check_proof(advice, decision, node, land, stage, situation, tools)
 
     def conflict_verdict(self, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the verdict when two goals of a stage cannot hold for one object at once; None otherwise.
+        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; None otherwise.
+
+        None, too, while it is not known where the goals hold.
 
         Parameters
         ----------
@@ -168,7 +175,8 @@ class Transporter:
     def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when there is none.
 
-        Returns None, too, when the held object is the one that parameter x means.
+        Returns None, too, when nothing is held, when the held object is the one that parameter x means, or when it does
+        not shut the robot in.
 
         Parameters
         ----------
@@ -184,7 +192,18 @@ class Transporter:
         )
 
     def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools) -> Decision:
-        """Return the next command to find what a parameter means, or the verdict when nothing can be that."""
+        """Return the next command to find what a parameter means, or the verdict when nothing can be that.
+
+        Before the verdict, an object that may be it if its size were known better is measured.
+
+        Parameters
+        ----------
+        x : the parameter of the task.
+        stage : of the task.
+        situation : what is believed.
+        reconciled : what the parameters of the task mean.
+        tools : what the decision is worked out with.
+        """
         immovable = dict(reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
@@ -201,7 +220,18 @@ class Transporter:
         return next((push for push in pushes if push is not None), decision)
 
     def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision:
-        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it."""
+        """Return the command of a plan, unless it closes a loop, or a look at the map should come before it.
+
+        In a loop the object is released instead.
+
+        Parameters
+        ----------
+        advice : the command that the executor advises, and its reason.
+        node : the object that is carried.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
+        """
         if isinstance(advice.command, Push | Turn) and tools.pursuer.closes_loop(situation.model, advice.command):
             advice = tools.executor.release_looping(situation.model)
         if isinstance(advice.command, Move | Grasp):
@@ -228,6 +258,16 @@ class Transporter:
         Where a door may be is looked at from places where the object would be in the way, and another way is looked for
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
+
+        Parameters
+        ----------
+        refused : why the object cannot be carried there now; the verdict is `impossible` only if this is proved.
+        node : the object.
+        land : where the goal holds.
+        subgoals : what is worth a look.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
         """
         fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
@@ -254,7 +294,21 @@ class Transporter:
         situation: Situation,
         tools: Tools,
     ) -> Decision:
-        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check."""
+        """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check.
+
+        In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
+        object cannot come to where it must be in any case makes any verdict `impossible`.
+
+        Parameters
+        ----------
+        refused : why the object cannot be carried there.
+        decision : what was decided; one with a command is returned unchanged.
+        node : the object.
+        land : where the goal holds.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
+        """
         must_reach = land.must_reach.ends() if decision.verdict else {}
         if must_reach:
             shut_off = tools.executor.infeasibility(node, must_reach, situation)
@@ -275,6 +329,13 @@ class Transporter:
 
         After plans that missed their end, and once the object is near, the end is looked at first: then it is an
         Infeasibility that names what is missing.
+
+        Parameters
+        ----------
+        node : the object.
+        land : where its goal holds, in squares, view frame.
+        situation : what is believed.
+        tools : what the decision is worked out with.
         """
         executor, looked = tools.executor, len(situation.model.looked_from)
         missed = land.ends and executor.missed >= MAX_MISSED_PLANS
@@ -295,7 +356,10 @@ class Transporter:
         return Infeasibility(not situation.model.shaken, land.missing)
 
     def _press_on(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the next press of a held object against a wall; when none is left, what leads it out; or None."""
+        """Return the next press of a held object against a wall; when none is left, what leads it out; or None.
+
+        It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
+        """
         act = self._presser.next(node, situation.model)
         if act is None:
             return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
@@ -307,7 +371,7 @@ class Transporter:
     ) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
 
-        shut_in : it is known that it does.
+        shut_in : it is known that it does; by default that is tested.
         """
         out = tools.executor.lead_out(node, situation) if shut_in or not robot_can_leave(node, situation) else None
         if out is None:
@@ -322,6 +386,14 @@ class Transporter:
         """Return the next command to measure an object that seems too large for all ends; None when it surely is.
 
         Returns the verdict `limit` when its size cannot be told.
+
+        Parameters
+        ----------
+        node : the object.
+        ends : where it should lie, by name, in squares, view frame.
+        stage : of the task.
+        situation : what is believed.
+        tools : what the decision is worked out with.
         """
         if (push := self._measure(node, stage, situation, tools)) is not None:
             return push
@@ -333,7 +405,11 @@ class Transporter:
         return Decision(None, why, TaskVerdict.LIMIT)
 
     def _measure(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the next command to push an object by a part of a square, to measure it; None when that is done."""
+        """Return the next command to push an object by a part of a square, to measure it; None when that is done.
+
+        None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
+        that.
+        """
         for pose in self._size_estimator.poses(node):
             advice = tools.executor.advise(node, {SIZE_TARGET: pose}, situation)
             if isinstance(advice, Act):
@@ -345,7 +421,10 @@ class Transporter:
 
 
 def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-    """Return the next command to look at an object of which something is not clear; None when no look tells more."""
+    """Return the next command to look at an object of which something is not clear; None when no look tells more.
+
+    What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
+    """
     if node.polygon is None or node.vague or tools.verifier.is_unsettled(node):
         look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
         if look is not None:
@@ -355,7 +434,10 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 
 
 def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-    """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for."""
+    """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
+
+    None when there is nothing to see so, or no such push. land : where the goal holds; it names what to see on the way.
+    """
     for look in land.by_the_way.viewpoints():
         act = tools.executor.detour(node, look.squares, situation)
         led = _push_to_see(act, look.what, stage, situation, tools)
@@ -369,6 +451,13 @@ def _take_along(
 ) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
+    Parameters
+    ----------
+    node : the object.
+    stage : of the task.
+    situation : what is believed.
+    tools : what the decision is worked out with.
+    subgoal : where the robot wants to look from.
     fetch : whether an object that is not held is fetched for that.
     """
     advice = tools.executor.take_along(node, subgoal.squares, fetch, situation)
@@ -380,7 +469,16 @@ def _take_along(
 
 
 def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-    """Return the decision to push a held object in order to see something; None when that would close a loop."""
+    """Return the decision to push a held object in order to see something; None when that would close a loop.
+
+    Parameters
+    ----------
+    act : the push; None when there is none: then None is returned.
+    what : what is to be seen, in words.
+    stage : of the task.
+    situation : what is believed.
+    tools : what the decision is worked out with; the executor is told that the push is given.
+    """
     if act is None or tools.pursuer.closes_loop(situation.model, act.command):
         return None
     tools.executor.depart(act)

@@ -38,13 +38,14 @@ class Verifier:
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def is_unsettled(self, node: Node) -> bool:
-        """Return whether the robot has begun to look at an object that is not settled."""
+        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
         return node.name in self._unsettled
 
     def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
         """Return a look at an object that is not settled; None when no look is left that may tell more.
 
-        A look that was begun is gone on with (see `is_unsettled`).
+        A look that was begun is gone on with (see `is_unsettled`). An object is settled when its outline is known and
+        no square of it or beside it is open.
         """
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
@@ -59,7 +60,8 @@ class Verifier:
         """Return a look from close by at a passage that is said to be too narrow, while the map is not sure.
 
         The robot may misjudge where impressions were received, but knows how the squares of one impression lie to each
-        other. Returns None when the map is sure, no passage is named, or it was looked at again already.
+        other. Returns None when the map is sure, no passage is named, or it was looked at again already, within
+        FOVEA_RANGE squares.
 
         Parameters
         ----------
@@ -84,7 +86,7 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
 
     It is needed after few looks, when the plan turns the object: an object that was turned askew, and the map with it,
     are hard to set right again. A push leaves it as it lies. But when a push did not move it, the robot may have
-    misjudged where it is, or what stands about it.
+    misjudged where it is, or what stands about it. None, too, when there is no floor left from which to look.
 
     Parameters
     ----------
@@ -105,7 +107,8 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
 def look_at_contradiction(situation: Situation) -> Subgoal | None:
     """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not.
 
-    What contradicts was withdrawn, so the new impression agrees with the rest if that is right.
+    What contradicts was withdrawn, so the new impression agrees with the rest if that is right. The look may have no
+    squares, when the robot looked from everywhere near.
     """
     model = situation.model
     if not model.contradicted:
@@ -116,14 +119,15 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
 
 
 def robot_square(model: WorldModel) -> Bools:
-    """Return the mask (rows, columns) of the square in which the robot stands."""
+    """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view."""
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
 def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     """Return where to feel whether an object that stands against a wall goes on in what seems to be wall.
 
-    Returns None when it was moved or is held, when it touches nothing, or when nothing about it is to be felt.
+    Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
+    to be felt.
 
     Parameters
     ----------
@@ -148,7 +152,7 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
     ----------
     goal : in, through or around.
     began : where it began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool, the squares that it covers now.
+    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     situation : what is believed.
     """
     return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
@@ -161,7 +165,10 @@ def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> S
 
     Parameters
     ----------
-    goal, began, covered, situation : as of `check_elsewhere`.
+    goal : in, through or around.
+    began : where the thing of the goal began, (x, y) in squares, map frame.
+    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
+    situation : what is believed.
     """
     depends_on = _dependence(goal, began, covered, situation)
     for mask in situation.model.protruding:
@@ -179,11 +186,15 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     """Return where to see how wide the floor is beyond a door, before something is said to be there; None if sure.
 
     A door is a neck of the floor, and what was never seen counts as floor. Behind what seems to be a door there may be
-    only a narrow arm of the same room.
+    only a narrow arm of the same room. Of all frontiers it is the one nearest to the thing; None, too, when none is
+    left, and for the goal around.
 
     Parameters
     ----------
-    goal, began, covered, situation : as of `check_elsewhere`.
+    goal : in, through or around.
+    began : where the thing of the goal began, (x, y) in squares, map frame.
+    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
+    situation : what is believed.
     """
     model, view = situation.model, situation.model.view
     if goal == "around":
@@ -195,6 +206,7 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
+        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares."""
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
@@ -203,7 +215,14 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
 
 
 def _are_jambs_in_line(mask: Bools, door: Door, model: WorldModel) -> bool:
-    """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall."""
+    """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool on the arrays of the view, the squares.
+    door : in squares, view frame.
+    model : what is believed.
+    """
     for end, other in ((door.a, door.b), (door.b, door.a)):
         if len(jamb(mask, end)[0]):
             x, y = np.subtract(other, end) / max(door.width, 1e-9)
@@ -213,7 +232,10 @@ def _are_jambs_in_line(mask: Bools, door: Door, model: WorldModel) -> bool:
 
 
 def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
-    """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction (unit vector)."""
+    """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction.
+
+    place : (x, y) in squares, view frame. way : a unit vector (x, y) along the axes of the map.
+    """
     steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
     columns, rows = np.floor(steps).astype(int).T
     height, width = model.space.shape
@@ -222,7 +244,17 @@ def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
 
 
 def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
-    """Return a function that tells whether the goal holds only if some squares of the verge are wall."""
+    """Return a function that tells whether the goal holds only if some squares of the verge are wall.
+
+    The function takes a mask, (rows, columns) bool on the arrays of the view, and returns a bool.
+
+    Parameters
+    ----------
+    goal : in, through or around.
+    began : where the thing of the goal began, (x, y) in squares, map frame.
+    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
+    situation : what is believed.
+    """
     model = situation.model
     if goal == "around":
         hidden = covered & hidden_from(model.verge, model, began)
@@ -230,6 +262,10 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
     beyond = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
 
     def moves_the_room(mask: Bools) -> bool:
+        """Return whether the next rooms are wholly others if the squares of a mask are no verge.
+
+        False if there would be none. mask : (rows, columns) bool on the arrays of the view.
+        """
         other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), MIN_DOOR_CONFIDENCE)
         return bool(other.any() and not (other & beyond).any())
 

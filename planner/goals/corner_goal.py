@@ -54,7 +54,7 @@ class CornerRegion:
 
     Attributes
     ----------
-    side : of the corner, such as northeast.
+    side : of the corner in the robot frame, such as northeast.
     node : the object.
     situation : what is believed.
     """
@@ -64,7 +64,7 @@ class CornerRegion:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the regions, by the side of the corner, in the view frame."""
+        """Compute the region as an end, by the side of the corner, in squares, view frame: see `_must_reach`."""
         return _must_reach(self.side, self.node, self.situation)
 
 
@@ -74,8 +74,8 @@ class FurtherCorner:
 
     Attributes
     ----------
-    side : of the corner, such as northeast.
-    name : of the end.
+    side : of the corner in the robot frame, such as northeast.
+    name : the key under which the end is returned.
     situation : what is believed.
     """
 
@@ -84,7 +84,7 @@ class FurtherCorner:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the corner as an end, by name, in the view frame; nothing when it would not be further away."""
+        """Compute the corner as an end, by `name`, in squares, view frame; {} when it would not be further away."""
         return _further_corner(self.side, self.name, self.situation)
 
 
@@ -94,7 +94,7 @@ class RoomsByTheWay:
 
     Attributes
     ----------
-    side : of the corner, such as northeast.
+    side : of the corner in the robot frame, such as northeast.
     situation : what is believed.
     """
 
@@ -102,15 +102,22 @@ class RoomsByTheWay:
     situation: Situation
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute where these rooms can be seen."""
+        """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none."""
         return _room_viewpoints(self.side, self.situation)
 
 
 def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is in the furthest corner towards a side, such as "northeast".
+    """Return where an object is in the furthest corner towards a side; ends in squares, view frame.
 
     How the floor goes on around the corner does not matter once the object covers it. Whether an unseen room has a
-    corner further on is looked at last, for mostly there is none; or on the way, with the object in hand.
+    corner further on is looked at last, for mostly there is none; or on the way, with the object in hand. While it is
+    not known where the corner is, the placement has no ends, and says what is missing and where to look.
+
+    Parameters
+    ----------
+    side : of the robot frame: northeast, northwest, southeast or southwest.
+    node : the object; its outline is known.
+    situation : what is believed.
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
@@ -135,7 +142,10 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
 
 
 def corner_may_move(goal: Fact, situation: Situation) -> bool:
-    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere."""
+    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere.
+
+    False for a goal about no corner.
+    """
     side = corner_side(goal)
     return bool(side and rooms_to_see(side, situation))
 
@@ -152,7 +162,8 @@ def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
     Returns
     -------
     Approach
-        TO_TAKE; for a goal of a known corner with the direction of its walls.
+        TO_TAKE; for the first goal of a known corner with the direction of its walls, as signs along the axes of the
+        map.
     """
     for goal in goals:
         side = corner_side(goal)
@@ -165,7 +176,9 @@ def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
 def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them.
 
-    What lies behind their squares is seen from there, too.
+    What lies behind their squares is seen from there, too. Flat indices on the arrays of the view; () for no such room.
+
+    side : of the robot frame, such as northeast.
     """
     rooms = rooms_to_see(side, situation)
     return tuple(
@@ -174,10 +187,13 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
-    """Return the placement in a corner of the known floor, at its very point.
+    """Return the placement in a corner of the known floor, at its very point; ends in squares, view frame.
 
     When its walls are settled, to be within a square of them is enough; else they may be further away than believed.
-    When the places of the robot and the object are not certain, the corner is looked at first.
+    When the places of the robot and the object are not certain, the corner is looked at first: then the placement has
+    no ends.
+
+    side : of the robot frame, such as northeast.
     """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     model = situation.model
@@ -209,6 +225,13 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     end there rotated. An object that covers some squares in part looks larger than it is, on any side by up to one
     square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
     object whose place is inexact is brought nearer if possible.
+
+    Parameters
+    ----------
+    side : the name of the end, such as northeast.
+    end : the corner as an end with the default slack of one square, view frame.
+    node : the object.
+    shape : its outline, shapely Polygon, in squares, view frame.
     """
     close = replace(end, slack=APPROACH_GAP)
     if not is_off_quarter_turn(node):
@@ -226,7 +249,10 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
 
 
 def _between_walls(side: str, situation: Situation) -> Between | None:
-    """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not."""
+    """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not.
+
+    In squares, view frame. side : of the robot frame, such as northeast.
+    """
     corner = situation.corners[side]
     return None if corner.walls is None else Between(*corner.point, corner.walls)
 
@@ -235,6 +261,14 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
     """Return the placement between slanted walls, at any angle: brought near to both, and then pressed against them.
 
     Slanted walls are seen as stairs of squares and lie somewhere behind these. Only what stops the object tells where.
+    The presses are named into, one and two (towards both walls, the first, the second), in this order, in squares along
+    the axes of the map; none while the goal does not hold.
+
+    Parameters
+    ----------
+    side : the name of the end, such as northeast.
+    end : the corner, in squares, view frame.
+    shape : the outline of the object, shapely Polygon, in squares, view frame.
     """
     one, two = end.gaps(shape)
     gaps = {
@@ -248,7 +282,11 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
 
 
 def _pressed(end: InCorner) -> InCorner:
-    """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap."""
+    """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap.
+
+    The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much. Same
+    frame.
+    """
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
 
@@ -256,8 +294,20 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
     """Return the pushes towards the walls of a corner that an object may not touch, as far as these may be away.
 
     A wall lies anywhere in the squares in which it was seen, and so does a side of the object that is not settled.
-    Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is.
-    With a part of a square free in between, seen or not, it may not be.
+    Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is. With
+    a part of a square free in between, seen or not, it may not be.
+
+    Parameters
+    ----------
+    end : the corner, in squares, view frame.
+    node : the object.
+    shape : its outline, shapely Polygon, in squares, view frame.
+
+    Returns
+    -------
+    mapping of str to Translate
+        "across" along x and "up" along y, in squares along the axes of the map; without those whose gap is at most
+        CONTACT_GAP.
     """
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {
@@ -268,7 +318,11 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
 
 
 def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
-    """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares."""
+    """Return how much further in than believed the sides towards the walls of a corner may lie, (x, y) in squares.
+
+    First for the eastern or western side of the object, then for the northern or southern one: those that `end`, the
+    corner, is towards.
+    """
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south
 
@@ -277,6 +331,12 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
     """Return whether an object is in a corner, however far in its sides lie.
 
     It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
+
+    Parameters
+    ----------
+    end : the corner, in squares, view frame.
+    node : the object.
+    shape : its outline, shapely Polygon, in squares, view frame.
     """
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
     return all(
@@ -286,13 +346,25 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
 
 
 def _corner_end(side: str, situation: Situation) -> InCorner:
-    """Return the end in the furthest corner of the known floor."""
+    """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls.
+
+    In squares, view frame. side : of the robot frame, such as northeast.
+    """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
 
 
 def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, End]:
-    """Return the corner of likely floor, under a name, where that goes further than the sure floor; else nothing."""
+    """Return the corner of likely floor, under a name, where that goes further than the sure floor; else {}.
+
+    In squares, view frame. It lies at most MAX_CORNER_SHIFT squares further along each axis.
+
+    Parameters
+    ----------
+    side : of the corner in the robot frame, such as northeast.
+    name : the key of the end.
+    situation : what is believed.
+    """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
     likely = np.pad(view.seen & (view.probability <= MAX_LIKELY_FREE), MAX_CORNER_SHIFT)
@@ -310,11 +382,19 @@ def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, 
 
 
 def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[str, End]:
-    """Return places from which the robot with the object in hand sees a corner well; none when the object is in it.
+    """Return places from which the robot with the object in hand sees a corner well; {} when the object is in it.
 
     Best is the corner of what is seen. The robot takes the object so that it does not stand in its way there, and if
-    that is the true corner, the object is there already. Second best is anywhere around it.
-    floor : (rows, columns), the squares that the robot can reach.
+    that is the true corner, the object is there already. Second best is anywhere around it. Ends in squares, view
+    frame, by the names near_<side> and about_<side>, the best first; the second is left out when it is empty or the
+    object is there.
+
+    Parameters
+    ----------
+    side : of the robot frame, such as northeast.
+    node : the object.
+    situation : what is believed.
+    floor : (rows, columns) bool on the arrays of the view, the squares that the robot can reach.
     """
     end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
     if meets_end(end, shape):
@@ -326,7 +406,11 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
 
 
 def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
-    """Return the region that an object in a corner must reach: unseen squares, or the floor around the known corner."""
+    """Return the region that an object in a corner must reach: unseen squares, or the floor around the known corner.
+
+    One end by the name of the side, in squares, view frame. Around is as far as the object's bounding box is long, and
+    a square more.
+    """
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
     around = _around(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
@@ -336,7 +420,10 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
 
 
 def _around(side: str, squares: int, situation: Situation) -> Bools:
-    """Return the squares within `squares` rows and columns of a corner, (rows, columns)."""
+    """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool.
+
+    Axes as those of the view's arrays. side : of the robot frame, such as northeast.
+    """
     column, row = situation.corners[side].square
     high, wide = situation.model.view.seen.shape
     rows, columns = np.ogrid[:high, :wide]
@@ -345,7 +432,10 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
 
 
 def _reachable_floor(node: Node, situation: Situation) -> Bools:
-    """Return the squares that the robot can reach, (rows, columns), when the object to be carried moves along."""
+    """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool.
+
+    Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object.
+    """
     cost_maps = situation.cost_maps
     mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED
     return mask

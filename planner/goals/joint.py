@@ -34,7 +34,8 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
     Returns
     -------
     tuple[int, int] | None
-        The indices of the two goals; None when each two of them may hold at once.
+        The indices into `placements` of the first such two goals, the lesser first; None when each two of them may hold
+        at once.
     """
     for (one, a), (other, b) in combinations(enumerate(placements), 2):
         if all(placement.ends and not placement.missing for placement in (a, b)):
@@ -47,7 +48,8 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
 def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
     """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
-    However much more floor becomes known, such corners only move further apart.
+    However much more floor becomes known, such corners only move further apart. Also "" when the two corners of the
+    known floor are near enough to each other. goals : of one stage, for the robot.
     """
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
@@ -61,12 +63,18 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 
 
 def _all_ends(placement: Placement) -> list[End]:
-    """List all ends of a placement, the loose ones last."""
+    """List all ends of a placement (squares, view frame), the loose ones last."""
     return [*placement.ends.values(), *placement.loose.values()]
 
 
 def _may_share(one: End, other: End, shape: Any) -> bool:
-    """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only."""
+    """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only.
+
+    Parameters
+    ----------
+    one, other : the ends, in squares, in one frame.
+    shape : shapely Polygon, in squares, in the same frame.
+    """
     room = enclosing_region(one, shape).intersection(enclosing_region(other, shape))
     return bool(room.area >= shape.area - REGION_ROUNDING)
 
@@ -77,13 +85,14 @@ def enclosing_region(end: End, shape: Any) -> Any:
     Parameters
     ----------
     end : End
+        In squares; an At end is relative to the shape as it lies.
     shape : shapely geometry
         In squares, in the frame of the end.
 
     Returns
     -------
     shapely geometry
-        In the same frame.
+        Polygon or MultiPolygon in squares, in the same frame.
 
     Raises
     ------
@@ -103,7 +112,12 @@ def enclosing_region(end: End, shape: Any) -> Any:
 
 
 def _corner_region(end: InCorner, longest: float) -> Any:
-    """Return the box in a corner that holds any shape of at most `longest` squares that meets the end."""
+    """Return the box (shapely Polygon) in a corner that holds any shape that meets the end.
+
+    In squares, in the frame of the end.
+
+    longest : the greatest distance between two points of the shape, or more, in squares.
+    """
     reach = end.slack + end.press + longest + REGION_ROUNDING
     far_x, far_y = end.x - math.copysign(reach, end.sx), end.y - math.copysign(reach, end.sy)
     near_x, near_y = end.x + math.copysign(REGION_ROUNDING, end.sx), end.y + math.copysign(REGION_ROUNDING, end.sy)

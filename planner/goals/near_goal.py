@@ -23,15 +23,25 @@ POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the me
 
 
 def start_placement(node: Node, situation: Situation) -> Placement:
-    """Return where an object is at the start: within one square of the place where the robot woke."""
+    """Return where an object is at the start: within one square of the unit square around where the robot woke.
+
+    Ends in squares, view frame, named start_east, start_north, start_west and start_south, and a loose one, start.
+    """
     place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
     return _touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is beside another one: within one square of it.
+    """Return where an object is beside another one: within one square of its squares.
 
+    Ends in squares, view frame, named by the other object and a side of it, such as o2_east. When nothing is known to
+    be the other object, there are no ends, and `missing` says so.
+
+    Parameters
+    ----------
     other : the parameter of the task that means the other object.
+    node : the object to be carried; its outline is known.
+    situation : what is believed.
     """
     target = situation.model.object(situation.binding.get(other, ""))
     if target is None:
@@ -41,10 +51,15 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
 
 
 def _touching(shape: Any, target: Any, name: str) -> Placement:
-    """Return where a shape is within one square of a target; both polygons in the view frame.
+    """Return where a shape is within one square of a target.
 
     Best are the four sides of the target, with the bounding boxes touching. Where none of them is possible, any place
     near the target will do. No such place is further away than the length of the shape.
+
+    Parameters
+    ----------
+    shape, target : shapely Polygons, in squares, view frame.
+    name : of the target; the ends are named name_east, name_north, name_west and name_south, the loose one by the name.
     """
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
@@ -65,10 +80,16 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
 
 
 def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
-    """Return where an object is at the pose of a goal.
+    """Return where an object is at the pose of a goal: one end, "pose", in squares and degrees, view frame.
 
+    It holds within POSE_TOLERANCE squares and ANGLE_TOLERANCE degrees.
+
+    Parameters
+    ----------
     goal : pose(x, "POINT (x y)", degrees): where its middle shall be, in squares, in the robot's own frame; and the
-    rotation from its first orientation, in degrees, counter-clockwise positive.
+        rotation from its first orientation, in degrees, counter-clockwise positive.
+    node : the object; its outline is known.
+    situation : what is believed.
     """
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)

@@ -28,7 +28,7 @@ class OptimisticEnds:
 
     Attributes
     ----------
-    masks : (rows, columns) bool, by name.
+    masks : (rows, columns) bool on the arrays of the view, by the name of the end.
     situation : what is believed.
     """
 
@@ -36,7 +36,10 @@ class OptimisticEnds:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute each end as if the floor went on as optimistic planning assumes, in the view frame."""
+        """Compute each end as if the floor went on as optimistic planning assumes, by the same names.
+
+        In squares, view frame; an end may reach beyond the arrays of the view.
+        """
         return {name: _optimistic_end(mask, self.situation) for name, mask in self.masks.items()}
 
 
@@ -48,15 +51,16 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
     goal : Fact
         A goal whose first argument is an object parameter.
     node : Node
-        The object.
+        The object; its outline is known.
     began : XY
-        Where its middle was at first, a point of the map frame.
+        Where its middle was at first, a point (x, y) of the map frame, in squares.
     situation : Situation
 
     Returns
     -------
     Placement
-        While what is settled may be wrong, its regions end REGION_RIM before their edges.
+        Ends in squares, view frame. While what is settled may be wrong, its regions end REGION_RIM squares before their
+        edges.
 
     Raises
     ------
@@ -71,7 +75,10 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
 
 
 def _without_rim(end: End) -> End:
-    """Shrink a region by REGION_RIM, unless nothing would be left; return other ends unchanged."""
+    """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged.
+
+    end : in squares, in any frame; the result is in the same one.
+    """
     if not isinstance(end, Inside):
         return end
     inner = Inside(end.polygon.buffer(-REGION_RIM, join_style="mitre"))
@@ -79,7 +86,11 @@ def _without_rim(end: End) -> End:
 
 
 def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
-    """Compute where a goal holds for an object, whether or not what is settled may be wrong."""
+    """Compute where a goal holds for an object, whether or not what is settled may be wrong.
+
+    Ends in squares, view frame. began : where the middle of the object was at first, (x, y) of the map frame, in
+    squares. Raises ValueError when the goal is none for an object.
+    """
     where = goal.args[1]
     if side := corner_side(goal):
         return corner_placement(side, node, situation)
@@ -97,15 +108,15 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
-    """Return whether an object meets one of some ends as it is now."""
+    """Return whether an object meets one of some ends as it is now. ends : by name, in squares, view frame."""
     return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
 
 def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement beyond a door of the room that holds `began`.
+    """Return the placement beyond a door of the room that holds `began`, a point (x, y) of the map frame, in squares.
 
     At first a likely door will do: the way there shows whether it is one. Walls that may be objects, and so might make
-    other rooms, are only looked at when the object is there.
+    other rooms, are only looked at when the object is there. Ends in squares, view frame, named by rooms: r1, r2, ...
     """
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
@@ -124,17 +135,28 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 
 
 def _optimistic_end(mask: Bools, situation: Situation) -> End:
-    """Return the end inside squares of the view, or inside the unseen squares that these lead to."""
+    """Return the end inside squares of the view, or inside the unseen squares that these lead to.
+
+    In squares, view frame; it may reach up to UNSEEN_MARGIN squares beyond the view. mask : (rows, columns) bool.
+    """
     return moved(Inside(mask_to_polygon(spread_into_unseen(mask, situation))), -UNSEEN_MARGIN, -UNSEEN_MARGIN)
 
 
 def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
-    """Return the parts of a mask that belong to each room, by the name of the room."""
+    """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ...
+
+    Both are (rows, columns) bool on the arrays of the view; rooms without such squares are left out.
+    """
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
 
 def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement out of sight of `began`, with a corner of the verge in between."""
+    """Return the placement out of sight of `began`, with a corner of the verge in between.
+
+    One end, "hidden", in squares, view frame; none while the hidden squares are fewer than the object needs.
+
+    began : a point (x, y) of the map frame, in squares.
+    """
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))
     if hidden.sum() < node.polygon.area:

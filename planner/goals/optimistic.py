@@ -16,14 +16,21 @@ OPTIMISTIC_LEVEL = 2  # certainty level of the seen squares that are assumed to 
 
 
 def with_unseen_margin(mask: Bools) -> Bools:
-    """Return a mask of the view, (rows, columns), with a margin of UNSEEN_MARGIN False squares on each side."""
+    """Return a mask of the view, (rows, columns) bool, with a margin of UNSEEN_MARGIN False squares on each side.
+
+    The result is (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN); square [0, 0] of the view is its square
+    [UNSEEN_MARGIN, UNSEEN_MARGIN].
+    """
     return np.pad(mask, UNSEEN_MARGIN)
 
 
 def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
     """Add to a mask the unseen squares that UNSEEN_MARGIN steps from square to neighbouring square lead to from it.
 
-    mask : (rows, columns) of the view. Returns it with the margin of `with_unseen_margin`.
+    Neighbours share an edge; the steps lead over unseen squares only, also over those of the margin.
+
+    mask : (rows, columns) bool of the view; it is not changed. Returns a new mask with the margin of
+        `with_unseen_margin`.
     """
     unseen, wider = ~with_unseen_margin(situation.model.view.seen), with_unseen_margin(mask)
     for _ in range(UNSEEN_MARGIN):
@@ -32,5 +39,8 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
 
 def optimistic_floor(situation: Situation) -> Bools:
-    """Return all squares that are assumed to be free, with the margin of `with_unseen_margin`."""
+    """Return all squares that are assumed to be free, (rows, columns) bool with the margin of `with_unseen_margin`.
+
+    These are the free ones of level OPTIMISTIC_LEVEL and the unseen ones that these lead to.
+    """
     return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

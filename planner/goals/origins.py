@@ -20,11 +20,12 @@ class Origin(NamedTuple):
 
     Attributes
     ----------
-    place : the point, in squares, in the robot's own frame (east and north of where it woke).
+    place : the point (east, north), in squares, in the robot's own frame (east and north of where it woke).
     name : the name of the node.
     moved : whether the robot has moved it since.
     anew : whether the robot had been lost, and had begun its map anew, before the place was noted.
-    doors : the middles of the doors of its room, in the robot's own frame, as believed before it was moved.
+    doors : the middles of the doors of its room, as points of the robot's own frame in squares, as believed before it
+        was moved.
     """
 
     place: XY
@@ -35,9 +36,10 @@ class Origin(NamedTuple):
 
 
 class Origins:
-    """Remembers for each parameter of the task where the thing that it means was at first."""
+    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`)."""
 
     def __init__(self) -> None:
+        """Remember no origin yet."""
         self._known: dict[str, Origin] = {}
 
     def at(self, parameter: str, node: Node, situation: Situation) -> XY:
@@ -51,13 +53,13 @@ class Origins:
         parameter : str
             The parameter of the task that means the thing.
         node : Node
-            The thing now.
+            The thing now; its outline is known.
         situation : Situation
 
         Returns
         -------
         XY
-            A point of the map frame, in squares.
+            A point (x, y) of the map frame as it is believed now, in squares.
         """
         model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
@@ -73,7 +75,14 @@ class Origins:
         """Return in words why the noted origin of a thing is not reliable any more; "" while it is.
 
         After the robot was lost, the origin may be squares away from where it believes it. A door of the thing's room
-        counts as lost only where observations contradict what is believed.
+        counts as lost only where observations contradict what is believed. The origin must have been asked for with
+        `at` before; else KeyError.
+
+        Parameters
+        ----------
+        parameter : the parameter of the task that means the thing.
+        node : the thing now.
+        situation : what is believed.
         """
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
@@ -83,7 +92,16 @@ class Origins:
         return "a door of its room was lost" if gone and node.moved and model.shaken else ""
 
     def left(self, parameter: str, node: Node, situation: Situation) -> bool:
-        """Return whether a thing is in another room now than at first."""
+        """Return whether a thing is in another room now than at first.
+
+        The origin must have been asked for with `at` before; else KeyError.
+
+        Parameters
+        ----------
+        parameter : the parameter of the task that means the thing.
+        node : the thing now; its outline is known.
+        situation : what is believed.
+        """
         rooms, view = situation.rooms.labels, situation.model.view
         began = situation.model.frame.place_from_utak(*self._known[parameter].place)
         now = node.polygon.centroid.x, node.polygon.centroid.y
@@ -91,7 +109,10 @@ class Origins:
 
 
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
-    """Return the middles of the doors, robot's own frame, of the room that holds a point of the map frame."""
+    """Return the middles of the doors of the room that holds a point, as points (east, north) of the robot's own frame.
+
+    In squares; () for no door. place : a point (x, y) of the map frame, in squares.
+    """
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])
     return tuple(model.place_to_utak(*door.place) for door in rooms.leading(room))

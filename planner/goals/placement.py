@@ -32,14 +32,14 @@ class DeferredEnds(Protocol):
     """The ingredients of some ends. To compute these takes time, so it is done only when they are asked for."""
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the ends, by name, in the view frame."""
+        """Compute the ends, by name, in squares, view frame; {} for none."""
 
 
 class DeferredViewpoints(Protocol):
     """The ingredients of some viewpoints. To compute these takes time, so it is done only when asked for."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute the viewpoints."""
+        """Compute the viewpoints, on the arrays of the view; () for none."""
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ class KnownEnds:
 
     Attributes
     ----------
-    by_name : the ends, in the view frame.
+    by_name : the ends, in squares, view frame; none by default.
     """
 
     by_name: Mapping[str, End] = field(default_factory=dict)
 
     def ends(self) -> Mapping[str, End]:
-        """Return the ends, by name."""
+        """Return the ends, by name, in squares, view frame."""
         return self.by_name
 
 
@@ -64,13 +64,13 @@ class RegionEnds:
 
     Attributes
     ----------
-    masks : (rows, columns) bool, by name.
+    masks : (rows, columns) bool on the arrays of the view, by the name of the end.
     """
 
     masks: Mapping[str, Bools]
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the region of each mask as an end, in the view frame."""
+        """Compute the region of each mask as an end, by the same names, in squares, view frame."""
         return {name: Inside(mask_to_polygon(mask)) for name, mask in self.masks.items()}
 
 
@@ -79,13 +79,15 @@ class NoViewpoints:
     """Deferred viewpoints of which there are none."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Return no viewpoint."""
+        """Return (): no viewpoint."""
         return ()
 
 
 @dataclass(frozen=True)
 class Placement:
     """The places where a goal holds for an object, and what must be known first.
+
+    Ends are in squares, view frame: that of the arrays of the view, (0, 0) the south-west corner of square [0, 0].
 
     Attributes
     ----------
@@ -102,8 +104,9 @@ class Placement:
     hoped : deferred, the ends that follow if the floor goes on as optimistic planning assumes.
     by_the_way : deferred, what must be seen before the goal holds and is better seen on the way: coming back takes
         longer.
-    presses : by name, pushes after which the object touches walls that may be further away than believed. After them a
-        goal that is believed to hold surely holds.
+    presses : by name, pushes (dx, dy) in squares along the axes of the map, in the order in which they are made, after
+        which the object touches walls that may be further away than believed. After them a goal that is believed to
+        hold surely holds.
     some : whether the object may end elsewhere, too. Then it proves nothing that none of `ends` can be reached.
     """
 
@@ -123,29 +126,45 @@ class Placement:
 
 
 def meets_end(end: End, shape: Any) -> bool:
-    """Return whether a shape meets an end as it is now; both in the view frame."""
+    """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame.
+
+    An At end is met when it is the shape's present pose; a Roomy end never.
+    """
     return is_goal_met(end, shape, shape)
 
 
 def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
-    """Return whether a shape meets any of some ends as it is now; all in the view frame."""
+    """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame.
+
+    False for no ends. ends : by name.
+    """
     return any(meets_end(end, shape) for end in ends.values())
 
 
 def is_off_quarter_turn(node: Node) -> bool:
-    """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns."""
+    """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns.
+
+    What counts is `node.turned`, the degrees since it was first held.
+    """
     over = node.turned % 90.0
     return min(over, 90.0 - over) > ANGLE_TOLERANCE
 
 
 def to_view_frame(shape: Any, situation: Situation) -> Any:
-    """Convert a shape (shapely geometry, in squares) from the map frame to the view frame."""
+    """Convert a shape (shapely geometry, in squares) from the map frame to the view frame; the shape is not changed.
+
+    The view frame is that of the arrays of the view: (0, 0) is the south-west corner of square [0, 0].
+    """
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
 
 
 def mask_to_polygon(mask: Bools) -> Any:
-    """Convert a mask (rows, columns) to one shapely geometry, in squares, in the frame of the array."""
+    """Convert a mask (rows, columns) of bool to one shapely geometry, in squares, in the frame of the array.
+
+    x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
+    geometry for an empty mask.
+    """
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
     stops = np.nonzero(runs == -1)[1]
@@ -167,7 +186,7 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
     Returns
     -------
     Bools
-        (rows, columns).
+        (rows, columns) bool on the arrays of the view; all False when no door is forbidden.
     """
     columns, rows = situation.model.labels.shape[::-1]
     doors = (*situation.forbidden("utak"), *situation.forbidden(node.name))
@@ -185,7 +204,7 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
     node : Node
         The object. One that was moved has none: it was seen to end.
     side : tuple[int, int]
-        The direction (columns, rows), one of SIDE_DIRECTIONS.
+        The direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
     depth : int
         How far the object may go on, in squares.
     model : WorldModel
@@ -193,7 +212,7 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
     Returns
     -------
     Bools
-        (rows, columns).
+        (rows, columns) bool on the arrays of the view; all False when there are none.
     """
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
@@ -211,15 +230,16 @@ def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situ
     node : Node
         The object.
     side : tuple[int, int]
-        The direction (columns, rows) in which it may go on, one of SIDE_DIRECTIONS.
+        The direction (columns, rows) along the axes of the map in which it may go on, one of SIDE_DIRECTIONS.
     depth : int
-        How far, in squares. It is pulled by one square more, or as far as the floor is free.
+        How far, in squares. It is pulled by one square more, or as far as the floor is surely free.
     situation : Situation
 
     Returns
     -------
     Pose | None
-        The translation; None when the object cannot be moved at all that way.
+        The translation from where the object lies, in squares along the axes of the map, without a turn; None when the
+        object cannot be moved at all that way.
     """
     mask, (dx, dy) = situation.model.mask(node.patch), side
     room = np.pad(situation.cost_maps.free(0) | mask, depth + 1)
@@ -232,7 +252,10 @@ def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situ
 def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
     """Return the pose to which an object is pulled out of a wall, when squares are needed that it may cover there.
 
-    needed : (rows, columns). Returns None when none of them may belong to the object, or when it cannot be pulled.
+    An At end: the translation from where it lies, in squares along the axes of the map. Returns None when none of the
+    squares may belong to the object, or when it cannot be pulled. It is pulled out as if it went on as far as possible.
+
+    needed : (rows, columns) bool on the arrays of the view, the squares that must become free.
     """
     for depth, side in product(range(MAX_HIDDEN_DEPTH, 0, -1), SIDE_DIRECTIONS):
         if (possible_extension(node, side, depth, situation.model) & needed).any():
@@ -243,11 +266,17 @@ def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
 
 
 def robot_can_leave(node: Node, situation: Situation) -> bool:
-    """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it."""
+    """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it.
+
+    True for an object that is not held.
+    """
     held = situation.model.held == node.name
     return not held or floor_leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
 
 
 def floor_leads_away(floor: Bools, thing: Bools) -> bool:
-    """Return whether reachable floor leads further than NOOK_RANGE from an object; both masks (rows, columns)."""
+    """Return whether reachable floor leads further than NOOK_RANGE rows and columns from an object.
+
+    floor, thing : (rows, columns) bool, the reachable squares and the squares of the object.
+    """
     return bool((floor & ~dilate(thing, NOOK_RANGE)).any())

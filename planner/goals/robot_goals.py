@@ -48,7 +48,8 @@ class Destination:
 
     Attributes
     ----------
-    squares : flat indices on the screen, (n,); empty while it is not known where.
+    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty while it is not known
+        where.
     missing : in words, what must be known first; "" when nothing is missing. With squares, it may hold elsewhere, too.
     viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
     """
@@ -61,29 +62,35 @@ class Destination:
 def unreachable_reason(where: Sequence[Destination]) -> str:
     """Return in words why goals cannot be attained although it is known where each of them holds.
 
+    Either no way leads there, or no square is in all of the destinations.
+
     Parameters
     ----------
     where : Sequence[Destination]
-        The destinations of all goals, none of which can be reached.
+        The destinations of all goals, at least one, none of which can be reached.
 
     Returns
     -------
     str
+        A clause without full stop.
     """
     both = [set(d.squares.tolist()) for d in where]
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
 
 
 def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
-    """Return the destination of a goal of which it is not known yet where it holds.
+    """Return the destination of a goal of which it is not known yet where it holds: without squares.
 
-    missing : in words, what must be known first. viewpoints : where that may be seen.
+    missing : in words, what must be known first. viewpoints : where that may be seen; () for any place worth a look.
     """
     return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
 
 def corner_side(goal: Fact) -> str:
-    """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner."""
+    """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner.
+
+    The side is one of the robot's own frame, as in at(utak, corner(northeast)).
+    """
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
     return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
@@ -101,6 +108,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     Returns
     -------
     Destination
+        Without squares, and with what is missing in words, while it is not known where the goal holds.
 
     Raises
     ------
@@ -122,9 +130,12 @@ def destination(goal: Fact, situation: Situation) -> Destination:
 
 
 def corner_destination(side: str, situation: Situation) -> Destination:
-    """Return the convex corner of the known floor furthest towards a side of the robot's own frame.
+    """Return the convex corner of the known floor furthest towards a side of the robot's own frame: its square.
 
-    Where an unseen room may go further, the corner may be another one: then something is missing.
+    Where an unseen room may go further, the corner may be another one: then something is missing. Without the square
+    when it is not known how the floor goes on there.
+
+    side : northeast, northwest, southeast or southwest.
     """
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
@@ -136,8 +147,14 @@ def corner_destination(side: str, situation: Situation) -> Destination:
 def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destination | None:
     """Return what is missing to tell where the corner towards a side is; None when that is known.
 
-    It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there.
-    floor : (rows, columns), the squares that can be reached.
+    It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there. The Destination
+    has no squares then, but words and viewpoints.
+
+    Parameters
+    ----------
+    side : of the robot's own frame, such as northeast.
+    situation : what is believed.
+    floor : (rows, columns) bool on the arrays of the view, the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
     column, row = situation.corners[side].square
@@ -169,13 +186,17 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     Returns
     -------
     tuple[Viewpoint, ...]
-        Empty when no such room is left.
+        One for each such room, with the squares (flat indices on the arrays of the view) from which it comes into
+        sight; empty when no such room is left.
     """
     cost_maps, model = situation.cost_maps, situation.model
     known = _furthest_towards(side, _corner_square(side, situation), model)
 
     def short(view: Viewpoint) -> float:
-        """Return how much less far than the known corner a viewpoint lies towards the side, in squares."""
+        """Return how much less far than the known corner a viewpoint lies towards the side, in squares.
+
+        East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
+        """
         return known - _furthest_towards(side, view.squares, model)
 
     unreached = [view for view in unreached_rooms(cost_maps) if short(view) <= UNREACHED_REACH]
@@ -196,7 +217,10 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
 
 def _corner_square(side: str, situation: Situation) -> SquareIndices:
-    """Return the square of the known corner towards a side, as a flat index, (1,)."""
+    """Return the square of the known corner towards a side, as a flat index on the arrays of the view, (1,) int64.
+
+    side : of the robot's own frame, such as northeast.
+    """
     column, row = situation.corners[side].square
     return np.array([row * situation.model.labels.shape[1] + column])
 
@@ -204,8 +228,14 @@ def _corner_square(side: str, situation: Situation) -> SquareIndices:
 def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int, int] | None:
     """Return the least reach and the sideward reach of the unseen floor behind a frontier, in squares.
 
-    Returns None where it leads to no other room: it is neither in a doorway, nor as narrow as a door, nor in another
-    room than the known corner.
+    Reach counts towards the corner, east and north added. Returns None where the frontier leads to no other room: it is
+    neither in a doorway, nor as narrow as a door, nor in another room than the known corner.
+
+    Parameters
+    ----------
+    side : of the corner in the robot's own frame, such as northeast.
+    view : the frontier.
+    situation : what is believed.
     """
     rooms = (situation.rooms, situation.rooms_by_sure_walls)
     if any(one.doorways.ravel()[view.squares].any() for one in rooms):
@@ -220,14 +250,23 @@ def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int
 
 
 def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
-    """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns."""
+    """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns.
+
+    The span is the difference of the greatest and the least number of a row, or column.
+    """
     return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
 
 def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: WorldModel) -> float:
-    """Estimate how much further towards a corner the floor behind a frontier may go, in squares.
+    """Estimate how much further towards a corner the floor behind a frontier may go, in squares, east and north added.
 
-    least : the least reach by the chance of the frontier. sideward : the reach to either side.
+    Parameters
+    ----------
+    side : of the corner in the robot's own frame, such as northeast.
+    view : the frontier.
+    least : the least reach by the chance of the frontier, in squares.
+    sideward : the reach to either side, in squares.
+    model : what is believed.
     """
     promise = max(REACH_PER_PERCENT * (view.chance - MIN_CHANCE), least)
     onward = _onward(side, view.squares, model)
@@ -236,9 +275,16 @@ def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: 
 
 
 def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
-    """Compute how much further towards a corner (east and north added) one step into the unseen leads, in squares.
+    """Compute how much further towards a corner one step into the unseen leads, in squares, east and north added.
 
-    The step goes in the mean of the directions in which the squares have unseen neighbours; 1 where they cancel out.
+    The step, one square long, goes in the mean of the directions in which the squares have unseen neighbours (of
+    eight); 1 where they cancel out. From -1.41 (away from the corner) to 1.41.
+
+    Parameters
+    ----------
+    side : of the corner in the robot's own frame, such as northeast.
+    squares : (n,) flat indices on the arrays of the view.
+    model : what is believed.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     unseen = np.pad(~model.view.seen, 1, constant_values=True)
@@ -249,12 +295,28 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
 
 
 def _along(side: str, east: Any, north: Any) -> Any:
-    """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed."""
+    """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed.
+
+    Parameters
+    ----------
+    side : of the corner in the robot frame: northeast, northwest, southeast or southwest.
+    east, north : numbers, or arrays of one shape, in squares, robot frame; the result is of the same kind and unit.
+    """
     return (east if "east" in side else -east) + (north if "north" in side else -north)
 
 
 def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> float:
-    """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares."""
+    """Return how far the furthest of some squares lies towards a corner of the robot's own frame, in squares.
+
+    Measured from where the robot woke, east and north added, at the centres of the squares; the greater, the nearer to
+    the corner.
+
+    Parameters
+    ----------
+    side : such as northeast.
+    squares : (n,) flat indices on the arrays of the view, at least one.
+    model : what is believed.
+    """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
     east, north = np.column_stack(model.frame.place_to_utak(*points)).T
@@ -266,6 +328,8 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
 
     Only squares count that share an edge with one of its squares, if there are any: its outline may end short of the
     corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
+    Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it.
+
     parameter : the parameter of the task that means the object.
     """
     node = situation.model.object(situation.binding.get(parameter, ""))
@@ -290,7 +354,10 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
 
 
 def _room(situation: Situation) -> Destination:
-    """Return the floor of the rooms next to the one in which the robot woke."""
+    """Return the reachable floor of the rooms next to the one in which the robot woke.
+
+    Without squares, and with what is missing and where to look, while no such room is known or is to be relied on.
+    """
     beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
     if viewpoints:
         return unknown_destination(viewpoints[0].what, viewpoints)
@@ -305,7 +372,8 @@ def _room(situation: Situation) -> Destination:
 def next_room_missing(situation: Situation) -> str:
     """Return in words why no next room is known: none can be reached, or no neck is a door.
 
-    Then the neck that comes nearest to being a door is named.
+    Then the neck that comes nearest to being a door is named, if any is known, with its width in squares and its place
+    in the robot frame.
     """
     model, opening = situation.model, situation.rooms.opening
     if situation.rooms.sure:
@@ -322,7 +390,10 @@ def next_room_missing(situation: Situation) -> str:
 
 
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
-    """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors."""
+    """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors.
+
+    One Viewpoint for each room, with all its reachable squares (flat indices on the arrays of the view).
+    """
     model = situation.model
     rooms, beyond = situation.likely_next_rooms(model.frame.origin)
     beyond &= situation.cost_maps.floor
@@ -333,12 +404,17 @@ def _likely_rooms(situation: Situation) -> list[Viewpoint]:
 
 
 def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
-    """Return the numbers of the rooms that have squares of a mask, in ascending order."""
+    """Return the numbers of the rooms that have squares of a mask, in ascending order; [] for an empty mask.
+
+    mask : (rows, columns) bool on the arrays of the view. Number 0 stands for floor that is part of no room.
+    """
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
 
 def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
     """Find where a door may come into sight: at possible doors, and at floor that is seen and cannot be reached yet.
+
+    Viewpoints on the arrays of the view, those of doors first; () for none.
 
     tried : whether likely doors are left out, because the robot goes through them anyway.
     """
@@ -347,7 +423,10 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
 
 
 def around_corner_destination(situation: Situation) -> Destination:
-    """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between."""
+    """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between.
+
+    Without squares, and with what is missing, when no such floor can be reached.
+    """
     model = situation.model
     squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
     return Destination(squares) if len(squares) else unknown_destination("no corner is seen yet that hides a place")
@@ -359,15 +438,17 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
     Parameters
     ----------
     verge : Bools
-        (rows, columns), the squares that block the sight.
+        (rows, columns) bool on the arrays of the view, the squares that block the sight.
     model : WorldModel
+        Only the place of its view counts.
     place : XY
-        A point of the map frame, in squares.
+        A point (x, y) of the map frame, in squares.
 
     Returns
     -------
     Bools
-        (rows, columns). Lines of sight are sampled at LINE_SAMPLES places.
+        (rows, columns) bool, True where hidden; squares of the verge may be hidden, too. Lines of sight are sampled at
+        LINE_SAMPLES places.
     """
     height, width = verge.shape
     x, y = place[0] - model.view.west, place[1] - model.view.south
@@ -381,7 +462,10 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
 
 
 def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
-    """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own."""
+    """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own.
+
+    Flat indices on the arrays of the view, (n,). point : (x, y) of the map frame, in squares.
+    """
     row, column = model.view.locate(*point)
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
     x, y = point[0] - model.view.west, point[1] - model.view.south
@@ -391,6 +475,9 @@ def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
 
 
 def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
-    """Return whether the robot stands on one of some squares (flat indices on the view)."""
+    """Return whether the robot stands on one of some squares; False for no squares.
+
+    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
+    """
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())

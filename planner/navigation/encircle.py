@@ -17,9 +17,13 @@ from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
 
 def winding_number(track: Sequence[XY], node: Node) -> int:
-    """Compute how many turns a track makes around an object, counter-clockwise positive.
+    """Compute how many turns a track makes around an object, counter-clockwise positive; a whole number.
 
-    track : points of the map frame, closed by its first point.
+    Parameters
+    ----------
+    track : points (x, y) of the map frame in squares, at least one, each taken as the centre of its square; the track
+        is closed by its first point.
+    node : the object; only its squares matter.
     """
     return crossing_number(_centred([*track, track[0]]), encircled_point(node))
 
@@ -31,15 +35,15 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
     ----------
     cost_maps : CostMaps
     track : Sequence[XY]
-        Where the robot has been since it began to encircle the object, points of the map frame.
+        Where the robot has been since it began to encircle the object, points (x, y) of the map frame in squares.
     node : Node
         The object.
 
     Returns
     -------
     dict[int, PlannedRoute]
-        The route by the sense of rotation: 1 counter-clockwise, -1 clockwise. All are of the surest certainty level at
-        which there is one; empty when there is none at any level.
+        The route (on the arrays of the view) by the sense of rotation: 1 counter-clockwise, -1 clockwise. All are of
+        the surest certainty level at which there is one; empty when there is none at any level.
     """
     model = cost_maps.model
     x, y = encircled_point(node)
@@ -67,13 +71,25 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
 
 
 def _centred(track: Sequence[XY]) -> Floats:
-    """Move each point of a track to the centre of its square, (n, 2): routes are made of centres, too."""
+    """Move each point of a track to the centre of its square, (n, 2) float64: routes are made of centres, too.
+
+    track : points (x, y) in squares; the frame is kept.
+    """
     centres: Floats = np.floor(np.array(track)) + 0.5
     return centres
 
 
 def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
-    """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between."""
+    """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between.
+
+    That square lies in the column of the later square and the row of the former. The length, in squares, is that of the
+    given squares; the clearance is assumed to be 0.5 squares.
+
+    Parameters
+    ----------
+    squares : (column, row) on the arrays of the view, at least two.
+    level : the certainty level of the squares.
+    """
     path = [squares[0]]
     for column, row in squares[1:]:
         if column != path[-1][0] and row != path[-1][1]:
@@ -84,13 +100,19 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
 
 
 def encircled_point(node: Node) -> XY:
-    """Return a point within the object, map frame: the centre of its square nearest to its middle."""
+    """Return a point (x, y) within the object, in squares, map frame.
+
+    It is the centre of that square of the object which is nearest to the mean of its squares.
+    """
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
     return column + 0.5, row + 0.5
 
 
 def _square(place: XY, model: WorldModel) -> Square:
-    """Return the square (column, row) of the view that holds a point of the map frame."""
+    """Return the square (column, row) on the arrays of the view that holds a point (x, y) of the map frame.
+
+    It may lie outside of the arrays.
+    """
     row, column = model.view.locate(*place)
     return column, row

@@ -30,21 +30,26 @@ class FewestMoves:
     """The squares that one or two straight moves reach from where the robot stands; computed at first use."""
 
     def __init__(self, cost_maps: CostMaps) -> None:
+        """Make an empty store for these cost maps and where the robot stands in them."""
         self._cost_maps = cost_maps
         self._reached: dict[tuple[int, bool], Bools] = {}  # by the greatest length, and whether to inspect an object
         self._turns: dict[tuple[str, bytes], Square | None] = {}  # by the kind and the squares of the subgoal
 
     def priced(self, subgoals: Sequence[Subgoal]) -> list[Subgoal]:
-        """Return the subgoals with prices by their number of moves.
+        """Return the subgoals, in order, with prices by their number of moves, in squares of way.
 
-        A subgoal that one move reaches keeps only the squares that it reaches.
+        With the cost of the way there, the price then comes to MOVE_COST for each move and SQUARE_COST for each square
+        of way. A subgoal that one move reaches keeps only the squares that it reaches; one that cannot be reached stays
+        as it is.
         """
         return [self._priced(subgoal) for subgoal in subgoals]
 
     def way(self, subgoal: Subgoal) -> PlannedRoute | None:
         """Return the first move to a subgoal that one or two moves reach, as a route of two squares.
 
-        Returns None for all other subgoals. The clearance is not computed: 0.
+        These are the robot's square and where the move ends, (column, row) on the arrays of the view; they need not be
+        neighbours. The length is straight, in squares; the clearance is not computed: 0; the level is 0. Returns None
+        for all other subgoals, and when the robot is there.
         """
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
@@ -55,11 +60,14 @@ class FewestMoves:
 
     @property
     def _far(self) -> NDArray[np.int32]:
-        """The distance of each square of the screen, (n,), in fifths of squares; -1 where no way is sure."""
+        """The distance of each square from the robot, in fifths of squares; -1 where no way is sure.
+
+        (n,) int32 by flat index (row * columns + column) on the arrays of the view.
+        """
         return self._cost_maps.distances[0].ravel()
 
     def _priced(self, subgoal: Subgoal) -> Subgoal:
-        """Return a subgoal whose price, with its way, comes to the cost of its moves."""
+        """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`)."""
         reached = self._cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is None:
             return subgoal
@@ -72,26 +80,33 @@ class FewestMoves:
         return subgoal._replace(price=subgoal.price + MOVE_COST * moves - (1 - SQUARE_COST) * reached.cost)
 
     def _met(self, subgoal: Subgoal) -> SquareIndices:
-        """Return the squares of a subgoal that one move reaches."""
+        """Return the squares of a subgoal that one move reaches: a part of `subgoal.squares`, possibly none."""
         near: SquareIndices = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
         return near
 
     def _first(self, kind: str) -> Bools:
-        """Return all squares that one move reaches, (rows, columns), by the kind of the subgoal."""
+        """Return all squares that one move reaches, (rows, columns) bool, by the kind of the subgoal."""
         key = CARRYING_PACE.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
         if key not in self._reached:
             self._reached[key] = one_move_squares(self._cost_maps, kind)
         return self._reached[key]
 
     def _turning(self, subgoal: Subgoal) -> Square | None:
-        """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it."""
+        """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it.
+
+        (column, row) on the arrays of the view; remembered by the kind and the squares of the subgoal.
+        """
         key = (subgoal.kind, subgoal.squares.tobytes())
         if key not in self._turns:
             self._turns[key] = self._best_turn(subgoal)
         return self._turns[key]
 
     def _best_turn(self, subgoal: Subgoal) -> Square | None:
-        """Search the turn of least way, less the worth of the unseen squares in sight from it."""
+        """Search the turn of least way, less the worth of the unseen squares in sight from it.
+
+        Returns the square (column, row) where the first of two straight moves ends; None when two moves do not reach
+        any of at most MAX_TRIED_SQUARES squares of the subgoal that a sure way leads to.
+        """
         cost_maps, passable = self._cost_maps, CARRYING_PACE.passable(self._cost_maps, subgoal.kind)
         sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & passable.ravel()[subgoal.squares]]
         nearest = sure[np.argsort(self._far[sure], kind="stable")]
@@ -111,6 +126,6 @@ class FewestMoves:
         return found
 
     def _square(self, flat: int) -> Square:
-        """Return the square (column, row) of a flat index."""
+        """Return the square (column, row) of a flat index (row * columns + column) on the arrays of the view."""
         row, column = divmod(flat, self._cost_maps.safe.shape[1])
         return column, row

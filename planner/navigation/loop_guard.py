@@ -23,15 +23,23 @@ StateKey = tuple[object, ...]
 
 
 class LoopGuard:
-    """Remembers which command was given in which state of belief, and which subgoals led in a loop."""
+    """Remembers which command was given in which state of belief, and which subgoals led in a loop.
+
+    A loop is the same command in the same state. Loops are counted by the squares of subgoals, in the map frame.
+    """
 
     def __init__(self) -> None:
+        """Remember no command and no loop yet."""
         self._given: set[tuple[StateKey, StateKey]] = set()
         self._loops: Counter[Square] = Counter()  # by square of a subgoal, map frame
         self._known: StateKey = ()  # the state of knowledge in which the loops were counted
 
     def noticed(self, model: WorldModel, command: Command) -> bool:
-        """Return whether a command was given before at this place with the same knowledge, and remember it."""
+        """Return whether a command was given before at this place with the same knowledge, and remember it.
+
+        The same are the robot's place and the command, to STATE_DIGITS decimals, what it holds, and what is known (see
+        `_knowledge`).
+        """
         x, y = model.place
         values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
         state = (round(x, STATE_DIGITS), round(y, STATE_DIGITS), model.held, _knowledge(model))
@@ -41,13 +49,19 @@ class LoopGuard:
         return again
 
     def tire(self, squares: frozenset[Square]) -> None:
-        """Count one more loop for a subgoal with these squares of the map frame."""
+        """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
         self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
         """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS.
 
-        All loops are forgotten as soon as more is known.
+        Prices are in squares of way. The loops of a subgoal are the most that were counted for one of its squares. All
+        loops are forgotten as soon as more is known.
+
+        Parameters
+        ----------
+        subgoals : with squares as flat indices on the arrays of this view.
+        model : what is believed.
         """
         known = _knowledge(model)
         if known != self._known:
@@ -64,7 +78,7 @@ class LoopGuard:
         return found
 
     def _on_view(self, model: WorldModel) -> Longs:
-        """Return the number of loops of each square, (rows, columns)."""
+        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view."""
         rows, columns = model.labels.shape
         loops = np.zeros((rows, columns), np.int64)
         for (x, y), times in self._loops.items():
@@ -75,10 +89,10 @@ class LoopGuard:
 
 
 def _knowledge(model: WorldModel) -> StateKey:
-    """Return what changes when something new is known.
+    """Return what changes when something new is known, as a tuple to be compared.
 
-    These are the numbers of seen squares, of settled squares and of squares that stopped a motion, and the places of
-    the objects that moved or were stuck.
+    In this order: how many squares were seen, how many are settled, how many stopped a motion, and for each object that
+    was moved or is stuck its name, how often it is stuck, and the west and south square of its patch (map frame).
     """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(

@@ -26,13 +26,14 @@ MIN_SHARED = (
 
 
 class PlannedRoute(NamedTuple):
-    """A route that geometry found.
+    """A route that geometry found, on the arrays of the view.
 
     Attributes
     ----------
-    squares : (column, row), edge-connected and free, from the robot's square to the goal.
+    squares : (column, row), edge-connected and free, from the robot's square to the goal, both included. A single
+        straight move has just its two ends instead (FewestMoves.way).
     length : in squares.
-    clearance : the least distance from the route to a square that is not free, in squares.
+    clearance : the least distance from the route to a square that is not free, in squares; 0 where it was not computed.
     level : the certainty level of its squares, 0 the surest (planner.screen.projection).
     """
 
@@ -51,23 +52,68 @@ PathFinder = Callable[
 
 
 def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton."""
+    """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where free, on the arrays of the view.
+    start, goal : free squares (column, row).
+
+    Returns
+    -------
+    list of FoundLine
+        At most MAX_ROUTES, the shortest first: each the points (x, y) of a line from centre to centre in the view
+        frame, its length and its clearance, all in squares. Empty when no route leads there.
+    """
     routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
 def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's."""
+    """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where free, on the arrays of the view.
+    start, goal : free squares (column, row).
+
+    Returns
+    -------
+    list of FoundLine
+        One route, or none when no way leads there: the points (x, y) of a line from centre to centre in the view frame,
+        its length and the clearance of the squares that it touches, all in squares. It is a list as for all
+        path-finders.
+    """
     return _single(free, visibility_path(free, _centre(start), _centre(goal)))
 
 
 def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the shortest route over the squares and their eight neighbours, by A*."""
+    """Find the shortest route over the squares and their eight neighbours, by A*.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where free, on the arrays of the view.
+    start, goal : free squares (column, row).
+
+    Returns
+    -------
+    list of FoundLine
+        One route, or none when no way leads there: the points (x, y) of a line from centre to centre in the view frame,
+        its length and the clearance of the squares that it touches, all in squares. It is a list as for all
+        path-finders.
+    """
     return _single(free, grid_path(free, _centre(start), _centre(goal)))
 
 
 def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
-    """Return the only route of a path-finder, with its length and the clearance of the squares that it touches."""
+    """Return the only route of a path-finder, with its length and the clearance of the squares that it touches.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, True where free.
+    points : (n, 2), the corners (x, y) of the route in squares, in the frame of `free`; None when there is no route:
+        then [].
+    """
     if points is None:
         return []
     line = points.tolist()
@@ -86,16 +132,21 @@ def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: s
     ----------
     cost_maps : CostMaps
     level : int
-        The certainty level of the squares that may be crossed; at least one goal can be reached at it.
+        The certainty level of the squares that may be crossed, 0 the surest; at least one goal can be reached at it.
     goals : SquareIndices
-        Flat indices on the screen.
+        (n,) flat indices (row * columns + column) on the arrays of the view.
     finder : str
-        A key of PATH_FINDERS.
+        A key of PATH_FINDERS: skeleton, visibility or grid.
 
     Returns
     -------
     list[PlannedRoute]
-        Shortest first; a single route of one square when the robot is there.
+        From the robot's square to that goal, shortest first; a single route of one square when the robot is there.
+
+    Raises
+    ------
+    ValueError
+        When no goal can be reached at the level.
     """
     free, distances = cost_maps.free(level), cost_maps.distances[level].ravel()
     reached = goals[distances[goals] >= 0]
@@ -115,21 +166,27 @@ def choose_route(
 ) -> PlannedRoute | None:
     """Choose one of some routes, by planner/asp/routes.lp.
 
+    The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
+    `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths
+    of the expected number of occupied squares; `through(number, door)`; `last(number)` for a route that continues the
+    one before.
+
     Parameters
     ----------
     offered : Sequence[PlannedRoute]
+        On the arrays of the view.
     cost_maps : CostMaps
     before : frozenset[Square]
-        The squares (column, row) of the route chosen last time.
+        The squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
     doors : Sequence[Door]
-        The known doors.
+        The known doors, view frame.
     forbidden : frozenset[str]
         The names of the doors that the task forbids.
 
     Returns
     -------
     PlannedRoute | None
-        None when every route leads through a forbidden door.
+        One of `offered`; None when every route leads through a forbidden door.
     """
     facts = [f"not_through({door})" for door in sorted(forbidden)]
     for number, route in enumerate(offered):
@@ -145,11 +202,14 @@ def choose_route(
 
 
 def leads_through(route: PlannedRoute, door: Door) -> bool:
-    """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side."""
+    """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side.
+
+    Both are in the view frame; the route counts as the line through the centres of its squares.
+    """
     points = np.array(route.squares) + 0.5
     return bool(count_crossings(points, door) % 2)
 
 
 def _centre(square: Square) -> XY:
-    """Return the centre (x, y) of a square."""
+    """Return the centre (x, y) of a square (column, row), in squares, in the same frame."""
     return square[0] + 0.5, square[1] + 0.5

@@ -16,22 +16,35 @@ class StickyRoute:
     """Remembers the squares of the present route and of its subgoal, in the map frame."""
 
     def __init__(self) -> None:
+        """Remember no route yet."""
         self._subgoal: frozenset[Square] = frozenset()
         self._path: tuple[Square, ...] = ()
         self._level = 0  # the certainty level of the route
 
     def keep(self, route: PlannedRoute, subgoal: frozenset[Square], model: WorldModel) -> None:
-        """Remember a route of the present view, and the squares of its subgoal in the map frame."""
+        """Remember a route, and the squares of its subgoal.
+
+        Parameters
+        ----------
+        route : on the arrays of the present view; it is converted to the map frame.
+        subgoal : the squares (x, y) of its subgoal, given in the map frame already (see `to_map_squares`); empty for no
+            subgoal.
+        model : the world model whose view the route is on.
+        """
         view = model.view
         self._path = tuple((column + view.west, row + view.south) for column, row in route.squares)
         self._subgoal, self._level = subgoal, route.level
 
     def path(self, model: WorldModel) -> list[Square]:
-        """Return the squares (column, row) of the route, on the arrays of the present view."""
+        """Return the squares (column, row) of the route on the arrays of the present view, in order; [] for none."""
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
     def subgoal(self, model: WorldModel) -> frozenset[int]:
-        """Return the squares of the subgoal, as flat indices on the present view."""
+        """Return the squares of the subgoal, as flat indices on the arrays of the present view.
+
+        A flat index is row * columns + column. Squares outside of the view are left out; empty when there is no
+        subgoal.
+        """
         rows, columns = model.labels.shape
         places = ((y - model.view.south, x - model.view.west) for x, y in self._subgoal)
         return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
@@ -47,11 +60,14 @@ class StickyRoute:
             The certainty level at which it can be reached; another one than the route's ends the route.
         model : WorldModel
         cost_maps : CostMaps
+            Of the same model.
 
         Returns
         -------
         PlannedRoute | None
-            Its clearance is not computed: 0.
+            On the arrays of the present view; its length is its number of squares, its clearance is not computed: 0.
+            None when the robot is not on the route or at its end, when it ends at no square of the subgoal, or when a
+            square ahead is not free at the level.
         """
         path = self.path(model)
         if level != self._level or cost_maps.here not in path:
@@ -65,6 +81,6 @@ class StickyRoute:
 
 
 def to_map_squares(squares: SquareIndices, model: WorldModel) -> frozenset[Square]:
-    """Convert flat indices on the view to squares (x, y) of the map frame."""
+    """Convert flat indices (row * columns + column) on the arrays of the view to squares (x, y) of the map frame."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

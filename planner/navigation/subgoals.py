@@ -18,10 +18,10 @@ class Subgoal(NamedTuple):
     Attributes
     ----------
     kind : a SubgoalKind, or its value.
-    squares : flat indices on the screen, (n,); any of them will do.
+    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; any of them will do.
     what : the reason, in words.
     chance : percent of belief that it leads to what is looked for.
-    price : squares of way that it costs besides the way there.
+    price : squares of way that it costs besides the way there; negative for a bonus.
     """
 
     kind: str
@@ -34,18 +34,22 @@ class Subgoal(NamedTuple):
 def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int]) -> Subgoal | None:
     """Choose the subgoal to pursue, by planner/asp/aims.lp.
 
+    The facts for the encoding, each a string without a full stop, for each subgoal that can be reached, numbered from
+    0: `aim(number, kind, cost)` in tenths of squares, `chance(number, percent)`, and `last(number)` for one that
+    continues the last one.
+
     Parameters
     ----------
     subgoals : Sequence[Subgoal]
     cost_maps : CostMaps
     last : frozenset[int]
-        The squares (flat indices on this screen) of the subgoal chosen last time. A subgoal that shares one of them
-        continues it; others cost a switch.
+        The squares (flat indices on the arrays of this view) of the subgoal chosen last time; empty for none. A subgoal
+        that shares one of them continues it; others cost a switch.
 
     Returns
     -------
     Subgoal | None
-        None when no subgoal can be reached.
+        One of `subgoals`; None when no subgoal can be reached.
     """
     facts = []
     for number, subgoal in enumerate(subgoals):

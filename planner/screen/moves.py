@@ -32,25 +32,33 @@ UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no wh
 
 
 def orientation_is_uncertain(model: WorldModel) -> bool:
-    """Return whether the orientation of the map frame is still uncertain by more than ORIENTATION_TOLERANCE.
+    """Return whether the angle of the map frame may likely be wrong by more than ORIENTATION_TOLERANCE (5 degrees).
 
-    Orientations that are unlikely by all sampled completions of the map do not count.
+    The angle is that between the map frame and the robot frame. Angles that are unlikely by all sampled completions of
+    the map do not count: this is the weaker doubt, `model.likely_spread`, while `orientation_is_settled` asks for all
+    doubt.
     """
     return model.likely_spread > ORIENTATION_TOLERANCE
 
 
 def orientation_is_settled(model: WorldModel) -> bool:
-    """Return whether the orientation of the map frame is known within ORIENTATION_TOLERANCE beyond doubt."""
+    """Return whether the angle of the map frame is known within ORIENTATION_TOLERANCE (5 degrees) beyond doubt.
+
+    The angle is that between the map frame and the robot frame; unlikely angles count, too (`model.spread`).
+    """
     return model.spread <= ORIENTATION_TOLERANCE
 
 
 class Pace(NamedTuple):
     """Limits on one straight move.
 
+    The length of a move is the greater of its rows and its columns, in squares.
+
     Attributes
     ----------
-    longest_by_kind : the greatest length by the kind of the subgoal, in squares along rows or columns.
-    longest_uncertain : the greatest length while the orientation is uncertain, and with it where a move leads.
+    longest_by_kind : the greatest length of a move in squares, by the kind of the subgoal (SubgoalKind).
+    longest_uncertain : the greatest length in squares while the orientation of the map frame is uncertain, and with it
+        where a move leads.
     bold : whether a move crosses squares that are only believed to be free, right up to what is not settled. A move
         that is stopped ends beside what stopped it, and that is mostly where the robot wants to be.
     """
@@ -60,7 +68,15 @@ class Pace(NamedTuple):
     bold: bool
 
     def most(self, kind: str, model: WorldModel) -> int:
-        """Return the greatest length of a move now, in squares along rows or columns. kind : of the subgoal."""
+        """Return the greatest length of a move now, in squares: the greater of its rows and its columns.
+
+        While the orientation of the map frame is uncertain, it is at most `longest_uncertain`.
+
+        Parameters
+        ----------
+        kind : of the subgoal, a SubgoalKind or its value; KeyError for any other text.
+        model : what is believed; only its doubt of orientation counts.
+        """
         return (
             min(self.longest_by_kind[kind], self.longest_uncertain)
             if orientation_is_uncertain(model)
@@ -68,7 +84,16 @@ class Pace(NamedTuple):
         )
 
     def passable(self, cost_maps: CostMaps, kind: str) -> Bools:
-        """Return the squares that a move may cross, (rows, columns). kind : of the subgoal."""
+        """Return the squares that a move at this pace may cross, (rows, columns) bool, on the arrays of the view.
+
+        The safe squares for a pace that is not bold. For a bold one those that are believed free, and for INSPECT also
+        those close to objects that are likely free.
+
+        Parameters
+        ----------
+        cost_maps : of the present world model.
+        kind : of the subgoal, a SubgoalKind or its value; all but INSPECT are treated alike.
+        """
         if not self.bold:
             return cost_maps.safe
         return cost_maps.approachable if kind == SubgoalKind.INSPECT else cost_maps.believed
@@ -96,24 +121,27 @@ def next_move(
 ) -> Move:
     """Choose the longest straight move along a path that stays on passable squares.
 
-    While the orientation is uncertain, the second half of a longer move keeps one more square clear around it, unless
-    the pace is bold.
+    It ends at a later square of the path; at the next one where no longer move is allowed, even if that one is not
+    passable. While the orientation is uncertain, the second half of a move of more than TIGHT_MOVE_LENGTH squares keeps
+    one more square clear around it, unless the pace is bold.
 
     Parameters
     ----------
     cost_maps : CostMaps
     path : Sequence[Square]
-        Edge-connected squares (column, row), at least two; the first is the robot's.
+        Edge-connected squares (column, row) on the arrays of the view, at least two; the first is the robot's.
     kind : str
-        The kind of the subgoal (SubgoalKind).
+        The kind of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square.
     about : XY | None
-        A point in the view frame, in squares. The move then passes it on the same side as the path.
+        A point (x, y) in the view frame, in squares. The move then passes it on the same side as the path. None for no
+        such condition.
     pace : Pace
+        How long moves may be, and which squares they may cross.
 
     Returns
     -------
     Move
-        The command, in the robot's own frame (east, north), in squares.
+        The command, in the robot's own frame (east, north), in squares, from where the robot is believed to stand.
     """
     here, longest = path[0], pace.most(kind, cost_maps.model)
     passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
@@ -136,63 +164,95 @@ def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = 
     ----------
     cost_maps : CostMaps
     kind : str
-        The kind of the subgoal (SubgoalKind).
+        The kind of the subgoal (SubgoalKind); it decides how long a move may be, and which squares it may cross.
     candidates : Bools | None
-        (rows, columns), the squares to test; None for all.
+        (rows, columns) bool on the arrays of the view, the squares to test; None for all.
 
     Returns
     -------
     Bools
-        (rows, columns).
+        (rows, columns) bool on the arrays of the view; False outside `candidates`.
     """
     longest = CARRYING_PACE.most(kind, cost_maps.model)
     return straight(CARRYING_PACE.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
 
 
 def _roomy(cost_maps: CostMaps) -> Bools | None:
-    """Return the safe squares with safe squares all around; None while the orientation is certain enough."""
+    """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view.
+
+    Returns None while the orientation is certain enough, so that no such room is asked for.
+    """
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
 
 def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
-    """Return whether a move is short, or its second half stays on `roomy` squares (None: all are)."""
+    """Return whether a straight move between two squares keeps enough room.
+
+    True when the move is no longer than TIGHT_MOVE_LENGTH squares (the greater of its rows and columns), or when a unit
+    square sweeps only `roomy` squares from halfway to its end.
+
+    Parameters
+    ----------
+    roomy : (rows, columns) bool on the arrays of the view; None when all squares are roomy.
+    here, there : the first and the last square (column, row).
+    """
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
     return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, _halfway(here, there), there)
 
 
 def _halfway(here: Square, there: Square) -> Square:
-    """Return the square halfway between two squares."""
+    """Return the square (column, row) halfway between two squares (column, row), rounded down."""
     return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
 
 
 def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> Move:
-    """Return the move from the robot's believed place to a square (column, row) of the view.
+    """Return the move from the robot's believed place to a square (column, row) of the view's arrays.
 
-    offset : the end of the move relative to the square's centre, (x, y) in squares.
+    The move is in the robot's own frame (east, north), in squares.
+
+    Parameters
+    ----------
+    model : what is believed; its `place` is where the move begins.
+    square : (column, row) on the arrays of the view.
+    offset : the end of the move relative to the square's centre, (x, y) in squares along the axes of the map frame.
     """
     x, y = model.view.west + square[0] + 0.5 + offset[0], model.view.south + square[1] + 0.5 + offset[1]
     return _straight_to((x, y), model)
 
 
 def move_by(model: WorldModel, dx: float, dy: float) -> Move:
-    """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame."""
+    """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame.
+
+    The move is a vector of the robot's own frame (east, north), in squares.
+    """
     return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
 
 
 def _straight_to(place: XY, model: WorldModel) -> Move:
-    """Return the move from the robot's believed place to a point of the map frame."""
+    """Return the move from the robot's believed place to a point of the map frame, (x, y) in squares.
+
+    The move is in the robot's own frame (east, north), in squares, rounded to COMMAND_DIGITS decimals. A robot believed
+    within rounding of a grid line is taken to stand on it.
+    """
     here = snap_to_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
     return Move(round(east, COMMAND_DIGITS) + 0.0, round(north, COMMAND_DIGITS) + 0.0)
 
 
 def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, float]:
-    """Choose how far from the centre of a square a move into it ends, (x, y) in squares.
+    """Choose how far from the centre of a square a move into it ends, (x, y) in squares, map frame.
 
     While the orientation is uncertain, a move whose end some whole-degree turn would put on a grid line ends a little
     off the centre. On a grid line it would be chance in which square the robot sees itself, which no hypothesis could
     explain. Later a move ends, where that costs nothing, near the edge of its square: if the origin lies elsewhere
-    within its square than believed, the robot sees itself in the next square then.
+    within its square than believed, the robot sees itself in the next square then. In all other cases (0.0, 0.0), the
+    centre.
+
+    Parameters
+    ----------
+    cost_maps : of the present world model.
+    square : the last square (column, row) on the arrays of the view.
+    kind : of the subgoal; only OFF_CENTRE_KINDS may end near the edge.
     """
     model = cost_maps.model
     if orientation_is_uncertain(model):
@@ -210,7 +270,15 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
 
 
 def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
-    """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line."""
+    """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line.
+
+    The turn is about where the robot stands, by 0 to 89 degrees; grid lines are the borders of squares.
+
+    Parameters
+    ----------
+    model : what is believed; the move begins at its `place`.
+    square : (column, row) on the arrays of the view.
+    """
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
     return bool((np.abs(ends % 1.0 - 0.5) > 0.5 - GRID_LINE_TOLERANCE).any())
@@ -222,14 +290,15 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
     Parameters
     ----------
     command : Command | None
+        In the robot's own frame, from where the robot is believed to stand.
     place : XY
-        A point of the map frame, in squares.
+        A point (x, y) of the map frame, in squares.
     model : WorldModel
 
     Returns
     -------
     Command | None
-        The changed move; any other command, and None, unchanged.
+        The changed move; any other command, a move into another square, and None are returned unchanged.
     """
     if not isinstance(command, Move):
         return command
@@ -240,5 +309,12 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
 
 
 def _same_side(part: Sequence[Square], about: XY | None) -> bool:
-    """Return whether a straight line may replace part of a path without passing `about` on its other side."""
+    """Return whether a straight line may replace part of a path without passing `about` on its other side.
+
+    Parameters
+    ----------
+    part : squares (column, row) on the arrays of the view; the line goes from the centre of the first to that of the
+        last.
+    about : a point (x, y) in the view frame, in squares; None for no such condition: then True.
+    """
     return about is None or crossing_number(np.array([*part, part[0]]) + 0.5, about) == 0

@@ -42,8 +42,8 @@ class Reached(NamedTuple):
 
     Attributes
     ----------
-    level : the certainty level of the way, 0 the surest.
-    cost : its length in squares, plus LEVEL_COST for each level.
+    level : the certainty level of the way: 0 the surest, UNSEEN_LEVEL the least sure.
+    cost : its length in squares, plus LEVEL_COST squares for each level.
     """
 
     level: int
@@ -53,21 +53,30 @@ class Reached(NamedTuple):
 class CostMaps:
     """One world model, projected on the screen at every certainty level.
 
-    All arrays are (rows, columns), as those of the model's view.
+    All arrays are (rows, columns), as those of the model's view: row 0 in the south, column 0 in the west of the map
+    frame; a flat index is row * columns + column.
 
     Parameters
     ----------
     model : WorldModel
     carried : Bools | None
-        (rows, columns), the squares of an object that moves along with the robot and so is not in its way.
+        (rows, columns) bool, the squares of an object that moves along with the robot and so is not in its way; None
+        for no such object.
 
     Attributes
     ----------
     model : the world model.
-    here : the square (column, row) of the robot.
+    here : the square (column, row) of the robot, on the arrays of the view.
     """
 
     def __init__(self, model: WorldModel, carried: Bools | None = None) -> None:
+        """Make the cost maps of a world model; each map is computed when it is first asked for.
+
+        Parameters
+        ----------
+        model : what is believed.
+        carried : (rows, columns) bool on the arrays of the view, squares that count as free; None for none.
+        """
         self.model = model
         self._carried = carried
         row, column = model.view.locate(*model.place)
@@ -75,9 +84,14 @@ class CostMaps:
         self._barred = model.squares(model.barred)
 
     def free(self, level: int) -> Bools:
-        """Compute the squares that may be crossed at a certainty level, (rows, columns).
+        """Compute the squares that may be crossed at a certainty level, (rows, columns) bool: a new array at each call.
 
-        The robot's own square is always one of them.
+        The robot's own square is always one of them; squares that stopped a motion never are, unless they are carried.
+
+        Parameters
+        ----------
+        level : 0 (surely floor) to UNSEEN_LEVEL (all that is not excluded, never seen squares too); each level holds
+            more.
         """
         view = self.model.view
         mask = view.probability <= LEVEL_MAX_PROBABILITY[min(level, len(LEVEL_MAX_PROBABILITY) - 1)]
@@ -93,13 +107,23 @@ class CostMaps:
 
     @cached_property
     def distances(self) -> "DistanceMaps":
-        """The distance of every square from the robot, by certainty level (UNSEEN_LEVEL included)."""
+        """The distance of every square from the robot, by certainty level (UNSEEN_LEVEL included).
+
+        `distances[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
+        """
         return DistanceMaps(self)
 
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
 
-        Returns None when none can be reached at any level.
+        Parameters
+        ----------
+        squares : flat indices (row * columns + column) on the arrays of the view.
+
+        Returns
+        -------
+        Reached or None
+            The level and the cost in squares; None when none can be reached at any level, or there are no squares.
         """
         for level in range(UNSEEN_LEVEL + 1):
             far = self.distances[level].ravel()[squares]
@@ -111,20 +135,21 @@ class CostMaps:
 
     @cached_property
     def floor(self) -> Bools:
-        """The squares that can surely be reached: those with a way at certainty level 0."""
+        """The squares that can surely be reached: those with a way at certainty level 0, (rows, columns) bool."""
         mask: Bools = self.distances[0] != GEODESIC_UNREACHED
         return mask
 
     @cached_property
     def looked_from(self) -> Bools:
-        """The squares on which an impression was received."""
+        """The squares on which an impression was received, (rows, columns) bool."""
         return self.model.squares(self.model.looked_from)
 
     @cached_property
     def safe(self) -> Bools:
-        """The squares over which a move is made without looking first.
+        """The squares over which a move is made without looking first, (rows, columns) bool.
 
-        They are settled as free; or taken for floor, and neither beside a doubtful square nor beside an unseen one.
+        They are settled as free; or taken for floor, and neither beside a doubtful square nor beside an unseen one. The
+        robot's own square is always one of them; squares that stopped a motion are not.
         """
         view = self.model.view
         doubtful_squares = view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY)
@@ -136,17 +161,19 @@ class CostMaps:
 
     @cached_property
     def believed(self) -> Bools:
-        """The squares of bold moves: the safe ones, and all that are hardly occupied and not beside unseen squares.
+        """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied.
 
-        For the case that being stopped costs less than looking first.
+        The latter are free at level 0 and not beside unseen squares. For the case that being stopped costs less than
+        looking first.
         """
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
 
     @cached_property
     def approachable(self) -> Bools:
-        """The squares of bold moves up to an object: also those beside objects that are free at APPROACH_LEVEL.
+        """The squares of bold moves up to an object, (rows, columns) bool.
 
+        These are the squares of `believed`, and those that share an edge with an object and are free at APPROACH_LEVEL.
         Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
         """
         view = self.model.view
@@ -155,13 +182,20 @@ class CostMaps:
 
     @cached_property
     def information_gain(self) -> Floats:
-        """(rows, columns): the weighted number of unseen squares that come into sight from each square."""
+        """The weighted number of unseen squares that come into sight from each square, (rows, columns) float64.
+
+        The unit is one unseen square into which the floor likely goes on (planner.screen.unseen_gain).
+        """
         return expected_gain(self.model.view)
 
     def far(self, squares: SquareIndices) -> Floats:
-        """Compute the length of the sure way to each of `squares`, in squares, (n,) float64.
+        """Compute the length of the sure way from the robot to each of `squares`, in squares, (n,) float64.
 
-        Where no way is sure, the straight distance stands instead.
+        Where no way is sure, the straight distance between the centres of the two squares stands instead.
+
+        Parameters
+        ----------
+        squares : (n,) flat indices (row * columns + column) on the arrays of the view.
         """
         lengths = self.distances[0].ravel()[squares] / FIFTHS_PER_SQUARE
         rows, columns = np.divmod(squares, self.floor.shape[1])
@@ -175,10 +209,15 @@ class DistanceMaps:
     """
 
     def __init__(self, cost_maps: CostMaps) -> None:
+        """Make the distance maps of some cost maps; nothing is computed yet."""
         self._cost_maps = cost_maps
         self._known: dict[int, NDArray[np.int32]] = {}
 
     def __getitem__(self, level: int) -> NDArray[np.int32]:
+        """Return the distances of all squares from the robot at a certainty level, 0 to UNSEEN_LEVEL.
+
+        (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
+        """
         if level not in self._known:
             self._known[level] = reach(self._cost_maps.free(level), *self._cost_maps.here)
         return self._known[level]
@@ -187,6 +226,8 @@ class DistanceMaps:
 def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     """Compute the cost of the way to each object's vicinity, by the object's name.
 
+    The vicinity are the squares of the object and all squares around it.
+
     Parameters
     ----------
     cost_maps : CostMaps
@@ -194,7 +235,7 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     Returns
     -------
     dict[str, float]
-        Squares of way, plus LEVEL_COST for each certainty level. Objects that cannot be reached are left out.
+        Squares of way, plus LEVEL_COST squares for each certainty level. Objects that cannot be reached are left out.
     """
     found = {}
     for node in cost_maps.model.objects:
@@ -205,7 +246,10 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
 
 
 def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
-    """List the squares of a patch and all squares around it that lie within the view."""
+    """List the squares of a patch and all squares around it (eight neighbours) that lie within the view.
+
+    Returns flat indices (row * columns + column) on the arrays of the view, (n,), in no stated order.
+    """
     rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))
     rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west
     high, wide = model.labels.shape
@@ -215,21 +259,37 @@ def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
 
 
 def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
-    """Return the mask of `shape` (rows, columns) that is True on the given flat indices only."""
+    """Return the (rows, columns) bool mask of `shape` that is True on the given flat indices only.
+
+    Parameters
+    ----------
+    squares : (n,) flat indices, row * columns + column; IndexError for one outside the mask.
+    shape : (rows, columns) of the mask.
+    """
     mask: Bools = np.zeros(shape, np.bool_)
     mask.flat[squares] = True
     return mask
 
 
 def shift_mask(mask: Bools, columns: int, rows: int) -> Bools:
-    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False."""
+    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False.
+
+    Positive numbers move it towards greater indices: 1 column to the east, 1 row to the north. The result is a new
+    array of the shape of `mask`, (rows, columns) bool.
+    """
     high, wide = mask.shape
     padded = np.pad(mask, 1)
     return padded[1 - rows : 1 - rows + high, 1 - columns : 1 - columns + wide]
 
 
 def dilate(mask: Bools, squares: int) -> Bools:
-    """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one."""
+    """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool; it is not changed.
+    squares : how far to dilate, in squares; with 0 `mask` itself is returned.
+    """
     for axis in (0, 1):
         done = 0
         while done < squares:

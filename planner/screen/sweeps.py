@@ -26,12 +26,14 @@ def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
     Parameters
     ----------
     columns, rows : int
-        The move, in squares; either may be negative.
+        The move, in squares, positive towards greater indices; either may be negative.
 
     Returns
     -------
     tuple[Longs, Longs]
-        The columns and the rows of the squares whose interior is met, (n,) each, relative to the start.
+        The columns and the rows of the squares whose interior is met, (n,) int64 each, relative to the square of the
+        start; the squares of the start and of the end are among them. Both are shared with later calls: do not change
+        them.
     """
     c, r = np.meshgrid(
         np.arange(min(0, columns), max(0, columns) + 1), np.arange(min(0, rows), max(0, rows) + 1), indexing="xy"
@@ -48,7 +50,7 @@ def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
 def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
     """Return whether a unit square that moves from square `a` to square `b` sweeps free squares only.
 
-    free : (rows, columns). a, b : (column, row) in the array.
+    free : (rows, columns) bool, True where free. a, b : (column, row) in that array, both inside it.
     """
     columns, rows = swept_offsets(b[0] - a[0], b[1] - a[1])
     return bool(free[rows + a[1], columns + a[0]].all())
@@ -57,8 +59,10 @@ def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
 def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
     """Return whether a unit square sweeps free squares only while its centre moves from point `a` to point `b`.
 
-    free : (rows, columns); squares outside of the array count as not free.
-    a, b : (x, y) in squares, in the frame of the array, anywhere within squares.
+    free : (rows, columns) bool, True where free; squares outside of the array count as not free.
+
+    a, b : (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer corner of square [0, 0]),
+        anywhere within squares.
     """
     reach = [np.arange(math.floor(min(p, q) - 0.5), math.ceil(max(p, q) + 0.5)) for p, q in zip(a, b, strict=True)]
     columns, rows = np.meshgrid(*reach, indexing="xy")
@@ -84,14 +88,15 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
     Parameters
     ----------
     free : Bools
-        (rows, columns).
+        (rows, columns) bool, True where free.
     points : Sequence[Sequence[float]]
-        The polyline: points (x, y) in squares, in the frame of the array. Its ends lie within free squares.
+        The polyline: points (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer corner
+        of square [0, 0]). Its ends lie within free squares.
 
     Returns
     -------
     list[Square]
-        Squares (column, row), from the square of the first point to the square of the last point.
+        Squares (column, row), from the square of the first point to the square of the last point, both included.
 
     Raises
     ------
@@ -110,7 +115,10 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
 
 
 def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
-    """Search the shortest edge-connected path within `squares`, breadth first; ValueError when there is none."""
+    """Search the shortest edge-connected path within `squares`, breadth first.
+
+    Returns its squares (column, row) from `start` to `goal`, both included; raises ValueError when there is none.
+    """
     before = {start: start}
     queue = deque([start])
     while queue and goal not in before:
@@ -128,7 +136,10 @@ def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Sq
 
 
 def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
-    """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only."""
+    """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only.
+
+    a, b : points (x, y) in squares; the square (column, row) reaches from x = column to column + 1, and y likewise.
+    """
     cuts = {0.0, 1.0}
     for p, q in zip(a, b, strict=True):
         if p != q:
@@ -140,6 +151,9 @@ def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
 
 
 def _touched_by(x: float, y: float) -> list[Square]:
-    """List the square that holds a point, or all squares on whose shared edge or corner it lies."""
+    """List the square (column, row) that holds a point (x, y), or all squares on whose shared edge or corner it lies.
+
+    The point is in squares; it lies on an edge within SWEEP_TOLERANCE. One, two or four squares.
+    """
     columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

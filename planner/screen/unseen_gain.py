@@ -24,7 +24,9 @@ BESIDE_FLOOR, BESIDE_WALL, BESIDE_NOTHING = 0, 1, 2  # labels of squares by what
 def expected_gain(view: MapView) -> Floats:
     """Compute the expected information gain of looking from each square, (rows, columns) float64.
 
-    The unit is one unseen square that the floor likely goes on into; others count less.
+    It is the weighted number of unseen squares within GAIN_REACH rows and columns, those beyond the arrays of the view
+    included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT. Axes as those
+    of the view's arrays.
     """
     seen = np.pad(view.seen, GAIN_REACH)
     labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), GAIN_REACH)
@@ -34,10 +36,16 @@ def expected_gain(view: MapView) -> Floats:
 
 
 def window_sums(padded: Floats, reach: int) -> Floats:
-    """Compute for each square the sum of the values within `reach` rows and columns of it.
+    """Compute for each square the sum of the values within `reach` rows and columns of it, itself included.
 
+    Parameters
+    ----------
     padded : (rows + 2 reach, columns + 2 reach), the values with a margin of `reach` on each side.
-    Returns (rows, columns).
+    reach : in squares.
+
+    Returns
+    -------
+    (rows, columns) float64, in the unit of the values; [0, 0] belongs to padded[reach, reach].
     """
     table = np.pad(padded, 1).cumsum(0).cumsum(1)[:-1, :-1]
     side = 2 * reach + 1
@@ -46,7 +54,16 @@ def window_sums(padded: Floats, reach: int) -> Floats:
 
 
 def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
-    """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares, (rows, columns)."""
+    """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares.
+
+    (rows, columns) int8, a new array. A step leads to a square that shares an edge. Seen squares keep their label;
+    unseen squares further away get BESIDE_NOTHING.
+
+    Parameters
+    ----------
+    labels : (rows, columns), BESIDE_FLOOR or BESIDE_WALL; read where `seen` only.
+    seen : (rows, columns) bool.
+    """
     near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
     for _ in range(GAIN_REACH):
         least = near.copy()

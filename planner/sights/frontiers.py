@@ -40,9 +40,12 @@ FRONTIER_REASON = "the floor goes on unseen"
 class Viewpoint(NamedTuple):
     """A set of squares from each of which the same unknown thing is seen or felt.
 
+    They are the squares where the robot would stand, not those that it would look at.
+
     Attributes
     ----------
-    squares : flat indices on the screen, (n,).
+    squares : flat indices (row * columns + column) on the arrays of the view, (n,) int64; empty when there is no such
+        square.
     what : what is not known, in words.
     chance : percent of belief that it is what is looked for; 100 when nothing tells that it is less.
     """
@@ -64,15 +67,20 @@ def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     Returns
     -------
     list[Viewpoint]
+        Its squares are the squares of the frontier itself; empty when there is none.
     """
     border = unlooked_floor(cost_maps, apart) & dilate(~cost_maps.model.view.seen, 1)
     return [Viewpoint(squares, FRONTIER_REASON) for squares in group_by_label(_stretches(border))]
 
 
 def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
-    """Find likely gaps in what bounds the floor, through which it would go on unseen: the squares of each gap.
+    """Find likely gaps in what bounds the floor, through which it would go on unseen.
 
     A stretch next to floor that surely goes on unseen is left out: it belongs to a frontier.
+
+    Returns one Viewpoint for each gap; [] for none. Its squares (flat indices on the arrays of the view) are the
+    squares of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot would see
+    beyond.
     """
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)
@@ -96,7 +104,8 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
     Returns
     -------
     list[Viewpoint]
-        One for each connected stretch of such squares.
+        One for each connected stretch of such squares that has such floor: its squares are reachable floor within
+        FOVEA_RANGE of the stretch.
     """
     view = cost_maps.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & dilate(cost_maps.floor, 1)
@@ -107,15 +116,20 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
 
 
 def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
-    """Return the floor beside an object from which the robot feels its colour and did not look yet."""
+    """Return the floor beside an object from which the robot feels its colour and did not look yet.
+
+    Floor of the eight neighbours counts. A Viewpoint without squares when there is none.
+    """
     beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
 
 
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
-    """Return the floor from which the robot feels whether something is part of a wall.
+    """Return the floor from which the robot feels whether something is part of a wall, and where it did not look yet.
 
-    mask : (rows, columns), its squares.
+    A Viewpoint without squares when there is none. Only floor that shares an edge with the thing counts.
+
+    mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
     """
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
@@ -128,14 +142,15 @@ def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     ----------
     cost_maps : CostMaps
     mask : Bools
-        (rows, columns), the squares to see.
+        (rows, columns) bool on the arrays of the view, the squares to see.
     what : str
         What is not known of them, in words.
 
     Returns
     -------
     Viewpoint
-        Within the range of the fovea, or else of the middle zone; without squares when all of that was looked from.
+        Reachable floor within the range of the fovea of any of them, or else of the middle zone; without squares when
+        all of that was looked from.
     """
     for reach, apart in ((FOVEA_RANGE, VIEW_SPACING), (FOVEA_RANGE, 0), (MIDDLE_ZONE_RANGE, VIEW_SPACING)):
         near = np.flatnonzero(unlooked_floor(cost_maps, apart) & dilate(mask, reach))
@@ -147,16 +162,19 @@ def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
 def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
     """Return the floor from which all squares around a point lie within the fovea, whether looked from or not.
 
-    x, y : the point, in squares, map frame. Returns flat indices, (n,).
+    x, y : the point, in squares, map frame. Returns flat indices (row * columns + column) on the arrays of the view,
+        (n,), possibly none.
     """
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
 
 
 def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareIndices:
-    """Return the floor from which the robot sees what lies behind `squares`, as flat indices, (n,).
+    """Return the floor from which the robot sees what lies behind `squares`.
 
-    The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them.
+    The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them that is more than
+    VIEW_SPACING from every square looked from. Given and returned are flat indices (row * columns + column) on the
+    arrays of the view, (n,); possibly none is returned.
     """
     mask = indices_to_mask(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
@@ -165,6 +183,8 @@ def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareInd
 
 def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
     """Find the floor from which the unsettled walls beside each door are seen closely.
+
+    Returns at most one Viewpoint for each door, each with squares, in the order of the doors.
 
     doors : possible doors; those that are sure, or whose walls are settled or cannot be seen better, are left out.
     """
@@ -184,9 +204,10 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
 
 
 def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
-    """Find connected floor that is seen and cannot be reached yet.
+    """Find connected floor that is seen and cannot be reached yet: one Viewpoint for each such part.
 
-    All floor is connected, so a passage that is not seen yet must lead there.
+    Its squares are those of the part itself. All floor is connected, so a passage that is not seen yet must lead there.
+    Parts of less than MIN_UNREACHED_SQUARES squares are left out.
     """
     apart = components(cost_maps.model.space & ~cost_maps.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
@@ -194,7 +215,11 @@ def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
 
 
 def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewpoint]:
-    """Return the viewpoints with their chance that a wanted object comes into sight at their nearest square."""
+    """Return the viewpoints, in order, with their chance that a wanted object comes into sight at their nearest square.
+
+    The chance is in percent, 1 to 90. The nearest square is that of the shortest way for the robot; the first one when
+    none can be reached.
+    """
     if not viewpoints:
         return []
     gain = cost_maps.information_gain.ravel()
@@ -210,14 +235,15 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
     ----------
     cost_maps : CostMaps
     reachable : Bools
-        (rows, columns), the squares that one move reaches.
+        (rows, columns) bool on the arrays of the view, the squares that one move reaches.
     move_cost, square_cost : float
         The cost of a move, and of each square of its way, in the same unit.
 
     Returns
     -------
     list[Viewpoint]
-        One, or none when nothing unseen comes into sight.
+        One, of all squares that are worth at least EQUAL_VALUE_SHARE of the best; [] when nothing unseen comes into
+        sight from a square where the robot did not look yet.
     """
     candidates = np.flatnonzero(reachable & unlooked_floor(cost_maps, VIEW_SPACING))
     gain = cost_maps.information_gain.ravel()[candidates]
@@ -231,12 +257,18 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
 
 
 def _chance(gain: float) -> int:
-    """Estimate the chance that a wanted object is among `gain` unseen squares, in percent, 1 to 90."""
+    """Estimate the chance that a wanted object is among `gain` unseen squares, in percent, 1 to 90.
+
+    gain : the weighted number of unseen squares (see planner.screen.unseen_gain).
+    """
     return max(1, min(90, round(100 * gain / SQUARES_PER_OBJECT)))
 
 
 def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
-    """Return that of `squares` with the shortest way, at the surest level at which any is reached."""
+    """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached.
+
+    A flat index on the arrays of the view, as those given (at least one); the first of them when none is reached.
+    """
     reached = cost_maps.nearest(squares)
     if reached is None:
         return int(squares[0])
@@ -245,23 +277,31 @@ def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
 
 
 def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:
-    """Return the reachable floor from which the robot did not look yet, (rows, columns).
+    """Return the reachable floor from which the robot did not look yet, (rows, columns) bool.
 
     A second look from the same square shows nothing new.
-    apart : floor within so many rows and columns of an earlier viewpoint is left out.
+
+    apart : floor within so many rows and columns of an earlier viewpoint, a square looked from, is left out; 0 for that
+        square only.
     """
     mask: Bools = cost_maps.floor & ~dilate(cost_maps.looked_from, apart)
     return mask
 
 
 def _stretches(mask: Bools) -> Labels:
-    """Label the connected stretches of a mask, 0 outside it; squares that meet at a corner are connected."""
+    """Label the connected stretches of a mask, (rows, columns) int32: 1 and up, 0 outside the mask.
+
+    Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
+    """
     labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
     return labels
 
 
 def group_by_label(labels: Labels) -> list[SquareIndices]:
-    """Group the flat indices of a (rows, columns) array by label, in ascending order; label 0 is left out."""
+    """Group the flat indices of a (rows, columns) array by label, in ascending order of labels, without label 0.
+
+    Returns one array of flat indices (row * columns + column) for each label that occurs, each ascending and not empty.
+    """
     flat = labels.ravel()
     squares = np.flatnonzero(flat)
     ordered = squares[np.argsort(flat[squares], kind="stable")]
@@ -270,7 +310,11 @@ def group_by_label(labels: Labels) -> list[SquareIndices]:
 
 
 def _grown_labels(labels: Labels, squares: int) -> Labels:
-    """Grow labels by `squares` rows and columns; where two labels meet the greater one wins."""
+    """Grow labels by `squares` rows and columns; where two labels meet the greater one wins.
+
+    (rows, columns) labels, 0 for none; returns a new array of the same shape, in which only zeros and lesser labels
+    change.
+    """
     for _ in range(squares):
         for axis in (0, 1):
             padded = np.pad(labels, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])

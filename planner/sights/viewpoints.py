@@ -41,8 +41,8 @@ class Approach(NamedTuple):
     Attributes
     ----------
     take : whether to take it; else to be beside it is all that is wanted.
-    corner : the direction (east, north), each 1 or -1, of the corner of walls to which the object shall be brought, if
-        any. On the sides towards these walls the robot would stand in the way.
+    corner : the direction (x, y), each 1 or -1, along the axes of the map, of the corner of walls to which the object
+        shall be brought; None for no corner. On the sides towards these walls the robot would stand in the way.
     """
 
     take: bool
@@ -55,11 +55,13 @@ TO_REACH, TO_TAKE = Approach(take=False), Approach(take=True)
 def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[SquareIndices, Viewpoint]]:
     """Find the viewpoints for the places that may hold a wanted object which is not settled.
 
+    A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY.
+
     Parameters
     ----------
     cost_maps : CostMaps
     likely : Floats
-        (rows, columns), the probability that a square belongs to a wanted object.
+        (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted object.
     what : str
         What is not known there, in words.
     to : Approach
@@ -68,7 +70,9 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
     Returns
     -------
     list[tuple[SquareIndices, Viewpoint]]
-        For each place its squares (flat indices) and the floor to look from.
+        For each place its squares (flat indices on the arrays of the view), and the floor to look from, with the
+        greatest probability in the place as chance, in percent. Places that are settled, or have no such floor, are
+        left out.
     """
     view = cost_maps.model.view
     spots = group_by_label(components(likely >= MIN_SIGHTING_PROBABILITY).labels)
@@ -93,13 +97,14 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
     node : Node
         The object.
     chance : float
-        The probability that it is the wanted one.
+        The probability, 0 to 1, that it is the wanted one.
     to : Approach
         What the robot wants there.
 
     Returns
     -------
     Viewpoint
+        Its own chance is 100 percent whatever `chance` is; without squares when the robot looked from everywhere.
     """
     squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
     return Viewpoint(squares, f"it is not clear what {node.name} is")
@@ -108,23 +113,24 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
 def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> SquareIndices:
     """Choose the floor from which something is seen better than it was.
 
-    At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked
-    at from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
+    At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked at
+    from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
 
     Parameters
     ----------
     cost_maps : CostMaps
     mask : Bools
-        (rows, columns), the squares that it may cover.
+        (rows, columns) bool on the arrays of the view, the squares that it may cover.
     chance : float
-        The probability that it is the wanted one.
+        The probability, 0 to 1, that it is the wanted one.
     to : Approach
         What the robot wants there.
 
     Returns
     -------
     SquareIndices
-        Flat indices; empty when the robot looked from everywhere.
+        Flat indices (row * columns + column) on the arrays of the view, (n,), of squares where the robot would stand;
+        empty when it looked from everywhere.
     """
     beside = dilate(mask, 1)
     near = (
@@ -149,10 +155,16 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
 
 
 def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareIndices:
-    """List the squares beside an object from which it may be taken.
+    """List the squares beside an object from which it may be taken: flat indices on the arrays of the view, (n,).
 
     The sides of the squares that surely belong to it come first, else the sides of all that may belong to it. Of these
-    only those count that one move reaches, if there are any.
+    only those count that one move reaches, if there are any, else those with reachable floor; empty when there is none.
+
+    Parameters
+    ----------
+    cost_maps : of the present world model.
+    mask : (rows, columns) bool, the squares that the object may cover.
+    to : the purpose; with a corner, the sides towards its walls are avoided.
     """
     surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     sides = _sides_out_of_the_way(cost_maps, surely, to)
@@ -167,7 +179,10 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareInd
 def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> Bools:
     """Return the sides of an object, without those where the robot would be in its way, if others have floor.
 
-    surely : (rows, columns), the squares of the object.
+    (rows, columns) bool: the squares of the object and those that share an edge with one, whether floor or not. Without
+    a corner in `to`, all of these.
+
+    surely : (rows, columns) bool, the squares of the object.
     """
     sides = with_edge_neighbours(surely)
     if to.corner is None:
@@ -182,7 +197,17 @@ def _most_revealing(
 ) -> SquareIndices:
     """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there.
 
-    chance : the probability that it is the wanted one. With it, a robot that is not beside it must set out once more.
+    Returns flat indices, a part of `near`: all that are worth at least EQUAL_VALUE_SHARE of the best; `near` itself
+    when it has less than two squares or nothing is unsettled.
+
+    Parameters
+    ----------
+    cost_maps : of the present world model.
+    near : (n,) flat indices on the arrays of the view, the squares to choose from.
+    mask : (rows, columns) bool, the squares that the thing may cover.
+    chance : the probability, 0 to 1, that it is the wanted one. With it, a robot that is not beside it must set out
+        once more.
+    to : whether the robot wants to take it.
     """
     beside = dilate(mask, 1)
     open_ = beside & ~cost_maps.model.told

@@ -19,13 +19,14 @@ class FailedGrasps:
         self._retries: dict[str, int] = {}
 
     def __bool__(self) -> bool:
-        """Return whether any grasp is remembered."""
+        """Return whether any failed grasp of any object is remembered."""
         return any(self._failed.values())
 
     def record(self, node: Node | None, model: WorldModel) -> None:
-        """Record that a grasp of an object from the robot's present square failed; nothing for an unknown outline.
+        """Record that a grasp of an object from the robot's present square failed.
 
-        Both the present place and the middle of the square are recorded, for plans grasp from the middle.
+        Nothing is recorded for None, and for an object of unknown outline. Both the present place and the middle of the
+        square are recorded, for plans grasp from the middle.
         """
         if node is None or node.polygon is None:
             return
@@ -35,14 +36,17 @@ class FailedGrasps:
         self._failed[node.name] = (*self._failed.get(node.name, ()), *_rotated(grasps, -node.turned))
 
     def grasps(self, node: Node) -> tuple[XY, ...]:
-        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares."""
+        """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
+
+        Along the axes of the map, in the order of recording; () for none. The middle is the centroid of the outline.
+        """
         return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
     def forgive(self, node: Node) -> bool:
         """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
 
         A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
-        nothing is forgotten.
+        nothing is forgotten, and False is returned.
         """
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:
@@ -53,5 +57,8 @@ class FailedGrasps:
 
 
 def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
-    """Return grasps, (n, 2) from the object's middle, after the object is turned by degrees, counter-clockwise."""
+    """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
+
+    grasps : (n, 2), (x, y) from the object's middle, in squares.
+    """
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))

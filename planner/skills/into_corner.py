@@ -35,14 +35,24 @@ class IntoCorner:
     def is_pressing(self, stage: Stage, situation: Situation) -> bool:
         """Return whether the robot pressed on from the square of a corner of a stage, and is still there.
 
-        Where walls lie askew, it may then stand in a square that they fill in part.
+        Where walls lie askew, it may then stand in a square that they fill in part. False for a stage without such a
+        goal.
         """
         asked = [situation.corners[side] for side in map(corner_side, stage.own) if side in situation.corners]
         squares = [_map_square(corner, situation) for corner in asked]
         return self._pressing in squares and _are_near(self._pressing, _square_at(situation.model.place))
 
     def next(self, stage: Stage, situation: Situation) -> Command | None:
-        """Return the next move into the corners of a stage, and remember it; None when it is as near as can be."""
+        """Return the next move into the corners of a stage, and remember it; None when it is as near as can be.
+
+        A Move in the robot's own frame, in squares. Also None while the orientation of the map frame is uncertain, and
+        for a stage that asks for no corner.
+
+        Parameters
+        ----------
+        stage : its goals of the robot itself may name corners.
+        situation : what is believed; the robot is in the corner's square, or presses on from there.
+        """
         model, here = situation.model, _square_at(situation.model.place)
         for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
             corner = situation.corners[side]
@@ -60,7 +70,14 @@ class IntoCorner:
         return None
 
     def _note_first(self, square: Square, dx: int, dy: int) -> bool:
-        """Note a move from a square, and return whether it is the first such move there."""
+        """Note a move from a square, and return whether it is the first such move there.
+
+        Parameters
+        ----------
+        square : (x, y) of the map frame.
+        dx, dy : the signs of the move along the axes of the map, each -1, 0 or 1; both 0 for the move to the halting
+            place.
+        """
         known = (square, dx, dy) in self._done
         self._done.add((square, dx, dy))
         return not known
@@ -71,8 +88,8 @@ def halting_place(corner: Corner, situation: Situation) -> XY:
 
     Parameters
     ----------
-    corner : in the view frame.
-    situation : what is believed.
+    corner : in squares, view frame.
+    situation : what is believed; its view tells where the view frame lies.
 
     Returns
     -------
@@ -86,12 +103,13 @@ def halting_place(corner: Corner, situation: Situation) -> XY:
 def halt_beside_walls(command: Command | None, stage: Stage, situation: Situation) -> Command | None:
     """Return a move that ends in the square of a stage's corner, changed to end right beside the walls.
 
-    All other commands are returned as they are, and so are moves that would then lead over squares that are not safe.
+    All other commands and None are returned as they are, and so are moves that would then lead over squares that are
+    not safe.
 
     Parameters
     ----------
-    command : the command that was decided.
-    stage : its goals of the robot itself may name a corner.
+    command : the command that was decided, in the robot's own frame.
+    stage : its goals of the robot itself may name a corner; the first one counts.
     situation : what is believed.
     """
     side = next((side for side in map(corner_side, stage.own) if side), "")
@@ -109,9 +127,11 @@ def halt_beside_walls(command: Command | None, stage: Stage, situation: Situatio
 def lies_straight(corner: Corner, situation: Situation) -> bool:
     """Return whether both walls of a corner lie along the grid, as far as their squares tell.
 
+    Only the STRAIGHT_LENGTH squares beside the corner along each wall are looked at.
+
     Parameters
     ----------
-    corner : in the view frame.
+    corner : in squares, view frame.
     situation : what is believed.
     """
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
@@ -124,27 +144,36 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
 
 
 def _square_at(place: XY) -> Square:
-    """Return the square (x, y) of the map frame in which a point lies."""
+    """Return the square (x, y) of the map frame in which a point (x, y) of it lies."""
     return math.floor(place[0]), math.floor(place[1])
 
 
 def _map_square(corner: Corner, situation: Situation) -> Square:
-    """Return the square (x, y) of the map frame that has a corner."""
+    """Return the square (x, y) of the map frame in which a corner of the floor lies: the one of floor.
+
+    corner : in squares, view frame. situation : its view tells where the view frame lies.
+    """
     return corner.square[0] + situation.model.view.west, corner.square[1] + situation.model.view.south
 
 
 def _are_near(one: Square | None, other: Square) -> bool:
-    """Return whether two squares are at most as far from each other as a press leads."""
+    """Return whether two squares are at most as far from each other as a press leads; False when `one` is None.
+
+    one, other : squares (x, y) of one frame.
+    """
     return one is not None and max(abs(one[0] - other[0]), abs(one[1] - other[1])) <= math.ceil(PRESS_LENGTH)
 
 
 def _wall_sides(corner: Corner) -> tuple[int, int]:
-    """Return on which sides of its square the walls of a corner are: 1 for the greater x or y, -1 for the lesser."""
+    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1."""
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
 def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
-    """Return whether the straight line from the robot to a point of the map frame stays on safe squares."""
+    """Return whether the straight line from the robot to a point of the map frame stays on safe squares.
+
+    place : (x, y) in squares; it lies on the arrays of the view.
+    """
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)
     return all(cost_maps.safe[row, column] for column, row in squares_met(here, there))

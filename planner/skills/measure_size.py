@@ -34,8 +34,11 @@ class SizeEstimator:
     def poses(self, node: Node) -> Iterator[At]:
         """Yield where to push an object by parts of a square, to measure it better; nothing when its size is known.
 
-        The best first. An object that was never moved is first pushed so far that it shows whether it moves at all.
-        Each call counts as one push.
+        The best first: At ends relative to where the object lies, in squares and degrees, along the axes of the map. An
+        object that was never moved is first pushed so far that it shows whether it moves at all. Each call counts as
+        one push; after MAX_SIZE_PUSHES nothing is yielded.
+
+        node : the object; its outline is known.
         """
         wanted = push_parts(node)
         if wanted is None or self._tries.get(node.name, 0) >= MAX_SIZE_PUSHES:
@@ -58,13 +61,13 @@ def push_parts(node: Node) -> tuple[float | None, float | None] | None:
 
     Parameters
     ----------
-    node : the object.
+    node : the object; its outline is known when its insets are.
 
     Returns
     -------
     tuple of (float or None), or None
-        Each from -0.5 to 0.5 squares, map frame; None for an axis along which the size is known. None alone when the
-        size is known, or cannot be measured.
+        (dx, dy), each from -0.5 to 0.5 squares along the axes of the map; None for an axis along which the size is
+        known. None alone when the size is known, or cannot be measured.
     """
     insets = node.insets
     if insets is None or node.inexact or node.dubious:
@@ -80,15 +83,20 @@ def push_parts(node: Node) -> tuple[float | None, float | None] | None:
 
 
 def least_outline(node: Node) -> Any:
-    """Return the smallest outline (shapely, map frame) that an object may have; None when that is empty.
+    """Return the smallest outline that an object may have; None when that is empty.
 
-    Its sides along the grid are moved in as far as impressions allow. node : the object.
+    A shapely Polygon, in squares, map frame. Its sides along the grid are moved in as far as impressions allow. Where
+    nothing tells how far, it is the believed outline.
     """
     return node.polygon if node.insets is None else inset_outline(node.polygon, node.short)
 
 
 def _turned_back(node: Node) -> Iterator[At]:
-    """Yield where an object lies along the grid as it did when it was first held, the nearest place first."""
+    """Yield where an object lies along the grid as it did when it was first held, the nearest place first.
+
+    At ends relative to where it lies, in squares and degrees, at most about TURN_BACK_RANGE squares away along each
+    axis.
+    """
     x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)
     for dx, dy in sorted(product(offsets, repeat=2), key=lambda step: math.hypot(*step)):
@@ -96,9 +104,11 @@ def _turned_back(node: Node) -> Iterator[At]:
 
 
 def _steps(part: float | None) -> list[float]:
-    """Return the pushes along one axis that shift a side by a part of a square, the shorter first.
+    """Return the pushes along one axis that shift a side by a part of a square, in squares, the shorter first.
 
     Where the side is there already, no impression told it from there: then they lead away.
+
+    part : from -0.5 to 0.5 squares; None when nothing is to be measured along the axis: then [0.0].
     """
     if part is None:
         return [0.0]
@@ -108,8 +118,13 @@ def _steps(part: float | None) -> list[float]:
 
 
 def _wanted_depth(insets: SubcellExtent, axis: int) -> float | None:
-    """Return how much of its last row, towards greater numbers, an object should cover to be measured; None for known.
+    """Return how much of its last row an object should cover to be measured, 0 to 1 squares; None when that is known.
 
+    The last row is that of the greatest numbers: the eastern column or the northern row.
+
+    Parameters
+    ----------
+    insets : how far in each side may lie, in squares, in the order west, east, south, north.
     axis : 0 for west and east, 2 for south and north.
     """
     (low, least), (most_low, most) = insets.least[axis : axis + 2], insets.most[axis : axis + 2]

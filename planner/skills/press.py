@@ -40,6 +40,13 @@ class Presser:
         """Return whether an object is being pressed for a goal, or was stopped by all its presses.
 
         Forgets the presses when the last one was not stopped, the object was lost, or the corner lies elsewhere now.
+        False when no press for this goal and object is remembered.
+
+        Parameters
+        ----------
+        goal : a goal about a corner.
+        node : the object; its outline is known.
+        situation : what is believed.
         """
         if self._of != (str(goal), node.name):
             return False
@@ -50,13 +57,24 @@ class Presser:
         return self._of is not None
 
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
-        """Note the presses of a held object that is believed to lie where a goal holds. land : of that goal."""
+        """Note the presses of a held object that is believed to lie where a goal holds.
+
+        `next` then returns them in order. Notes nothing when the placement asks for no press, or the object is not
+        held.
+
+        Parameters
+        ----------
+        goal : a goal about a corner.
+        node : the object.
+        land : where the goal holds; its presses are in squares along the axes of the map.
+        situation : what is believed.
+        """
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None
 
     def next(self, node: Node, model: WorldModel) -> Act | None:
-        """Return the next press and remember it; None when none is left."""
+        """Return the next press as a push that no plan asks for, and remember it; None when none is left."""
         if not self._left:
             return None
         push = self._left.pop(0)
@@ -66,13 +84,20 @@ class Presser:
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:
-    """Return the corner (x, y) that a goal is about, in squares, map frame."""
+    """Return the corner (x, y) that a goal is about, in squares, map frame. goal : about a corner; else KeyError."""
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
 
 
 def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
-    """Return whether a push of an object fell short. before : its middle before the push, map frame."""
+    """Return whether a push of an object fell short by more than STOPPED_SHORT squares.
+
+    Parameters
+    ----------
+    push : (dx, dy) in squares along the axes of the map.
+    before : the middle (x, y) of the object before the push, map frame.
+    node : the object now.
+    """
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
     length = math.hypot(push.dx, push.dy)
     return bool(moved @ (push.dx, push.dy) / length < length - STOPPED_SHORT)

@@ -30,13 +30,13 @@ def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> T
     Parameters
     ----------
     node : the held object.
-    squares : flat indices into the view's arrays.
+    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
     situation : what is believed.
 
     Returns
     -------
     Translate or None
-        In squares, map frame; None when no such push is free.
+        (dx, dy) in squares along the axes of the map, to the centre of a square; None when no such push is free.
     """
     pushes = _pushes_to(squares, situation)
     body = ContactBody(to_view_frame(node.polygon, situation), [situation.model.place_on_view])
@@ -52,14 +52,14 @@ def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situatio
     Parameters
     ----------
     node : the held object.
-    squares : flat indices into the view's arrays.
-    end : how far (x, y) the end lies from where the object is, in squares.
+    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
+    end : how far (x, y) the end lies from where the object is, in squares along the axes of the map.
     situation : what is believed.
 
     Returns
     -------
     Translate or None
-        In squares, map frame; None when no such pair is free.
+        (dx, dy) in squares along the axes of the map; None when no such pair is free.
     """
     x, y = situation.model.place_on_view
     pushes = _pushes_to(squares, situation)
@@ -84,7 +84,7 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
     Returns
     -------
     Translate or None
-        In squares, map frame; None when no such push is free.
+        (dx, dy) in squares along the axes of the map, each at most MAX_ESCAPE; None when no such push is free.
     """
     model = situation.model
     x, y = model.place_on_view
@@ -104,11 +104,13 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
 
 
 def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
-    """Return the free region near some squares, as an end for an object, frame of the view; None when nothing is free.
+    """Return the free region near some squares, as an end for an object; None when nothing is free there.
+
+    In squares, view frame. Near is within VIEWPOINT_RADIUS rows and columns.
 
     Parameters
     ----------
-    squares : flat indices into the view's arrays.
+    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
     situation : what is believed.
     """
     free = situation.cost_maps.free(0) & dilate(
@@ -118,9 +120,11 @@ def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
 
 
 def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
-    """Return the pushes (n, 2) that bring the robot to the middles of some squares, the shortest first.
+    """Return the pushes that bring the robot to the middles of some squares, the shortest first.
 
-    At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot.
+    (n, 2) float64, (dx, dy) in squares along the axes of the map. At most MAX_TRIED_PUSHES of them, spread over all
+    lengths; none longer than one move of an exploring robot, and none of at most MIN_PUSH squares. squares : flat
+    indices.
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
@@ -136,6 +140,9 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
 
 
 def _workspace(node: Node, situation: Situation) -> Workspace:
-    """Return what is surely free for an object and the robot that holds it."""
+    """Return what is surely free for an object and the robot that holds it, as a workspace in squares, view frame.
+
+    The object's own squares are free, the necks of forbidden doors are not.
+    """
     free = situation.cost_maps.free(0) & ~forbidden_necks(node, situation)
     return Workspace(free | situation.model.mask(node.patch))

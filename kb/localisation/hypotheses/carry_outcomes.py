@@ -37,12 +37,14 @@ class CarryOutcome(NamedTuple):
     ----------
     how : predicted; stuck (nothing moved); blocked (it ended early); slipped (it ended beside); smaller (as commanded,
         but the object does not fill its squares); larger (as commanded, but there is more of the object than was seen).
-    place : of Utak after it, map frame.
-    polygon : the outline of the object after it (shapely), map frame.
+    place : of Utak after it, (x, y) in squares, map frame; for an end on a grid line the side from which the
+        observation is made.
+    polygon : the outline of the object after it (shapely Polygon), map frame.
     degrees : by which the object was turned, counter-clockwise positive.
-    distance : of the outermost point of the object from where it was predicted, in squares.
-    contact_squares : the squares one of which blocked it; empty where what did is known.
-    insets : the sub-cell extent of the object, where another one is believed than before.
+    distance : of the outermost point of the object from where it was predicted, along its path, in squares.
+    contact_squares : the squares (column, row) of the map frame one of which blocked it; empty where what did is known.
+    insets : the sub-cell extent of the object (how far each side lies within the squares in which it was seen, as it
+        lay when first held), where another one is believed than before; else None.
     """
 
     how: str
@@ -55,24 +57,36 @@ class CarryOutcome(NamedTuple):
 
     @property
     def as_commanded(self) -> bool:
-        """Return whether the motion went as commanded."""
+        """Return whether the motion went as commanded: predicted, smaller or larger."""
         return self.how in ("predicted", "smaller", "larger")
 
     @property
     def stopped(self) -> bool:
-        """Return whether the motion ended early, or did not begin."""
+        """Return whether the motion ended early (blocked), or did not begin (stuck)."""
         return self.how in ("stuck", "blocked")
 
 
 def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOutcome:
-    """Return the outcome of the whole motion as commanded. place, polygon : before it, map frame."""
+    """Return the outcome of the whole motion as commanded, at a distance of 0 from the predicted one.
+
+    Parameters
+    ----------
+    place : of Utak before it, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : map frame.
+    """
     return _outcome("predicted", place, polygon, motion, 0.0)
 
 
 def blocked_by_known(place: Position, polygon: Any, motion: Motion, known: Obstacles) -> CarryOutcome | None:
     """Return the motion as far as its first contact with known obstacles; None when it meets none.
 
-    place, polygon : before the motion, map frame.
+    Parameters
+    ----------
+    place : of Utak before it, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : as commanded, map frame.
+    known : the obstacles, map frame; they stop Utak as well as the object.
     """
     fraction = known.first_contact(ContactBody(polygon, [place]), motion).fraction
     return partial_outcome(place, polygon, motion, fraction) if fraction < 1.0 else None
@@ -85,9 +99,15 @@ def partial_outcome(
     fraction: float,
     contact_squares: frozenset[Square] = frozenset(),
 ) -> CarryOutcome:
-    """Return the outcome of a motion that was blocked after a fraction of it, 0 to 1.
+    """Return the outcome of a motion that was blocked after a fraction of it.
 
-    place, polygon : before the motion, map frame. contact_squares : the open squares one of which blocked it.
+    Parameters
+    ----------
+    place : of Utak before it, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : as commanded, map frame.
+    fraction : of the motion before the contact, 0 to 1.
+    contact_squares : the open squares one of which blocked it, map frame; empty where what did is known.
     """
     distance = motion_length(place, polygon, motion) * (1.0 - fraction)
     outcome = _outcome("blocked", place, polygon, motion.part(fraction), distance)
@@ -95,9 +115,15 @@ def partial_outcome(
 
 
 def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, Any]:
-    """Return Utak's place and the outline of the object CONTACT_REACH squares further on the motion, map frame.
+    """Return Utak's place (x, y) and the outline of the object CONTACT_REACH (0.5) squares further on the motion.
 
-    An obstacle that blocked the motion at `place` is met there.
+    An obstacle that blocked the motion at `place` is met there. A shorter motion is carried out once as a whole.
+
+    Parameters
+    ----------
+    place : where Utak was blocked, in squares, map frame.
+    polygon : the outline of the object there, shapely Polygon, map frame.
+    motion : as commanded, map frame; the outermost point of the object goes that far.
     """
     length = motion_length(place, polygon, motion)
     outcome = _outcome(
@@ -109,7 +135,14 @@ def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, An
 def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[CarryOutcome]:
     """Yield all outcomes but the commanded one, the likeliest of each kind first: stuck, blocked, slipped.
 
-    place, polygon : before the motion, map frame.
+    Blocked ones come at steps of at most 0.25 squares, the furthest first; slipped ones the nearest to the commanded
+    end first.
+
+    Parameters
+    ----------
+    place : of Utak before the motion, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : as commanded, map frame.
     """
     length = motion_length(place, polygon, motion)
     yield CarryOutcome("stuck", place, polygon, 0.0, length)
@@ -128,7 +161,11 @@ def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[Ca
 def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
     """Return the length of the path of the outermost point of an object on a motion, in squares.
 
-    place : the centre of a turn, map frame. polygon : before the motion, map frame.
+    Parameters
+    ----------
+    place : the centre of a turn, (x, y) in squares, map frame; not used for a straight motion.
+    polygon : the outline before the motion, shapely Polygon, map frame.
+    motion : map frame.
     """
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
@@ -137,7 +174,10 @@ def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
 
 
 def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: float) -> CarryOutcome:
-    """Return the outcome of a motion that really happened. distance : from the predicted outcome, in squares."""
+    """Return the outcome of a motion that really happened.
+
+    how : its kind. place, polygon : before the motion, map frame. distance : from the predicted outcome, in squares.
+    """
     if isinstance(motion, Translate):
         place = (place[0] + motion.dx, place[1] + motion.dy)
     degrees = motion.degrees if isinstance(motion, Rotate) else 0.0
@@ -145,7 +185,10 @@ def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: 
 
 
 def _slipped_motions(motion: Motion, length: float) -> list[tuple[Motion, float]]:
-    """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares."""
+    """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares.
+
+    The nearest come first. length : of the motion, in squares, as of `motion_length`.
+    """
     if isinstance(motion, Rotate):
         per_degree = length / max(abs(motion.degrees), 1.0)
         number = round(TURN_SLIPS_PER_DEGREE * MAX_TURN_SLIP)

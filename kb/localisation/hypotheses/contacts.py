@@ -35,7 +35,8 @@ class ContactHypothesis(NamedTuple):
     ----------
     fraction : of the motion before the contact, 0 to 1.
     chance : the probability that it came so far, and no further.
-    squares : the likeliest of the open squares one of which is the obstacle then; empty where the obstacle is known.
+    squares : the likeliest of the open squares one of which is the obstacle then, (column, row) of the map frame; empty
+        where the obstacle is known.
     """
 
     fraction: float
@@ -48,7 +49,7 @@ class Obstructions:
 
     Attributes
     ----------
-    known : the occupied squares about the motion.
+    known : the occupied squares about the motion, as obstacles, map frame.
     """
 
     def __init__(
@@ -61,7 +62,14 @@ class Obstructions:
     ) -> None:
         """Find the obstacles about a motion.
 
-        place, polygon : of Utak and of the object before it, map frame. pictures : completions of the map, if any.
+        Parameters
+        ----------
+        occupancy : the map. It may grow, but is not changed otherwise.
+        place : of Utak before the motion, (x, y) in squares, map frame.
+        polygon : the outline of the object before it, shapely Polygon, map frame.
+        motion : as commanded, map frame.
+        pictures : sampled maps that agree with all counts, by which the chance of a contact is estimated; by counts
+            alone when None.
         """
         known, self._squares = (_squares_near(occupancy, place, polygon, motion, state) for state in (OCCUPIED, OPEN))
         self.known = _obstacles(tuple(known))
@@ -69,13 +77,20 @@ class Obstructions:
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
-        """Return each open square with the obstacle that it may be."""
+        """Return each open square about the motion, (column, row) of the map frame, with the obstacle it may be."""
         return [(square, _obstacles((square,))) for square in self._squares]
 
     def contacts(self, place: Position, polygon: Any, motion: Motion) -> list[ContactHypothesis]:
-        """Return all contacts that may have blocked the motion, in the order of the way.
+        """Return all contacts that may have blocked the motion, in the order of the way; [] when nothing can be met.
 
-        place, polygon : before the motion, about as this was made for; map frame.
+        Those with open squares come first, and last the one with known obstacles, beyond which the motion cannot go.
+        The chances sum to 1 at most; the rest is that the motion went its whole way.
+
+        Parameters
+        ----------
+        place : of Utak before the motion, about where this was made for; (x, y) in squares, map frame.
+        polygon : the outline of the object before it, shapely Polygon, map frame.
+        motion : as commanded, map frame.
         """
         body = ContactBody(polygon, [place])
         end = self.known.first_contact(body, motion).fraction
@@ -95,16 +110,31 @@ class Obstructions:
         return [*contacts, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else contacts
 
     def outcomes(self, place: Position, polygon: Any, motion: Motion) -> list[CarryOutcome]:
-        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first."""
+        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first.
+
+        Parameters
+        ----------
+        place : of Utak before the motion, about where this was made for; (x, y) in squares, map frame.
+        polygon : the outline of the object before it, shapely Polygon, map frame.
+        motion : as commanded, map frame.
+        """
         return contact_outcomes(self.contacts(place, polygon, motion), place, polygon, motion)
 
 
 def likeliest_contact_near(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion, fraction: float
 ) -> ContactHypothesis | None:
-    """Return the likeliest contact within CONTACT_DISTANCE_ERROR squares of a fraction of a motion; None if none is.
+    """Return the likeliest contact near a fraction of a motion; None when there is none.
 
-    place, polygon : before the motion, map frame.
+    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object.
+
+    Parameters
+    ----------
+    contacts : those that may have blocked the motion.
+    place : of Utak before it, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : as commanded, map frame; not of length 0.
+    fraction : of the motion, 0 to 1.
     """
     far = CONTACT_DISTANCE_ERROR / motion_length(place, polygon, motion)
     about = [contact for contact in contacts if abs(contact.fraction - fraction) < far]
@@ -114,7 +144,15 @@ def likeliest_contact_near(
 def contact_outcomes(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion
 ) -> list[CarryOutcome]:
-    """Return the outcomes of some contacts of a motion, the likeliest first. place, polygon : before it, map frame."""
+    """Return the outcomes of some contacts of a motion, all blocked, the likeliest first.
+
+    Parameters
+    ----------
+    contacts : those that may have blocked the motion.
+    place : of Utak before it, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : as commanded, map frame.
+    """
     likely = sorted(contacts, key=lambda contact: -contact.chance)
     return [partial_outcome(place, polygon, motion, contact.fraction, contact.squares) for contact in likely]
 
@@ -126,17 +164,17 @@ def suspected_squares(
     others: Iterable[HeldObject],
     occupancy: OccupancyMap,
 ) -> frozenset[Square]:
-    """Return the likeliest of the open squares one of which blocked an object, or Utak with it, map frame.
+    """Return the likeliest of the open squares one of which blocked an object, or Utak with it.
 
-    Empty when nothing was blocked, when the object was never seen to move (the hand may be empty), or when something
-    known explains it.
+    As (column, row) of the map frame: those that the outcome names, if it does. Else empty when nothing was blocked,
+    when the object was never seen to move (the hand may be empty), or when something known explains it.
 
     Parameters
     ----------
     outcome : the chosen outcome of the motion; None when there was none.
     motion : as commanded, map frame.
-    held : the object in hand.
-    others : all other objects that were ever held, where they lie.
+    held : the object in hand, before the motion.
+    others : all other objects that were ever held, where they lie, map frame.
     occupancy : the map.
     """
     if outcome is not None and outcome.contact_squares:
@@ -155,18 +193,29 @@ def suspected_squares(
 
 
 def square_polygon(square: Square) -> Any:
-    """Return a square of the map as a shapely polygon, map frame."""
+    """Return a square (column, row) of the map frame as a shapely Polygon of side 1, map frame."""
     x, y = square
     return shapely.box(x, y, x + 1, y + 1)
 
 
 def _likeliest_squares(odds: Mapping[Square, float]) -> frozenset[Square]:
-    """Return the likeliest of some squares. odds : the log odds that each is occupied."""
+    """Return those squares whose log odds are within LIKELIEST_ODDS_GAP (1) of the highest; empty for none.
+
+    odds : the log odds (natural logarithm) that each is occupied.
+    """
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - LIKELIEST_ODDS_GAP)
 
 
 def _are_reachable(squares: Sequence[Square], place: Position, polygon: Any, motion: Motion) -> list[bool]:
-    """Return for each square whether Utak or the object may meet it on a motion; False only where neither can."""
+    """Return for each square whether Utak or the object may meet it on a motion; False only where neither can.
+
+    Parameters
+    ----------
+    squares : (column, row), map frame.
+    place : of Utak before the motion, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : map frame.
+    """
     corners, low = np.array([*shapely.get_coordinates(polygon), place]), np.array(squares, np.float64).reshape(-1, 2)
     if isinstance(motion, Rotate):  # every point keeps its distance from the centre of the turn
         far = np.hypot(*(corners - np.array(motion.about)).T).max() + UNREACHED_MARGIN
@@ -181,12 +230,23 @@ def _are_reachable(squares: Sequence[Square], place: Position, polygon: Any, mot
 
 @lru_cache(maxsize=512)
 def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
-    """Return squares of the map as obstacles; cached, for one frame after another asks for the same ones."""
+    """Return squares (column, row) as obstacles, map frame; cached, for one frame after another asks for them."""
     return Obstacles([square_polygon(square) for square in squares])
 
 
 def _squares_near(occupancy: OccupancyMap, place: Position, polygon: Any, motion: Motion, state: int) -> list[Square]:
-    """Return the squares of one state within OBSTACLE_MARGIN squares of the bounding box of a motion, map frame."""
+    """Return the squares of one state within OBSTACLE_MARGIN (3) squares of the bounding box of a motion.
+
+    As (column, row) of the map frame; squares beyond the map are left out.
+
+    Parameters
+    ----------
+    occupancy : the map.
+    place : of Utak before the motion, (x, y) in squares, map frame; the centre of a turn.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : map frame.
+    state : OCCUPIED, OPEN or FREE.
+    """
     corners = np.array([*shapely.get_coordinates(polygon), place])
     if isinstance(motion, Rotate):
         reach = float(np.hypot(*(corners - np.array(place)).T).max())

@@ -30,22 +30,27 @@ class CellStatus(StrEnum):
 class Explanation(NamedTuple):
     """An explanation of an observation.
 
+    The map frame has its axes along the grid and (0, 0) at the south-west corner of the square of waking.
+
     Attributes
     ----------
-    how : its kind, as in kb/asp/accommodation.lp: predicted, blocked, slipped, turned, misled, stuck, smaller, larger;
-        or lost or anew after a new beginning.
-    place : where the observation was made, map frame of `frame`.
+    how : its kind, as in kb/asp/accommodation.lp: predicted (the motion went as commanded), blocked (it ended early),
+        slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or
+        this one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held
+        object is smaller or larger than it seemed); or lost or anew after a new beginning.
+    place : where the observation was made, (x, y) in squares, map frame of `frame`.
     frame : the frame by this explanation.
-    residual : fields that it leaves unexplained.
-    distance : from the predicted end of the motion, in squares.
+    residual : number of fields that it leaves unexplained; 0 is best.
+    distance : from the predicted end of the motion, in squares; for misled by how far ends are corrected in all, for
+        larger how far the object goes on beyond what was seen.
     outcome : of the motion of the object in hand; None when nothing was to be moved.
-    hypotheses : the frame hypotheses that are left, if the frame is another one.
-    reestimated : the earlier motion that ended elsewhere than believed; None when none did.
-    chance : the probability of this end of the motion before the observation; None when it was not asked.
-    prior_cost : by how much the simplest map costs more than by the best explanation, in log odds.
-    contact_squares : the open squares one of which blocked the motion.
+    hypotheses : the frame hypotheses that are left, if the frame or the ends of motions are others; else empty.
+    reestimated : the motion, earlier or newest, that ended elsewhere than believed; None when none did.
+    chance : the probability (0 to 1) of this end of the motion before the observation; None when it was not asked.
+    prior_cost : by how much the simplest map costs more than by the best explanation, in log odds (natural logarithm).
+    contact_squares : the open squares (not settled as free or occupied) one of which blocked the motion, map frame.
     origin_weighed : whether `prior_cost` contains the log odds against the origin of `frame`.
-    larger : the object before the motion, if more of it was there than was seen.
+    larger : the object before the motion, if more of it was there than was seen; else None.
     """
 
     how: str
@@ -64,17 +69,23 @@ class Explanation(NamedTuple):
 
     @property
     def remaps(self) -> bool:
-        """Return whether the frame, or where earlier observations were made, is another one than believed."""
+        """Return whether the frame, or where earlier observations were made, is another one than believed.
+
+        So it is for the kinds turned, misled, lost and anew.
+        """
         return self.how in ("turned", "misled", "lost", "anew")
 
     @property
     def met_known(self) -> bool:
-        """Return whether an earlier motion was blocked by something that is known by now."""
+        """Return whether the re-estimated motion was blocked by something that is known by now; False without one."""
         return self.reestimated is not None and self.reestimated.contact_known
 
     @property
     def is_odd(self) -> bool:
-        """Return whether both the orientation and the origin of the frame are unusual, and neither is weighed."""
+        """Return whether both the angle of the frame (not 0) and its origin (not the middle of a square) are unusual.
+
+        False where the prior cost contains the odds of the origin already.
+        """
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
@@ -84,7 +95,7 @@ class Accommodation(NamedTuple):
     Attributes
     ----------
     explanation : the chosen one.
-    cells : how each of the 160 fields is accounted for.
+    cells : how each of the 160 fields of the retina is accounted for, in the order of an impression.
     """
 
     explanation: Explanation
@@ -96,11 +107,14 @@ def field_statuses(
 ) -> tuple[CellStatus, ...]:
     """Return how each of the 160 fields is accounted for by the map, before the observation is integrated.
 
+    In the order of an impression: noise for a field that contradicts the map; explained for any other that covers a
+    square that was open (settled neither as free nor as occupied); else predicted.
+
     Parameters
     ----------
-    occupancy : the map.
+    occupancy : the map, with room for all that is in sight.
     samples : the squares under each field, in the believed frame, held objects left out.
-    ranges : (160, 2) count ranges of the observation, held objects left out.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field, held objects left out.
     x, y : the square from which it was made, map frame.
     """
     noise = occupancy.misfits(samples, ranges, x, y)
@@ -116,7 +130,9 @@ def field_statuses(
 def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
     """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation.
 
-    ends : the re-estimations of each motion.
+    All are of kind misled; among those alike the order given is kept. [] when there is no re-estimation.
+
+    ends : the re-estimations of each motion (other ends with which no observations contradict each other).
     """
     found = [one for motion in ends for one in motion]
     if not found:
@@ -128,7 +144,10 @@ def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[
 
 
 def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
-    """Return the explanation by a re-estimated motion. left : the frame hypotheses that are left then."""
+    """Return the explanation, of kind misled, by a re-estimated motion.
+
+    one : the re-estimation. left : the frame hypotheses that are left then.
+    """
     frame, distance = one.hypothesis.frame, math.hypot(*one.correction.shift)
     place = frame.place_from_utak(*one.newest)
     return Explanation("misled", place, frame, one.residual, distance, None, left, one)
@@ -139,8 +158,15 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
 
     Parameters
     ----------
-    explanations : at least one; of those that cost the same the first is chosen.
-    facts : the other inputs of that encoding, as facts without a period.
+    explanations : at least one; of those that cost the same the first is chosen. For explanation number n (from 0)
+        these facts are added: explanation(n,How,Residual,Distance), Distance in squares rounded up; odd(n),
+        crooked(n,Price) and unlikely(n,Price) where they hold, Price in half nats (2 for a factor of e in probability).
+    facts : the other inputs of that encoding, as text without a full stop: trust(N), met(n), slips, off_middle, proven,
+        stands, clear, uneven, unchanged.
+
+    Raises
+    ------
+    AssertionError : the encoding has no answer, which never happens.
     """
     offered = [
         f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)

@@ -21,7 +21,7 @@ FieldRanges = NDArray[np.int16]  # (160, 2): least and greatest count of occupie
 
 MAX_CHECKED_OBSERVATIONS = 12  # observations by which orientations are judged; older contradictions are gone; tuned
 FRAME_ANGLES = tuple(sorted(range(-44, 46), key=lambda angle: (abs(angle), angle)))  # degrees: a quarter turn in all
-PLAUSIBLE_COST = 5.0  # map prior cost up to which an orientation counts as plausible yet, in edges; tuned
+PLAUSIBLE_COST = 5.0  # map prior cost up to which an orientation counts as plausible yet, in log odds; tuned
 OFF_CENTRE_COST = 2.5  # log odds against having woken elsewhere than in the middle of a square: a convention
 CRAMPED_SIDE = 0.1  # of a square: a side left for the origin below this, divided by the observations, is suspicious
 ORIGIN_GRID = 11  # points along either side of what is left for the origin: 0.1 squares apart at most
@@ -32,9 +32,12 @@ class FrameHypothesis(NamedTuple):
 
     Attributes
     ----------
-    angle : orientation of the grid in Utak's own frame, in degrees, counter-clockwise positive.
-    box : (west, south, east, north) bounds of the origin within the square of waking, map frame, 0 to 1.
-    prior_cost : by how many edges the simplest map costs more than on the best frame; 0 when not weighed.
+    angle : degrees by which Utak's own frame is turned against the grid of the map, counter-clockwise positive, -44 to
+        45; as of `Frame.angle`.
+    box : (west, south, east, north) bounds of the origin within the square of waking, in squares, map frame, 0 to 1; a
+        point where the origin is known exactly.
+    prior_cost : by how much the simplest map costs more than on the best frame, in log odds (natural logarithm); 0 when
+        not weighed.
     """
 
     angle: int
@@ -43,7 +46,10 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def frame(self) -> Frame:
-        """Return the frame whose origin is the middle of the square where the box allows it, else that of the box."""
+        """Return the likeliest frame: with its origin in the middle of the square of waking if the box contains it.
+
+        Else the origin is the middle of the box.
+        """
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:
             return Frame(self.angle)
@@ -51,7 +57,7 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def is_point(self) -> bool:
-        """Return whether it names the exact origin."""
+        """Return whether it names the exact origin: its box is a point."""
         return self.box[:2] == self.box[2:]
 
     @property
@@ -61,17 +67,20 @@ class FrameHypothesis(NamedTuple):
 
     @property
     def is_plausible(self) -> bool:
-        """Return whether its map prior is hardly worse than the best one."""
+        """Return whether its map prior is hardly worse than the best one: by PLAUSIBLE_COST (5) log odds at most."""
         return self.prior_cost <= PLAUSIBLE_COST
 
     @property
     def area(self) -> float:
-        """Return the area of the box in squares^2."""
+        """Return the area of the box in squares^2, 0 to 1; 0 for an exact origin."""
         west, south, east, north = self.box
         return (east - west) * (north - south)
 
     def contains(self, frame: Frame) -> bool:
-        """Return whether a frame is one of those it allows."""
+        """Return whether a frame is one of those it allows: the same angle, and an origin within the box.
+
+        The east and north sides of the box do not belong to it.
+        """
         west, south, east, north = self.box
         (x, y), point = frame.origin, self.is_point
         within = (x, y) == self.box[:2] if point else west <= x < east and south <= y < north
@@ -79,6 +88,8 @@ class FrameHypothesis(NamedTuple):
 
     def split(self, place: Position) -> "list[FrameHypothesis]":
         """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first.
+
+        They are 1, 2 or 4; together they are the whole.
 
         place : a point of Utak's own frame, (east, north) in squares.
         """
@@ -90,7 +101,10 @@ class FrameHypothesis(NamedTuple):
 
 
 def exact_hypothesis(frame: Frame) -> FrameHypothesis:
-    """Return the hypothesis that the frame is exactly `frame`."""
+    """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin.
+
+    Its prior cost is 0.
+    """
     return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
 
@@ -104,10 +118,11 @@ class ObjectPose(NamedTuple):
     Attributes
     ----------
     name : of the object.
-    middle : the centroid of its outline, (east, north) in Utak's own frame.
+    middle : the centroid of its outline, (east, north) in squares, Utak's own frame.
     degrees : by which it had been turned since it was first held, counter-clockwise positive.
     slack : squares by which it may have lain otherwise.
-    taken : the centroid of its outline where it was first held, as believed then, Utak's own frame.
+    taken : the centroid of its outline where it was first held, as believed then, (east, north) in squares, Utak's own
+        frame.
     """
 
     name: str
@@ -122,7 +137,7 @@ class Observation(NamedTuple):
 
     Attributes
     ----------
-    ranges : (160, 2) int16, least and greatest count of occupied squares of each field.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the retina.
     place : where it was made, (east, north) in squares, Utak's own frame.
     moved : the poses at that time of all objects that had been held by then.
     """
@@ -133,7 +148,7 @@ class Observation(NamedTuple):
 
 
 class UnsettledDisc(NamedTuple):
-    """A part of the table where an object was moved, so that observations need not agree there.
+    """A disc of the table where an object was moved, so that observations need not agree there.
 
     Attributes
     ----------
@@ -148,10 +163,14 @@ class UnsettledDisc(NamedTuple):
 def count_contradictions(
     frame: Frame, observations: Sequence[Observation], unsettled: Sequence[UnsettledDisc] = ()
 ) -> int:
-    """Return how many squares and fields contradict each other if the true frame is `frame`.
+    """Return how many squares and fields contradict each other if the true frame is `frame`; 0 if it may be true.
 
     Squares under fields that are quite full or quite empty are compared with each other, and other fields with them.
 
+    Parameters
+    ----------
+    frame : the frame in question.
+    observations : at least one, with their places in Utak's own frame.
     unsettled : parts of the table that are not compared.
     """
     squares = observation_squares(frame, observations)
@@ -159,7 +178,7 @@ def count_contradictions(
 
 
 def stack_ranges(observations: Sequence[Observation]) -> NDArray[np.int16]:
-    """Return the count ranges of some observations, (observations, 160, 2)."""
+    """Return the count ranges of some observations, at least one: (observations, 160, 2) int16, least and greatest."""
     return np.stack([observation.ranges for observation in observations])
 
 
@@ -168,8 +187,12 @@ def count_contradictions_at(
 ) -> int:
     """Return how many squares and fields contradict each other among observations made on the given squares.
 
-    squares : (observations, 2) of the map frame. ranges : (observations, 160, 2) count ranges.
-    unsettled : parts of the table that are not compared.
+    Parameters
+    ----------
+    frame : the frame in question; its angle tells which squares each field covers.
+    squares : (observations, 2), column and row of the map frame.
+    ranges : (observations, 160, 2), least and greatest count of occupied squares under each field.
+    unsettled : parts of the table (discs, Utak's own frame) that are not compared.
     """
     apart = [(*frame.place_from_utak(*disc.middle), disc.reach) for disc in unsettled]
     discs = np.array(apart, np.float64).reshape(-1, 3)
@@ -181,7 +204,7 @@ def prune_hypotheses(
     observations: Sequence[Observation],
     unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """Return what the last of the observations leaves of some hypotheses, in their order.
+    """Return what the last of the observations leaves of some hypotheses, in their order; empty when it refutes all.
 
     A hypothesis is split where the last observation would fall on different squares. Hypotheses by which every
     observation falls on the same squares are kept or given up together.
@@ -189,7 +212,7 @@ def prune_hypotheses(
     Parameters
     ----------
     hypotheses : those that the earlier observations left.
-    observations : all so far; the last one is not yet taken into account.
+    observations : all so far, oldest first; the last one is not yet taken into account.
     unsettled : parts of the table that are not compared.
     """
     judged: dict[tuple[int, bytes], bool] = {}
@@ -209,12 +232,12 @@ def consistent_hypotheses(
     hypotheses: Iterable[FrameHypothesis] = ALL_HYPOTHESES,
     unsettled: Sequence[UnsettledDisc] = (),
 ) -> tuple[FrameHypothesis, ...]:
-    """Return what all observations together leave of some hypotheses, in their order.
+    """Return what all observations together leave of some hypotheses, in their order; empty when they refute all.
 
     Parameters
     ----------
     observations : in the order in which they were made.
-    hypotheses : those to begin with.
+    hypotheses : those to begin with; every orientation and origin by default.
     unsettled : parts of the table where observations need not agree.
     """
     left = tuple(hypotheses)
@@ -224,17 +247,23 @@ def consistent_hypotheses(
 
 
 def any_origin(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
-    """Return a hypothesis for each orientation in `angles` (degrees) that allows every origin in the square."""
+    """Return a hypothesis for each orientation in `angles` that allows every origin in the square of waking.
+
+    angles : degrees, counter-clockwise positive, as of `Frame.angle`.
+    """
     return tuple(FrameHypothesis(angle, (0.0, 0.0, 1.0, 1.0)) for angle in angles)
 
 
 def observation_squares(frame: Frame, observations: Sequence[Observation]) -> NDArray[np.int64]:
-    """Return the squares of the map frame on which observations were made, (observations, 2)."""
+    """Return the squares of the map frame on which observations were made: (observations, 2), column and row."""
     return place_squares(frame, np.array([observation.place for observation in observations]).reshape(-1, 2))
 
 
 def place_squares(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the squares of the map frame that contain places (n, 2) of Utak's own frame, (n, 2)."""
+    """Return the squares of the map frame that contain some places: (n, 2), column and row.
+
+    places : (n, 2), east and north in squares, Utak's own frame.
+    """
     x, y = frame.places_from_utak(places[:, 0], places[:, 1])
     squares: NDArray[np.int64] = np.floor(np.stack((x, y), 1)).astype(np.int64)
     return squares
@@ -243,7 +272,8 @@ def place_squares(frame: Frame, places: NDArray[np.float64]) -> NDArray[np.int64
 def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
     """Return the origins for which every observation falls on the square on which it is believed to have fallen.
 
-    For all of these origins everything at rest looked the same.
+    For all of these origins everything at rest looked the same. They are a box (west, south, east, north) within the
+    square of waking, in squares, map frame, 0 to 1.
     """
     away = np.array([frame.to_map(*observation.place) for observation in observations]).reshape(-1, 2)
     corners = observation_squares(frame, observations)
@@ -266,7 +296,7 @@ def origin_leeway(
     Returns
     -------
     tuple of float
-        West and south (not above 0), east and north (not below 0), in squares of the map frame.
+        West, south (not above 0), east, north (not below 0), in squares of the map frame; all 0 when it is certain.
     """
     west, south, east, north = origin_box(frame, observations)
     boxes = np.array([h.box for h in hypotheses if h.angle == frame.angle and not h.is_centred])
@@ -278,7 +308,11 @@ def origin_leeway(
 
 
 def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[FrameHypothesis, ...]:
-    """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns."""
+    """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns.
+
+    That box holds all origins for which every observation falls on the square on which it is believed to have fallen.
+    The hypotheses have the angle of `frame`; they come column by column from the west, each from south to north.
+    """
     west, south, east, north = origin_box(frame, observations)
     steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
     places = ((float(west + (east - west) * i), float(south + (north - south) * j)) for i in steps for j in steps)
@@ -288,9 +322,11 @@ def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[Fram
 def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool:
     """Return whether less room is left for the origin than so many observations leave by chance.
 
-    Each observation cuts either side of the square of waking in two, anywhere. Then a side of the true part is
-    shorter than CRAMPED_SIDE / observations about once in two hundred times. An observation made elsewhere than
-    believed is likelier.
+    Each observation cuts either side of the square of waking in two, anywhere. Then a side of the true part is shorter
+    than CRAMPED_SIDE / observations about once in two hundred times. An observation made elsewhere than believed is
+    likelier. False for no hypotheses, and where one assumes the middle of the square.
+
+    observations : their number.
     """
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
@@ -299,7 +335,10 @@ def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool
 
 
 def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
-    """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands."""
+    """Return the width and height, in squares, of the cell for which each of some points of an origin grid stands.
+
+    It is 0 along an axis in which all points lie on one line. points : exact origins, at least one.
+    """
     lines = [np.unique(np.round([point.box[axis] for point in points], 9)) for axis in (0, 1)]
     width, height = (float(np.diff(line).min()) if len(line) > 1 else 0.0 for line in lines)
     return width, height
@@ -308,8 +347,8 @@ def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
 def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> list[Frame]:
     """Return the frames of some hypotheses, the likeliest first.
 
-    The order: the best map prior, the believed frame, Utak's own axes, then orientations from the median outwards.
-    Of one orientation the frame with the most room for the origin comes first.
+    The order: the best map prior, the believed frame, Utak's own axes, then orientations from the median outwards. Of
+    one orientation the frame with the most room for the origin comes first.
 
     Parameters
     ----------
@@ -319,7 +358,7 @@ def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> lis
     Returns
     -------
     list of Frame
-        Without repetitions.
+        Without repetitions; [] for no hypotheses.
     """
     angles = sorted({h.angle for h in hypotheses})
     middle = (len(angles) - 1) / 2
@@ -331,7 +370,10 @@ def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> lis
 
 
 def _split_interval(low: float, high: float, at: float) -> list[tuple[float, float]]:
-    """Return an interval cut in two at a point inside it, the part that holds the middle of a square first."""
+    """Return an interval cut in two at a point inside it, the part that holds the middle of a square (0.5) first.
+
+    The interval alone when the point does not lie inside it.
+    """
     if not low < at < high:
         return [(low, high)]
     parts = [(low, at), (at, high)]

@@ -47,13 +47,23 @@ SquaresKey = tuple[int, bytes]
 class MapDescription:
     """A map, and the simplest completion of it that was drawn so far, scene by scene.
 
+    A completion is a map that agrees with all counts, with every square free or occupied. A scene is a part of the map
+    that is independent of all others. Costs are for edges and corners of what is occupied, and for wrong counts.
+
     Attributes
     ----------
-    price : the log odds against that completion: its description length.
+    price : the log odds (natural logarithm) against that completion: its description length. Infinite before the first
+        draw.
     """
 
     def __init__(self, occupancy: OccupancyMap, drawn: DrawnScenes | None = None) -> None:
-        """Begin with no completion. drawn : completions of scenes of this or other maps; new ones are added to it."""
+        """Begin with no completion.
+
+        Parameters
+        ----------
+        occupancy : the map; it is not changed.
+        drawn : completions of scenes of this or other maps, which are not drawn once more; new ones are added to it.
+        """
         self._view = occupancy.view()
         self._ground = given_squares(self._view)
         self._scenes = list(scenes(self._view, self._ground))
@@ -64,9 +74,11 @@ class MapDescription:
         self.price = np.inf
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far.
+        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm).
 
-        effort : the number of completions of each scene, and of sweeps over each.
+        A completion is a map that agrees with all counts; its price is the log odds against it.
+
+        effort : the number of completions of each scene (an independent part of the map), and of sweeps over each.
         """
         for number, scene in enumerate(self._scenes):
             key = (*scene.told(self._view), *effort, self._rounds)
@@ -82,18 +94,31 @@ class MapDescription:
         return self.price
 
     def cost(self, edge: float) -> float:
-        """Return the log odds against the simplest completion. edge : the cost of an edge."""
+        """Return the log odds (natural logarithm) against the simplest completion; nothing is drawn.
+
+        edge : the cost of an edge between an occupied and a free square: EDGE_COST for the whole price, 0 for all but
+        edges.
+        """
         return LOG_ODDS_PER_COST * float(costs(self._image[None], self._ground, self._view.counts, edge)[0])
 
     @property
     def bend_ratio(self) -> float:
-        """Return the cost of corners and wrong counts, divided by the cost of edges."""
+        """Return the cost of corners and wrong counts, divided by the cost of edges; small for straight sides."""
         bends = self.cost(0.0)
         return bends / max(self.price - bends, LOG_ODDS_PER_COST)
 
 
 def _simplest(scene: CompletionTask, effort: Effort, seed: int) -> tuple[float, OccupancyImage]:
-    """Return the cost of the simplest of some completions of a scene, and the completion."""
+    """Return the cost of the simplest of some completions of a scene, and that completion.
+
+    The cost is as of `geometry.counts.gibbs.costs`; the completion is (h, w) int8, 1 where a square is occupied.
+
+    Parameters
+    ----------
+    scene : the part of the map to be drawn.
+    effort : the number of completions, and of sweeps over each.
+    seed : of the random numbers.
+    """
     number, sweeps = effort
     first = np.repeat(scene.first[None], number, axis=0)
     images = pictures(scene.ground, scene.counts, first, sweeps, START_INVERSE_TEMPERATURE, seed)
@@ -106,37 +131,44 @@ class FrameTrial:
 
     Attributes
     ----------
-    description : the map.
+    description : the map, and the simplest completion of it that was drawn so far.
     """
 
     def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Begin with no completion."""
+        """Begin with no completion. observations : those that are mapped, with their places in Utak's own frame."""
         self.description = MapDescription(remap(frame, frame, observations, ()).occupancy)
         self._oblique = OBLIQUE_COST * (frame.angle != 0)
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far."""
+        """Draw more completions and return the price of the simplest one so far, in log odds.
+
+        The orientation is not counted. effort : the number of completions of each scene, and of sweeps over each.
+        """
         return self.description.draw(effort)
 
     @property
     def odds(self) -> float:
-        """Return the log odds against the frame, by its map and its orientation."""
+        """Return the log odds (natural logarithm) against the frame, by its map and its orientation; less is better.
+
+        It is infinite before the first draw.
+        """
         return self.description.price + self._oblique
 
 
 def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
-    """Return by how much each map costs more than the best one, in log odds.
+    """Return by how much each map costs more than the best one, in log odds (natural logarithm).
 
     Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that may be best.
 
     Parameters
     ----------
-    maps : each with the log odds against it by everything else.
+    maps : each with the log odds against it by everything else. They decide only which maps are drawn once more; they
+        are no part of the result.
 
     Returns
     -------
     list of float
-        In the same order; 0 for the best one.
+        In the same order; 0 for the best one. [] for no maps.
     """
     for description, _ in maps:
         description.draw()
@@ -155,8 +187,8 @@ class AlikeHypotheses(NamedTuple):
     Attributes
     ----------
     frame : the likeliest of their frames.
-    prior_cost : the least of their prior costs before.
-    against : log odds against having woken in that part of the square.
+    prior_cost : the least of their prior costs before, in log odds.
+    against : log odds against having woken in that part of the square; 0 for the middle or a single point.
     """
 
     frame: Frame
@@ -169,7 +201,9 @@ def weigh_hypotheses(
 ) -> tuple[FrameHypothesis, ...]:
     """Return the same hypotheses, each with its prior cost relative to the best one.
 
-    Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed again.
+    The prior cost is the log odds (natural logarithm) against the simplest map in that frame, its orientation and its
+    origin. Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed
+    again.
 
     Parameters
     ----------
@@ -180,7 +214,7 @@ def weigh_hypotheses(
     -------
     tuple of FrameHypothesis
         In the same order. The best one has a prior cost of 0. Where others are weighed anew, one that is not has
-        UNTRIED_COST at least.
+        UNTRIED_COST at least. Where only one map is likely, nothing is drawn.
     """
     keys = [_squares_key(hypothesis, observations) for hypothesis in hypotheses]
     same: dict[SquaresKey, list[FrameHypothesis]] = {}
@@ -205,7 +239,12 @@ def weigh_hypotheses(
 def _odds(
     trials: Mapping[SquaresKey, FrameTrial], alike: Mapping[SquaresKey, AlikeHypotheses]
 ) -> dict[SquaresKey, float]:
-    """Return the log odds against each trial, after those close to the best one were drawn once more."""
+    """Return the log odds (natural logarithm) against each trial, by key, origin included; the less the better.
+
+    Those close to the best one are drawn once more before.
+
+    trials, alike : by the same keys (see `_squares_key`); more completions are drawn in `trials`.
+    """
     odds = {key: trial.odds + alike[key].against for key, trial in trials.items()}
     best = min(odds.values())
     close = [key for key in odds if odds[key] <= best + CLOSE_ODDS]
@@ -216,13 +255,19 @@ def _odds(
 
 
 def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation]) -> SquaresKey:
-    """Return the orientation, and the squares of the observations relative to the last one."""
+    """Return what hypotheses of the same map share: (angle in degrees, squares relative to the last one, as bytes).
+
+    The squares are those of the map frame on which the observations were made.
+    """
     squares = observation_squares(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
 
 
 def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
-    """Return hypotheses of the same map as one."""
+    """Return hypotheses of the same map, at least one, as one: the likeliest of their frames, and what is against it.
+
+    same : hypotheses of one angle by which all observations fall on the same squares.
+    """
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
     area = sum(one.area for one in same)
     against = 0.0 if likeliest.is_centred or not area else OFF_CENTRE_COST - math.log(area)
@@ -230,7 +275,12 @@ def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
 
 
 def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[SquaresKey]:
-    """Return those that are worth weighing again, the likeliest first. least : the least prior cost."""
+    """Return the keys of the hypotheses that are worth weighing again, the likeliest first.
+
+    Those are of a prior cost near to the least one, or of an angle within 2 degrees of the best.
+
+    alike : by key (see `_squares_key`). least : the least prior cost, in log odds.
+    """
     best = [angle for (angle, _), one in alike.items() if one.prior_cost == least]
     near = (
         key
@@ -244,7 +294,10 @@ def _likely(alike: Mapping[SquaresKey, AlikeHypotheses], least: float) -> list[S
 def _first_trials(
     alike: Mapping[SquaresKey, AlikeHypotheses], observations: Sequence[Observation]
 ) -> dict[SquaresKey, FrameTrial]:
-    """Return trials of the frames that may be the best: the likeliest origin of each orientation, then others."""
+    """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others.
+
+    Completions (maps that agree with all counts) are drawn of all of them. alike : by key (see `_squares_key`).
+    """
     parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
         parts.setdefault(key[0], []).append(key)
@@ -257,7 +310,7 @@ def _first_trials(
 
 
 def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
-    """Return the trial of a frame, with completions drawn."""
+    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT."""
     trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial
@@ -267,12 +320,15 @@ class _Competition:
     """Trials of one frame of each orientation; the more effort is spent on a frame the likelier it is."""
 
     def __init__(self, frames: Mapping[int, Frame], observations: Sequence[Observation]) -> None:
-        """Begin with no trial. frames : by orientation in degrees."""
+        """Begin with no trial.
+
+        frames : by orientation in degrees. observations : those by which the frames are tried.
+        """
         self._frames, self._observations = frames, observations
         self._trials: dict[int, FrameTrial] = {}
 
     def run(self) -> dict[int, FrameTrial]:
-        """Return the trials of the frames that may be the best, by orientation."""
+        """Return the trials of the frames that may be the best, by orientation in degrees; all of them were drawn."""
         trials = self._trials
         self._enter([0])
         if 0 in trials and trials[0].draw() and trials[0].description.bend_ratio < MAX_STRAIGHT_BENDS:
@@ -286,14 +342,20 @@ class _Competition:
         return trials
 
     def _enter(self, angles: Iterable[int]) -> None:
-        """Try some orientations roughly, those that were not tried yet."""
+        """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped."""
         for angle in angles:
             if angle in self._frames and angle not in self._trials:
                 self._trials[angle] = FrameTrial(self._frames[angle], self._observations)
                 self._trials[angle].draw(ROUGH_EFFORT)
 
     def _leading(self, most: int, behind: float) -> list[int]:
-        """Return the best orientations: `most` at most, and not further than `behind` log odds behind the best one."""
+        """Return the best orientations in degrees, the best first, at least one.
+
+        Parameters
+        ----------
+        most : their greatest number.
+        behind : log odds by which they may be behind the best one; a quarter of the best one's price is always allowed.
+        """
         trials = self._trials
         ordered = sorted(trials, key=lambda angle: trials[angle].odds)[:most]
         best = trials[ordered[0]]

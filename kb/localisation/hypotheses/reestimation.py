@@ -47,9 +47,10 @@ class WalkCorrection(NamedTuple):
 
     Attributes
     ----------
-    since : the number of the first observation that is shifted.
+    since : the number of the first observation that is shifted; the first of all has the number 0.
     shift : from the believed place to the corrected one, (east, north) in squares, Utak's own frame.
-    seen : objects that were first held since, by name, each with the shift of where it lies and lay, same frame.
+    seen : objects that were first held since, by name, each with the shift of where it lies and lay, same frame and
+        unit.
     in_hand : the name of the object in hand on the motion that is corrected; None when there was none.
     """
 
@@ -59,11 +60,14 @@ class WalkCorrection(NamedTuple):
     in_hand: str | None = None
 
     def place(self, place: Position) -> Position:
-        """Return a place since the motion as corrected, Utak's own frame."""
+        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame."""
         return add(place, self.shift)
 
     def observations(self, observations: Sequence[Observation]) -> list[Observation]:
-        """Return all observations, with corrected places."""
+        """Return all observations, oldest first, with corrected places and object poses; earlier ones are unchanged.
+
+        observations : all, oldest first, as believed.
+        """
         since = [
             observation._replace(place=self.place(observation.place), moved=tuple(map(self._pose, observation.moved)))
             for observation in observations[self.since :]
@@ -71,18 +75,24 @@ class WalkCorrection(NamedTuple):
         return [*observations[: self.since], *since]
 
     def held_objects(self, held_objects: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """Return all held objects where they lie and lay as corrected. frame : the map frame of `held_objects`."""
+        """Return all held objects, by name, where they lie and lay as corrected; same frame as given.
+
+        held_objects : by name, map frame. frame : that map frame.
+        """
         return {name: self._corrected_object(held, frame) for name, held in held_objects.items()}
 
     def _pose(self, pose: ObjectPose) -> ObjectPose:
-        """Return the corrected pose of an object at an observation since the motion."""
+        """Return the corrected pose of an object at an observation since the motion, Utak's own frame.
+
+        Where the object in hand was first held stays as it is.
+        """
         aside = self._aside(pose.name)
         if pose.name != self.in_hand:
             pose = pose._replace(taken=add(pose.taken, aside))
         return pose._replace(middle=add(pose.middle, aside))
 
     def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
-        """Return an object where it lies as corrected."""
+        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted."""
         aside = Translate(*frame.to_map(*self._aside(held.name)))
         if not any(aside):
             return held
@@ -90,20 +100,20 @@ class WalkCorrection(NamedTuple):
         return replace(held.lying(aside.carry(held.polygon), held.slack), first=first)
 
     def _aside(self, name: str) -> Position:
-        """Return the shift of an object, Utak's own frame."""
+        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted."""
         return self.shift if name == self.in_hand else dict(self.seen).get(name, (0.0, 0.0))
 
 
 class ReestimatedWalk(NamedTuple):
-    """A re-estimated motion: a frame, and the correction of an earlier motion with which observations agree.
+    """A re-estimated motion: a frame, and the correction of a motion with which observations agree.
 
     Attributes
     ----------
     hypothesis : of the frame.
     correction : of all observations since that motion.
     contact_known : whether something known stands where the motion was blocked then.
-    residual : fields that contradict it, over all observations.
-    newest : where the newest observation was made then, Utak's own frame.
+    residual : number of fields that contradict it, over all observations.
+    newest : where the newest observation was made then, (east, north) in squares, Utak's own frame.
     """
 
     hypothesis: FrameHypothesis
@@ -122,14 +132,15 @@ def reestimate_walk(
     """Yield other ends of a motion, each with the frame in which no observation contradicts another.
 
     Until it was blocked the motion entered no occupied square, and it was blocked before no free one. Where a contact
-    with something known is possible, contacts with open squares are left out. Not yielded: what is believed already,
-    and a contact of the newest motion with something unknown in the believed frame.
+    with something known is possible in a frame, contacts with open squares are left out. Not yielded: what is believed
+    already, and a contact of the newest motion with something unknown in the believed frame. What is yielded may still
+    have a residual against the map.
 
     Parameters
     ----------
     motion : a motion with an empty hand, with the frame hypotheses to try.
     believed : the believed frame.
-    observations : all, at their believed places; the newest where it was commanded.
+    observations : all, oldest first, at their believed places in Utak's own frame; the newest where it was commanded.
     prefixes : returns the replays of the first observations in a frame; made anew for each frame when None.
     """
     newest = motion.number == len(observations) - 1
@@ -143,7 +154,7 @@ def reestimate_walk(
 
 
 def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
-    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in their order."""
+    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more."""
     if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:
         return hypotheses
     numbers = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].prior_cost)
@@ -156,7 +167,15 @@ def _other_ends(
     observations: Sequence[Observation],
     begun: ReplayPrefixes,
 ) -> Iterator[ReestimatedWalk]:
-    """Yield the other ends of one motion in one frame. begun : the replays of the first observations in that frame."""
+    """Yield the other ends of one motion in one frame, with contacts known and unknown.
+
+    Parameters
+    ----------
+    motion : with an empty hand.
+    hypothesis : of the frame.
+    observations : all, oldest first, at their believed places; the newest where it was commanded.
+    begun : the replays of the first observations in that frame.
+    """
     frame, number = hypothesis.frame, motion.number
     believed, walk = observations[number].place, WalkInFrame(motion, frame, observations)
     judged: dict[bytes, RemappedMap | None] = {}
@@ -188,14 +207,15 @@ def reestimate_two_walks(
 ) -> Iterator[ReestimatedWalk]:
     """Yield ends of an earlier motion and of the newest one, both blocked by something known, without contradictions.
 
-    A motion that goes on against what blocked the one before it does not move at all.
+    The correction is that of the earlier motion; `newest` is where the newest one ended. A motion that goes on against
+    what blocked the one before it does not move at all.
 
     Parameters
     ----------
     motion : the earlier motion, with an empty hand.
     newest : the newest motion, with an empty hand.
     hypothesis : of the frame.
-    observations : all, at their believed places; the newest where it was commanded.
+    observations : all, oldest first, at their believed places in Utak's own frame; the newest where it was commanded.
     """
     frame, before, believed = hypothesis.frame, observations[:-1], observations[motion.number].place
     walk = WalkInFrame(motion, frame, observations)
@@ -230,11 +250,12 @@ def remap_if_consistent(
     Parameters
     ----------
     frame : the frame to map in.
-    observations : all, at their places in Utak's own frame.
+    observations : all, oldest first, at their places in Utak's own frame.
     held_objects : all objects that were ever held, in that frame.
-    unsettled : parts of the table where observations need not agree.
+    unsettled : parts of the table (discs, Utak's own frame) where observations need not agree.
     recent : how many of the last observations are compared.
-    begun, only_whether : as for kb.localisation.hypotheses.remap.remap.
+    begun : a replay of the first of the observations in that frame, which is copied; None to begin with an empty map.
+    only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
     """
     squares = observation_squares(frame, observations)
     if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
@@ -249,7 +270,16 @@ def _are_consistent(
     unsettled: Sequence[UnsettledDisc] = (),
     recent: int = MAX_CHECKED_OBSERVATIONS + 1,
 ) -> bool:
-    """Return whether none of the last observations contradicts another; parameters as of `count_contradictions_at`."""
+    """Return whether none of the last observations contradicts another.
+
+    Parameters
+    ----------
+    frame : the frame in question.
+    squares : (n, 2), column and row of the map frame on which each observation was made, oldest first.
+    ranges : (n, 160, 2), least and greatest count of occupied squares under each field.
+    unsettled : parts of the table (discs, Utak's own frame) that are not compared.
+    recent : how many of the last observations are compared.
+    """
     squares, ranges = squares[-recent:], ranges[-recent:]
     apart = len(squares) // QUICK_CHECK_OBSERVATIONS
     if apart > 1 and count_contradictions_at(frame, squares[::-apart], ranges[::-apart], unsettled):  # with the newest
@@ -262,7 +292,7 @@ class WalkEnd(NamedTuple):
 
     Attributes
     ----------
-    place : Utak's own frame.
+    place : (east, north) in squares, Utak's own frame.
     progress : how far the motion had come: the number of grid lines crossed before it, or, with an object in hand, the
         part of the motion, 0 to 1.
     """
@@ -276,11 +306,16 @@ class WalkInFrame:
 
     Attributes
     ----------
-    ends : where it may have been blocked, in the order of the way, and last its commanded end.
+    ends : where it may have been blocked, in the order of the way (each grid line once for each square from which the
+        observation may be made), and last its commanded end.
     """
 
     def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Find the ends of a motion. observations : all, at their believed places."""
+        """Find the ends of a motion.
+
+        motion : at least one observation was made before it. observations : all, oldest first, at their believed
+        places.
+        """
         x, y = observations[motion.number - 1].place
         self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_map(*motion.shift))
         halts = [
@@ -291,9 +326,15 @@ class WalkInFrame:
         self.ends = (*halts, WalkEnd((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
-        """Return the state of the square that blocked the motion at `end`; FREE if one before it was occupied.
+        """Return the state of the square that blocked the motion at `end`: OCCUPIED, OPEN or FREE.
 
-        things : squares that were occupied then by objects moved since.
+        FREE if one before it was occupied, so that the motion cannot have come so far; OPEN at the commanded end.
+
+        Parameters
+        ----------
+        end : one of `ends`.
+        occupancy : the map in that frame.
+        things : squares (column, row) that were occupied then by objects moved since, map frame.
         """
         at = int(end.progress)
         entered = [crossing.entered for crossing in self._met[: at + 1]]
@@ -304,11 +345,17 @@ class WalkInFrame:
 
 
 def _square_state(occupancy: OccupancyMap, square: Square) -> int:
-    """Return the state of a square of the map."""
+    """Return the state of a square (column, row) of the map frame: OCCUPIED, OPEN or FREE.
+
+    The square must lie within the arrays of the map.
+    """
     row, column = occupancy.index(*square)
     return int(occupancy.state[row, column])
 
 
 def _own_observation_places(place: Position, frame: Frame) -> list[Position]:
-    """Return `observation_places` for a place of Utak's own frame, in that frame."""
+    """Return the places from which the observation at `place` may be made: one for each square that it touches.
+
+    place, result : (east, north) in squares, Utak's own frame.
+    """
     return [frame.place_to_utak(*view) for view in observation_places(frame.place_from_utak(*place))]

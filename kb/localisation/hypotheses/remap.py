@@ -38,7 +38,7 @@ class RemappedMap(NamedTuple):
     ----------
     occupancy : the map.
     held_objects : all held objects as they lie after the last observation, by name, map frame.
-    residual : fields that contradict the frame, over all observations.
+    residual : number of fields that contradict the frame, over all observations.
     incomplete : whether the replay stopped at the first contradiction. Then `held_objects` is empty and `residual` is a
         lower bound above 0.
     """
@@ -50,7 +50,10 @@ class RemappedMap(NamedTuple):
 
 
 def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
-    """Return where an object lies, in Utak's own frame. frame : the map frame of `held`."""
+    """Return where an object lies, and where it lay when it was first held, in Utak's own frame.
+
+    held : map frame. frame : the frame that relates this map frame to Utak's own.
+    """
     return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
 
 
@@ -61,16 +64,17 @@ class MapReplay:
     ----------
     new : the frame of the new map.
     old : the frame in which the held objects are given.
-    number : how many observations are integrated.
+    number : how many observations are integrated; they are the first ones.
     """
 
     def __init__(self, new: Frame, old: Frame) -> None:
+        """Begin with an empty map. new : the frame of the new map. old : the frame in which held objects are given."""
         self.new, self.old, self.number = new, old, 0
         self._occupancy, self._residual = OccupancyMap(), 0
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
     def copy(self) -> "MapReplay":
-        """Return an independent copy, to go on with."""
+        """Return an independent copy, to go on with: neither changes the other."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
@@ -82,9 +86,14 @@ class MapReplay:
         stop: int,
         only_whether: bool = False,
     ) -> "MapReplay":
-        """Integrate the observations before number `stop` that are not integrated yet, and return the replay.
+        """Integrate the observations before number `stop` that are not integrated yet, and return this replay itself.
 
-        observations : all; those integrated already must be the first of them. held_objects : old frame.
+        Parameters
+        ----------
+        observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the
+            first of them.
+        held_objects : all objects that were ever held, by name, old frame.
+        stop : how many observations are to be integrated then.
         only_whether : stop after the first observation that contradicts the frame.
         """
         for number in range(self.number, stop):
@@ -105,7 +114,7 @@ class MapReplay:
 
     @property
     def contradicted(self) -> bool:
-        """Return whether any integrated observation contradicts the frame."""
+        """Return whether any observation integrated so far contradicts the map of those before it in this frame."""
         return self._residual > 0
 
     def finish(
@@ -113,7 +122,12 @@ class MapReplay:
     ) -> RemappedMap:
         """Integrate the rest of the observations and return the map. The replay cannot go on afterwards.
 
-        Parameters as for `advance`.
+        Parameters
+        ----------
+        observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the
+            first of them.
+        held_objects : all objects that were ever held, by name, old frame.
+        only_whether : stop at the first contradiction; the result is incomplete then.
         """
         self.advance(observations, held_objects, len(observations), only_whether)
         if only_whether and self._residual:
@@ -126,7 +140,10 @@ class MapReplay:
         return RemappedMap(self._occupancy, now, self._residual)
 
     def _take(self, taken: Iterable[HeldObject], number: int) -> None:
-        """Declare floor where objects lay that were first held just before observation `number`."""
+        """Declare floor in the map where objects lay that were first held just before observation `number`.
+
+        taken : those objects, old frame; each is remembered as it lay, in the new frame.
+        """
         for held in taken:
             lay = self._taken[held.name] = _first_held(held, self.new, self.old, self._occupancy)
             patch = lay.possible
@@ -143,15 +160,16 @@ def remap(
     begun: MapReplay | None = None,
     only_whether: bool = False,
 ) -> RemappedMap:
-    """Return the map and the held objects in another frame.
+    """Return the map and the held objects in another frame; the arguments are not changed.
 
     Parameters
     ----------
     new : the frame to map in.
     old : the frame in which the held objects are given.
-    observations : all observations, with their places in Utak's own frame.
+    observations : all observations, oldest first, with their places in Utak's own frame.
     held_objects : all objects that were ever held, old frame.
-    begun : a replay of the first of the observations, with the same objects; it is copied.
+    begun : a replay of the first of the observations, with the same objects; it is copied. None to begin with an empty
+        map.
     only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
     """
     replay = MapReplay(new, old) if begun is None else begun.copy()
@@ -172,20 +190,34 @@ class RemapCache:
         observations: Sequence[Observation],
         held_objects: Mapping[str, HeldObject],
     ) -> None:
-        """Begin with the map of the believed frame. held_objects : all held objects in that frame, by name."""
+        """Begin with the map of the believed frame, which is taken to be free of contradictions.
+
+        Parameters
+        ----------
+        frame : the believed frame.
+        occupancy : its map.
+        observations : all, oldest first, with their places in Utak's own frame.
+        held_objects : all held objects in the believed frame, by name.
+        """
         self._frame, self._observations, self._held_objects = frame, observations, held_objects
         believed = RemappedMap(occupancy, held_objects, 0)
         self._known: dict[tuple[int, bytes], tuple[Frame | None, RemappedMap]] = {self._key(frame): (None, believed)}
         self._by_frame: dict[Frame, RemappedMap] = {}
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
-        """Return the map and the held objects in a frame. only_whether : as for `remap`."""
+        """Return the map and the held objects in a frame; the map must not be changed, for it is kept.
+
+        only_whether : ask only whether anything contradicts the frame; then the result may be incomplete.
+        """
         if frame not in self._by_frame or (self._by_frame[frame].incomplete and not only_whether):
             self._by_frame[frame] = self._found(frame, only_whether)
         return self._by_frame[frame]
 
     def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
-        """Return the map of a frame, replayed or shifted from a frame with the same squares."""
+        """Return the map of a frame, and the held objects in it, replayed or shifted from a frame of the same squares.
+
+        only_whether : whether an incomplete map, which ends at the first contradiction, will do.
+        """
         key = self._key(frame)
         if key not in self._known or (self._known[key][1].incomplete and not only_whether):
             found = remap(
@@ -201,7 +233,7 @@ class RemapCache:
         return under._replace(held_objects=held_objects)
 
     def _key(self, frame: Frame) -> tuple[int, bytes]:
-        """Return what frames of the same map share: the orientation, and the squares of all observations."""
+        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes)."""
         return frame.angle, observation_squares(frame, self._observations).tobytes()
 
 
@@ -211,12 +243,19 @@ class ReplayPrefixes:
     def __init__(
         self, frame: Frame, observations: Sequence[Observation], held_objects: Mapping[str, HeldObject]
     ) -> None:
-        """Begin with no observation. held_objects : all held objects in that frame, by name."""
+        """Begin with no observation.
+
+        Parameters
+        ----------
+        frame : that of the map and of the held objects.
+        observations : all, oldest first, with their places in Utak's own frame.
+        held_objects : all held objects in that frame, by name.
+        """
         self._observations, self._held_objects = observations, held_objects
         self._known = {0: MapReplay(frame, frame)}
 
     def first(self, number: int) -> MapReplay:
-        """Return the replay of the first `number` observations. Copy it before going on with it."""
+        """Return the replay of the first `number` observations; it is kept, so copy it before going on with it."""
         if number not in self._known:
             nearest = max(n for n in self._known if n < number)
             replay = self._known[nearest].copy()
@@ -230,17 +269,31 @@ def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
     """Return a held object for another origin of the frame with which every observation falls on the same squares.
 
     The object was first held where it was believed to lie, but every turn since was about another point.
+
+    held : map frame of `old`. new : the frame of the result.
     """
     return _moved_to(held, held, object_pose(held, old), new)
 
 
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
-    """Return a held object where it lay at another time, map frame. frame : the believed one."""
+    """Return a held object where it lay at another time, map frame.
+
+    held : where it lies now, map frame. pose : its pose at that time, Utak's own frame. frame : the believed frame.
+    """
     return _moved_to(held, held, pose, frame)
 
 
 def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
-    """Return an object as it lay when it was first held, in the new frame. occupancy : the map at that time."""
+    """Return an object as it lay when it was first held, in the new frame.
+
+    Its outline is turned from the old frame, or fitted anew to the map where the two frames differ too much in angle.
+
+    Parameters
+    ----------
+    held : what is known of it now, old frame.
+    new, old : the frames.
+    occupancy : the map of the new frame at that time.
+    """
     skew = new.angle - old.angle
     askew = 90 * round(skew / 90) - skew
     middle = new.place_from_utak(*_centroid(held.first, old))
@@ -259,7 +312,10 @@ def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMa
 
 
 def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
-    """Return an outline with its corners on grid corners, shifted to where the map contradicts it least."""
+    """Return an outline with its corners on grid corners, shifted to where the map contradicts it least.
+
+    At most one square in each axis. polygon : shapely Polygon with sides along the grid, map frame, as is the result.
+    """
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
     lying = [
@@ -269,7 +325,13 @@ def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
 
 
 def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
-    """Return the outline fitted to what was seen about a patch; None when too much of it is open."""
+    """Return the outline fitted to what was seen about a patch, shapely Polygon, map frame.
+
+    None when too much of it is open, when it goes on beyond the surroundings of the patch, or when no shape fits
+    exactly.
+
+    patch : the squares where the object should lie. occupancy : the map.
+    """
     own = np.pad(patch.mask, FITTED_OUTLINE_MARGIN)
     state = occupancy.window(patch.west - FITTED_OUTLINE_MARGIN, patch.south - FITTED_OUTLINE_MARGIN, own.shape)
     labels = components(state != FREE).labels
@@ -287,7 +349,10 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
 
 
 def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
-    """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it."""
+    """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it.
+
+    polygon : shapely Polygon, map frame. Squares that share an edge with one of its squares are beside it.
+    """
     patch = patch_of_polygon(polygon)
     own = np.pad(patch.mask, 1)
     about = with_edge_neighbours(own)
@@ -296,7 +361,16 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
 
 
 def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
-    """Return an object at a pose. taken : as it lay when it was first held, new frame. held : what is known of it."""
+    """Return an object at a pose, map frame of `new`.
+
+    Parameters
+    ----------
+    taken : the object as it lay when it was first held, new frame; its outline is used.
+    held : all else that is known of it.
+    pose : where it lies, Utak's own frame, if it was first held at `pose.taken`. Where `taken` lay elsewhere, the
+        result is shifted likewise.
+    new : the frame of the result.
+    """
     began = np.array([_centroid(taken.first, new)]) - pose.taken
     aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))
@@ -305,13 +379,16 @@ def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame)
 
 
 def _placed(polygon: Any, degrees: float, middle: Position) -> Any:
-    """Return a polygon turned by `degrees`, with its centroid at `middle`."""
+    """Return a shapely polygon turned by `degrees` (counter-clockwise positive), with its centroid at `middle`.
+
+    polygon, middle : of the same frame, in squares.
+    """
     centre = polygon.centroid
     turned = Rotate(degrees, (centre.x, centre.y)).carry(polygon)
     return Translate(middle[0] - centre.x, middle[1] - centre.y).carry(turned)
 
 
 def _centroid(polygon: Any, frame: Frame) -> Position:
-    """Return the centroid of a polygon of the map frame, in Utak's own frame."""
+    """Return the centroid of a shapely polygon of the map frame as (east, north) in squares, Utak's own frame."""
     centre = polygon.centroid
     return frame.place_to_utak(centre.x, centre.y)

@@ -24,9 +24,9 @@ class Crossing(NamedTuple):
 
     Attributes
     ----------
-    before : the place LINE_DISTANCE this side of the line.
+    before : the place LINE_DISTANCE (1e-6 squares) this side of the line, as the motion comes; (x, y) in squares.
     after : the place LINE_DISTANCE beyond it.
-    entered : the square beyond.
+    entered : the square (column, row) beyond, that of `after`.
     """
 
     before: Position
@@ -39,12 +39,13 @@ class MotionHypothesis(NamedTuple):
 
     Attributes
     ----------
-    number : of the observation after it.
+    number : of the observation after it; the first observation has the number 0.
     shift : the commanded motion, (east, north) in squares, Utak's own frame.
     hypotheses : the frame hypotheses before that observation.
     blocked : whether it is believed to have been blocked.
     in_hand : the name of the object in hand; None when there was none.
-    alternative_ends : other ends that agree with that observation, Utak's own frame, each with its probability.
+    alternative_ends : other ends that agree with that observation, (east, north) in squares, Utak's own frame, each
+        with its probability after the observation.
     """
 
     number: int
@@ -55,19 +56,35 @@ class MotionHypothesis(NamedTuple):
     alternative_ends: tuple[tuple[Position, float], ...] = ()
 
     def likely_ends(self, min_chance: float) -> list[Position]:
-        """Return the other ends of a probability above `min_chance`, Utak's own frame."""
+        """Return the other ends of a probability above `min_chance`: (east, north) in squares, Utak's own frame.
+
+        min_chance : 0 to 1.
+        """
         return [there for there, chance in self.alternative_ends if chance > min_chance]
 
     def chance_of_end(self, place: Position) -> float | None:
-        """Return the probability of an end at `place`, Utak's own frame; None when it is no known other end."""
+        """Return the probability of an end at `place`; None when it is no known other end.
+
+        Ends within 4e-6 squares count as the same. place : (east, north) in squares, Utak's own frame.
+        """
         near = (chance for there, chance in self.alternative_ends if math.dist(there, place) < 4 * LINE_DISTANCE)
         return max(near, default=None)
 
 
 def blocked_ends(start: Position, shift: Position) -> tuple[Position, ...]:
-    """Return where a motion may have been blocked, map frame: both sides of each grid line, the last first.
+    """Return where a motion may have been blocked: both sides of each grid line on the way, the last line first.
 
     The start is the last of them. There are none for a motion of length 0.
+
+    Parameters
+    ----------
+    start : where it began, (x, y) in squares, map frame.
+    shift : the commanded motion, (x, y) in squares, map frame.
+
+    Returns
+    -------
+    tuple of (x, y)
+        In squares, map frame, each 1e-6 squares from its grid line.
     """
     lines = reversed(line_crossings(start, shift))
     found = [place for crossing in lines for place in (crossing.after, crossing.before)]
@@ -75,17 +92,25 @@ def blocked_ends(start: Position, shift: Position) -> tuple[Position, ...]:
 
 
 def slipped_ends(place: Position) -> tuple[Position, ...]:
-    """Return the places whole squares away from `place`, up to MAX_WALK_SLIP in each axis, the nearest first."""
+    """Return the places whole squares away from `place`, up to MAX_WALK_SLIP (2) in each axis, the nearest first.
+
+    `place` itself is left out. place : (x, y) in squares, of the frame of the result.
+    """
     reach = range(-MAX_WALK_SLIP, MAX_WALK_SLIP + 1)
     offsets = sorted((i * i + j * j, i, j) for i in reach for j in reach if i or j)
     return tuple((place[0] + i, place[1] + j) for _, i, j in offsets)
 
 
 def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
-    """Return where a motion crosses grid lines, in order, map frame.
+    """Return where a motion crosses grid lines, in the order of the way; empty where it crosses none.
 
     Through a corner of squares the motion enters the two squares beside it first, one after the other, and then the one
-    beyond.
+    beyond. A line on which the motion begins or ends is not crossed.
+
+    Parameters
+    ----------
+    start : where it began, (x, y) in squares, map frame.
+    shift : the motion, (x, y) in squares, map frame.
     """
     found: list[tuple[float, int, Crossing]] = []
     signs = [math.copysign(LINE_DISTANCE, v) for v in shift]
@@ -124,9 +149,9 @@ def snap_to_line(place: Position) -> Position:
 
 
 def snap_to_middle(place: Position) -> Position:
-    """Return `place` with each coordinate within 2e-6 squares of the middle of a square moved onto it, map frame.
+    """Return `place` with each coordinate within 2e-6 squares of the middle of a square moved onto it.
 
-    Motions from beside a grid line to the middle of a square end that near to it.
+    Motions from beside a grid line to the middle of a square end that near to it. place : (x, y) in squares, map frame.
     """
     x, y = (math.floor(v) + 0.5 if abs(v - math.floor(v) - 0.5) <= 2 * LINE_DISTANCE else v for v in place)
     return x, y
@@ -135,8 +160,8 @@ def snap_to_middle(place: Position) -> Position:
 def observation_places(place: Position) -> tuple[Position, ...]:
     """Return the places from which the observation at `place` may be made, one for each square that it touches.
 
-    Within 2e-6 squares of a grid line those are both sides of the line, at a grid corner all four squares; else it is
-    `place` alone. Map frame.
+    Within 2e-6 squares of a grid line those are both sides of the line (1e-6 squares from it), at a grid corner all
+    four squares, the south-west one first; else it is `place` alone. All are (x, y) in squares, map frame.
     """
     columns, rows = (
         (v,) if abs(v - round(v)) > 2 * LINE_DISTANCE else (round(v) - LINE_DISTANCE, round(v) + LINE_DISTANCE)
@@ -146,18 +171,29 @@ def observation_places(place: Position) -> tuple[Position, ...]:
 
 
 def entered_square(place: Position, towards: Position) -> Square:
-    """Return the square that a motion from `place` towards a point was about to enter, map frame."""
+    """Return the square (column, row) that a motion from `place` towards a point was about to enter, map frame.
+
+    It is the one that holds the point 1 square ahead; where both points are the same, it is the square of `place`.
+    """
     away = math.dist(place, towards) or 1.0
     ahead = [a + (b - a) / away for a, b in zip(place, towards, strict=True)]
     return math.floor(ahead[0]), math.floor(ahead[1])
 
 
 def add(place: Position, shift: Position) -> Position:
-    """Return the sum of a place and a shift of the same frame."""
+    """Return the sum of a place and a shift of the same frame: (x, y) or (east, north) in squares."""
     return place[0] + shift[0], place[1] + shift[1]
 
 
 def _crossing(line: int, across: float, axis: int, onward: float) -> Crossing:
-    """Return the crossing of a line of one axis, at a place along it. onward : LINE_DISTANCE with the motion's sign."""
+    """Return the crossing of a grid line by a motion, map frame.
+
+    Parameters
+    ----------
+    line : its whole-numbered coordinate.
+    across : where the motion crosses it, by the other coordinate, in squares.
+    axis : 0 for a line x = `line`, 1 for a line y = `line`.
+    onward : LINE_DISTANCE with the sign of the motion along that axis.
+    """
     before, after = ((at, across) if axis == 0 else (across, at) for at in (line - onward, line + onward))
     return Crossing(before, after, (math.floor(after[0]), math.floor(after[1])))

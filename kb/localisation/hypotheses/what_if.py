@@ -50,9 +50,9 @@ class WhatIf(NamedTuple):
     ----------
     frame : the frame.
     hypotheses : all frame hypotheses that are left then.
-    place : of Utak now, map frame of `frame`.
+    place : of Utak now, (x, y) in squares, map frame of `frame`.
     outcome : of the motion of the object in hand; None when none was moved.
-    residual : fields that contradict it, over all observations.
+    residual : number of fields that contradict it, over all observations; 0 is best.
     searched : whether hypotheses were taken up again that had been given up.
     """
 
@@ -70,16 +70,16 @@ class Surprise:
 
     Attributes
     ----------
-    command : the command before the observation.
-    ranges : (160, 2) count ranges of its fields.
+    command : the command before the observation, Utak's own frame.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each of its fields.
     frame : the believed frame.
-    place : of Utak before the command, map frame.
+    place : of Utak before the command, (x, y) in squares, map frame.
     occupancy : the believed map.
-    observations : all earlier ones.
+    observations : all earlier ones, oldest first.
     held_objects : all objects that were ever held, before the command, by name, map frame.
     in_hand : the name of the object in hand; None when there is none.
     hypotheses : the frame hypotheses that are left.
-    pictures : completions of the believed map; None when none were drawn.
+    pictures : completions of the believed map (sampled maps that agree with all counts); None when none were drawn.
     """
 
     command: Command
@@ -97,24 +97,30 @@ class Surprise:
 
     @property
     def carried(self) -> tuple[str, Push | Turn] | None:
-        """Return the name of the object that was to be moved, and the command; None when none was."""
+        """Return the name of the object that was to be moved, and the command (push or turn); None when none was."""
         if self.in_hand is not None and isinstance(self.command, Push | Turn):
             return self.in_hand, self.command
         return None
 
     @property
     def degrees(self) -> float:
-        """Return the commanded rotation of the held object, in degrees, counter-clockwise positive."""
+        """Return the commanded rotation of the held object, in degrees, counter-clockwise positive; 0 for no turn."""
         return self.command.degrees if isinstance(self.command, Turn) and self.in_hand is not None else 0.0
 
     @property
     def any_turned(self) -> bool:
-        """Return whether any object was ever turned, so that it tells where the origin of the frame lies."""
+        """Return whether any object was ever turned, or is to be turned now: then it tells where the origin lies.
+
+        An object that was turned by whole rounds in all does not count.
+        """
         return self.degrees != 0.0 or any(held.turned % 360 for held in self.held_objects.values())
 
     @property
     def commanded_place(self) -> Position:
-        """Return where the command leads, Utak's own frame."""
+        """Return where the command leads: (east, north) in squares, Utak's own frame.
+
+        That is where Utak is already unless it walks with an empty hand or pushes an object.
+        """
         east, north = self.frame.place_to_utak(*self.place)
         if isinstance(self.command, Move if self.in_hand is None else Push):
             return east + self.command.east, north + self.command.north
@@ -122,20 +128,30 @@ class Surprise:
 
     @cached_property
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
-        """Return the frame hypotheses with which all observations before the command agree."""
+        """Return what all observations before the command leave of the frame hypotheses, in their order; cached.
+
+        Only the last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute
+        all.
+        """
         return consistent_hypotheses(
             self.observations[-MAX_JUDGING_OBSERVATIONS:], self.hypotheses, self.unsettled_discs
         )
 
     @cached_property
     def judging_observations(self) -> list[Observation]:
-        """Return the observations by which frames are judged, the new one last, where it was commanded."""
+        """Return the observations by which frames are judged, oldest first: the last earlier ones and the new one.
+
+        The new one has its place where it was commanded. Earlier ones are MAX_JUDGING_OBSERVATIONS (24) at most.
+        """
         newest = Observation(self.ranges, self.commanded_place)
         return [*self.observations[-MAX_JUDGING_OBSERVATIONS:], newest]
 
     @cached_property
     def unsettled_discs(self) -> list[UnsettledDisc]:
-        """Return the parts of the table where any object lay at any time, Utak's own frame, sorted."""
+        """Return the parts of the table where any object lay at any time, or is to lie now, sorted.
+
+        They are discs of Utak's own frame, each of the reach of the object plus UNSETTLED_MARGIN (1.5) squares.
+        """
         discs = set()
         for held in self.held_objects.values():
             lying = [held.polygon, held.first]
@@ -152,7 +168,7 @@ class Surprise:
 
     @cached_property
     def prefixes(self) -> ReplayPrefixes:
-        """Return the replays of the first observations in the believed frame."""
+        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached."""
         return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 
     # -- evaluation of a frame -------------------------------------------------------------------
@@ -168,9 +184,13 @@ class Surprise:
     ) -> WhatIf:
         """Return what contradicts a frame, with the outcome of the motion that fits it best.
 
-        hypotheses, searched : for the result. cut_short : whether the motion may have ended early without a known
-        reason. origin_error : squares by which the origin of the frame may be wrong. only_whether : as for
-        `evaluate_outcome`.
+        Parameters
+        ----------
+        frame : the frame in question.
+        hypotheses, searched : taken over into the result.
+        cut_short : whether the motion may have ended early without a known reason; then only such ends are tried.
+        origin_error : squares by which the origin of the frame may be wrong.
+        only_whether : ask only whether anything contradicts it; then the residual may be too small, though not 0.
         """
         if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
             return refuted._replace(searched=searched)
@@ -189,7 +209,10 @@ class Surprise:
         return min(tried, key=lambda one: one.residual)
 
     def refuted(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
-        """Return the evaluation of a frame that earlier observations contradict; None when none does."""
+        """Return the evaluation of a frame that earlier observations contradict; None when none does.
+
+        Its residual may be too small, and it has no outcome. hypotheses : taken over into the result.
+        """
         residual = self.remapped(frame, only_whether=True).residual
         place = frame.place_from_utak(*self.commanded_place)
         return WhatIf(frame, hypotheses, place, None, residual, False) if residual else None
@@ -206,9 +229,14 @@ class Surprise:
     ) -> WhatIf:
         """Return what contradicts a frame together with an outcome of the motion of the object in hand.
 
-        hypotheses, searched : for the result. slack : squares by which the object may have ended elsewhere.
-        origin_error : squares by which the origin of the frame may be wrong. only_whether : ask only whether anything
-        contradicts them; then the residual may be too small, though not 0.
+        Parameters
+        ----------
+        frame : the frame in question.
+        hypotheses, searched : taken over into the result.
+        outcome : map frame of `frame`.
+        slack : squares by which the object may have ended elsewhere.
+        origin_error : squares by which the origin of the frame may be wrong.
+        only_whether : ask only whether anything contradicts them; then the residual may be too small, though not 0.
         """
         assert self.carried is not None
         name, held_objects = self.carried[0], self.remapped(frame).held_objects
@@ -226,7 +254,16 @@ class Surprise:
         origin_error: float,
         only_whether: bool = False,
     ) -> int:
-        """Return how many fields contradict a frame, over all observations; `held_objects` after the newest one."""
+        """Return how many fields contradict a frame, over all observations.
+
+        Parameters
+        ----------
+        frame : the frame in question.
+        held_objects : all objects that were ever held, after the newest motion, map frame of `frame`.
+        place : of Utak then, (x, y) in squares, map frame of `frame`.
+        origin_error : squares by which the origin of the frame may be wrong.
+        only_whether : ask only whether there are any; then the number may be too small, though not 0.
+        """
         under = self.remapped(frame)
         if only_whether and under.residual:
             return under.residual
@@ -234,26 +271,36 @@ class Surprise:
         return under.residual + count_clashes(frame, under.occupancy, lying, place, self.ranges, only_whether)
 
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
-        """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame."""
+        """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame.
+
+        The place is (x, y) in squares, the outline a shapely Polygon; all in the map frame of `frame`. An object must
+        be moved.
+        """
         assert self.carried is not None
         name, command = self.carried
         place = frame.place_from_utak(*self.frame.place_to_utak(*self.place))
         return place, self.remapped(frame).held_objects[name].polygon, command_motion(command, frame, place)
 
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
-        """Return the map of all earlier observations in a frame; kept for each frame.
+        """Return the map of all earlier observations in a frame, with the held objects; kept for each frame.
 
-        only_whether : as for kb.localisation.hypotheses.remap.remap.
+        only_whether : ask only whether anything contradicts the frame; then the result is incomplete if something does.
         """
         return self._maps.remapped(frame, only_whether)
 
     @cached_property
     def _maps(self) -> RemapCache:
-        """Return the maps of all frames that were asked for."""
+        """Return the cache of the maps, with the held objects, of all frames that were asked for; cached itself."""
         return RemapCache(self.frame, self.occupancy, self.observations, self.held_objects)
 
     def _outcomes(self, frame: Frame, cut_short: bool) -> Iterator[CarryOutcome]:
-        """Yield the motion as far as known obstacles let it go, and as commanded; or, cut short, all early ends."""
+        """Yield the outcomes of the motion of the object in hand that are to be evaluated in a frame.
+
+        In the map frame of `frame`: the motion as far as known obstacles let it go, if there are any on the way, and
+        then as commanded.
+
+        cut_short : whether it ended early without a known reason; then it is yielded as stuck, and with all early ends.
+        """
         place, polygon, motion = self.motion_in(frame)
         if cut_short:
             yield from (outcome for outcome in other_outcomes(place, polygon, motion) if outcome.stopped)
@@ -268,20 +315,33 @@ class Surprise:
 
     @cached_property
     def obstructions(self) -> Obstructions:
-        """Return the obstacles, known and possible, about the motion of the object in hand, believed frame."""
+        """Return the obstacles, occupied squares and open ones, about the motion of the object in hand; cached.
+
+        In the map frame of the believed frame. An object must be in hand, and to be moved.
+        """
         return Obstructions(self.occupancy, *self.motion_in(self.frame), self.pictures)
 
     # -- after it ---------------------------------------------------------------------------------
 
     def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
-        """Return all held objects after an outcome of the motion of the one in hand, believed frame."""
+        """Return all held objects after an outcome of the motion of the one in hand, believed frame.
+
+        Its rotation is not counted in `turned`; outlines alone matter here.
+        """
         return [
             held.moved(outcome.polygon, held.slack, commanded=outcome.as_commanded) if name == self.in_hand else held
             for name, held in self.held_objects.items()
         ]
 
     def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
-        """Return a copy of the map with the observation integrated at `place`, and the objects as in `held_objects`."""
+        """Return a copy of the believed map with the new observation integrated as if it was made at `place`.
+
+        Parameters
+        ----------
+        held_objects : all objects that were ever held, where they lie then, map frame; they are subtracted from the
+            counts.
+        place : of Utak then, (x, y) in squares, map frame.
+        """
         x, y = (math.floor(v) for v in place)
         samples, counts = subtract_held_objects(self.frame.samples(), self.ranges, x, y, held_objects)
         occupancy = self.occupancy.copy()
@@ -302,9 +362,10 @@ def agreeing_hypotheses(
 
     Parameters
     ----------
-    hypotheses : points of one origin grid.
-    frame, place, occupancy, observations, held_objects : as believed, with the motion before the observation applied.
-    ranges : (160, 2) count ranges of the observation.
+    hypotheses : points of one origin grid, all of one angle; at least one.
+    frame, place, occupancy, observations, held_objects : as believed, with the motion before the observation applied;
+        place in squares, map frame.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
     """
     own, error = frame.place_to_utak(*place), math.hypot(*grid_cell_size(hypotheses)) / 2
     agree, maps = [], RemapCache(frame, occupancy, observations, held_objects)
@@ -318,7 +379,11 @@ def agreeing_hypotheses(
 
 
 def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motion:
-    """Return a command as a motion of the map frame. place : of Utak when the command is given, map frame."""
+    """Return a command as a motion of the map frame of `frame`, in squares or degrees.
+
+    command : Utak's own frame. place : of Utak when the command is given, (x, y) in squares, map frame; a turn is about
+    it.
+    """
     if isinstance(command, Turn):
         return Rotate(command.degrees, place)
     return Translate(*frame.to_map(command.east, command.north))
@@ -332,15 +397,17 @@ def count_clashes(
     ranges: FieldRanges,
     only_whether: bool = False,
 ) -> int:
-    """Return how many fields of an observation contradict the map and the held objects.
+    """Return how many fields of an observation contradict the map and the held objects; 0 when none does.
+
+    Fields of earlier observations that are no longer possible with it count as well.
 
     Parameters
     ----------
     frame : of the map.
     occupancy : the map.
     held_objects : all held objects where they lie, map frame.
-    place : where the observation was made, map frame.
-    ranges : (160, 2) count ranges of the observation.
+    place : where the observation was made, (x, y) in squares, map frame.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
     only_whether : ask only whether there are any; then the number may be too small, though not 0.
     """
     x, y = math.floor(place[0]), math.floor(place[1])

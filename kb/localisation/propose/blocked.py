@@ -36,9 +36,10 @@ class BlockedMotion(NamedTuple):
     Attributes
     ----------
     how : predicted for the end of the whole motion, else blocked.
-    place : from which the observation is made then, map frame.
-    chance : its probability before the observation.
-    contact_squares : the open squares one of which blocked it; empty where something known did, or nothing.
+    place : from which the observation is made then, (x, y) in squares, map frame.
+    chance : its probability before the observation, 0 to 1.
+    contact_squares : the open squares (settled neither as free nor as occupied) one of which blocked it, (column, row)
+        of the map frame; empty where something known did, or nothing.
     outcome : of the motion of the object in hand; None when there is none.
     """
 
@@ -52,8 +53,8 @@ class BlockedMotion(NamedTuple):
 def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -> list[BlockedMotion]:
     """Return the possible ends of a straight motion: its whole way first, then contacts, the likeliest first.
 
-    None are returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each
-    end is returned once for each side, for the observation may be made from either.
+    [] is returned for a turn, or when the motion hardly met anything and ends inside a square. At a grid line each end
+    is returned once for each side, for the observation may be made from either.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
     Returns
     -------
     list of BlockedMotion
-        Their chances sum to 1 at most.
+        Their chances sum to 1 at most; no more than MAX_ENDS contacts.
     """
     if not isinstance(motion, Translate):
         return []
@@ -79,12 +80,18 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
 
 
 def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
-    """Return the MAX_ENDS likeliest ends, or contacts, above MIN_END_CHANCE, the likeliest first."""
+    """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most.
+
+    Those of a chance of MIN_END_CHANCE or less are left out; [] when none is left.
+    """
     return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 
 
 def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
-    """Return an end once for each place from which the observation may be made there, its chance divided evenly."""
+    """Return an end once for each place from which the observation may be made there, its chance divided evenly.
+
+    On a grid line those are both sides of it, at a grid corner all four squares; else the end alone.
+    """
     found = observation_places(end.place)
     outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
     return [
@@ -94,7 +101,10 @@ def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
 
 
 def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
-    """Return the ends of a walk at each grid line that it crosses, once for each side of the line."""
+    """Return the ends of a walk at each grid line that it crosses, in order, once for each side of the line.
+
+    They are blocked; the chance of a contact is divided evenly between both sides. motion : map frame.
+    """
     way, occupancy = line_crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
     chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
     found = []
@@ -106,7 +116,10 @@ def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]
 
 
 def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> list[BlockedMotion]:
-    """Return the ends of a push at each contact of Utak or of the object."""
+    """Return the ends of a push at each contact of Utak or of the object, in the order of the way.
+
+    held : the object before the push. motion : as commanded, map frame.
+    """
     place, polygon = surprise.place, held.polygon
     found = []
     for contact in surprise.obstructions.contacts(place, polygon, motion):
@@ -126,7 +139,8 @@ def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanati
     Returns
     -------
     list of Explanation
-        In the same order; prior costs are relative to the best one.
+        In the same order, [] when it agrees with none; `prior_cost` is in log odds (natural logarithm), relative to the
+        best one, which has 0.
     """
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
@@ -145,11 +159,11 @@ def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanati
 
 
 def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
-    """Settle the square of Utak in a map after an explanation, and return whether the contact is possible there.
+    """Settle the square of Utak in `occupancy` after an explanation, and return whether the contact is possible there.
 
     A contact is impossible where all its squares are free, or where Utak would be in an occupied square. An observation
     from beyond the line of contact is made from the obstacle's square. At the commanded end on a line, or at a known
-    obstacle, the observation may be made from any square beside it, so nothing is settled.
+    obstacle, the observation may be made from any square beside it, so nothing is settled and True is returned.
     """
     against, (x, y) = explanation.contact_squares, explanation.place
     own = (math.floor(x), math.floor(y))
@@ -165,5 +179,5 @@ def _settle_contact(occupancy: OccupancyMap, explanation: Explanation) -> bool:
 
 
 def has_whole_way(explanations: Sequence[Explanation]) -> bool:
-    """Return whether one of the explanations is that the motion went its whole way."""
+    """Return whether one of the explanations is that the motion went its whole way (kind predicted)."""
     return any(explanation.how == "predicted" for explanation in explanations)

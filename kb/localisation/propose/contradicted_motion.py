@@ -33,7 +33,8 @@ def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> 
     Returns
     -------
     CarryOutcome or None
-        The likeliest contact that nothing contradicts, or a shortened turn.
+        The likeliest contact that nothing contradicts, or a shortened turn. None as well when the whole motion is
+        contradicted and no contact explains it.
     """
     if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
         return likeliest_contact(surprise, held, motion)
@@ -41,9 +42,10 @@ def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> 
 
 
 def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
-    """Return whether the observation contradicts what it settles together with all earlier ones after an outcome.
+    """Return whether what the observation settles, together with all earlier ones, contradicts the observation itself.
 
-    outcome : of the motion of the object in hand; nothing settled before contradicts it.
+    outcome : the supposed outcome of the motion of the object in hand, believed frame; nothing settled before
+    contradicts it.
     """
     held_objects = surprise.objects_after(outcome)
     occupancy = surprise.map_after(held_objects, outcome.place)
@@ -51,7 +53,10 @@ def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
 
 
 def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
-    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none."""
+    """Return the outcome of the likeliest contact that nothing contradicts; None when there is none.
+
+    held : the object before the motion. motion : as commanded, map frame.
+    """
     for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
         there = surprise.objects_after(end)
         fits = not count_clashes(surprise.frame, surprise.occupancy, there, end.place, surprise.ranges)
@@ -64,7 +69,10 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
     """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None.
 
     No observation contradicts the whole turn. But nothing can have come to stand where the object lay before. Of ends
-    that explain as much the one in the middle is returned.
+    that explain as much the one of the middle rotation is returned, and only where it leaves fewer than half of the
+    newly occupied squares beside the object.
+
+    held : the object before the turn. motion : as commanded, map frame.
     """
     place, polygon = surprise.place, held.polygon
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
@@ -85,7 +93,15 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
 
 
 def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
-    """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin."""
+    """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin.
+
+    Parameters
+    ----------
+    held : the object before the turn.
+    polygon : its outline after it, shapely Polygon, map frame.
+    slack : how far the true outline may lie from that, in squares.
+    degrees : of the turn, counter-clockwise positive.
+    """
     moved = held.moved(polygon, slack, degrees)
     before, after = (abs(math.sin(math.radians(one.turned / 2))) for one in (held, moved))
     whole = (
@@ -97,7 +113,11 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
 def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
     """Return how many squares right beside an object are occupied by the newest observation alone.
 
-    held : the object where it lies now. others : all other held objects. place : of Utak now, map frame.
+    Parameters
+    ----------
+    held : the object where it lies now, map frame.
+    others : all other held objects.
+    place : of Utak now, (x, y) in squares, map frame.
     """
     before, after = surprise.occupancy, surprise.map_after([*others, held], place)
     about = patch_of_polygon(held.polygon.buffer(CROWDED_DISTANCE, join_style="mitre")).squares()

@@ -59,11 +59,16 @@ class CarriedMotion:
 
     Attributes
     ----------
-    ends : where it may have been blocked, the likeliest first by what was known before it, and its commanded end.
+    ends : where it may have been blocked, the likeliest first by what was known before it, and last its commanded end.
+        An end on a grid line comes once for each square from which the observation may be made.
     """
 
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
-        """Find the ends of a motion with an object in hand."""
+        """Find the ends of a motion with an object in hand.
+
+        motion : its object has a known pose at the observation before it. surprise : the believed frame, map and
+        objects.
+        """
         assert motion.in_hand is not None
         frame, observations, held_objects = (
             surprise.frame,
@@ -84,13 +89,19 @@ class CarriedMotion:
         self.ends = tuple(WalkEnd(frame.place_to_utak(*view), part) for part, view in halts)
 
     def _place_after(self, fraction: float) -> Position:
-        """Return Utak's place after a fraction of the motion, map frame."""
+        """Return Utak's place after a fraction (0 to 1) of the motion, (x, y) in squares, map frame."""
         return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
-        """Return the state of what blocked the motion at `end`; FREE if something known would have blocked it before.
+        """Return the state of what blocked the motion at `end`: OCCUPIED for something known, OPEN, or FREE.
 
-        things : squares that were occupied then by objects moved since.
+        FREE if something known would have blocked it before, or if nothing can be met there; OPEN at the commanded end.
+
+        Parameters
+        ----------
+        end : one of `ends`.
+        occupancy : the map in the believed frame.
+        things : squares (column, row) that were occupied then by objects moved since, map frame.
         """
         body, obstructions = ContactBody(self._polygon, [self._place]), self._obstructions(occupancy)
         known = obstructions.known.first_contact(body, self._motion).fraction
@@ -106,7 +117,7 @@ class CarriedMotion:
         return OPEN if end.progress == 1.0 or any(met) else FREE
 
     def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
-        """Return the obstacles about the motion in a map."""
+        """Return the obstacles about the motion in a map, known and possible."""
         return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
@@ -121,7 +132,7 @@ def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) 
     Returns
     -------
     list of ReestimatedMotion
-        Contacts with something known first, then by motion, the newest first.
+        Contacts with something known first, then by motion, the newest first; [] when there is none.
     """
     tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
     found = [one for motion in tried for one in _other_ends(surprise, motion)]
@@ -132,17 +143,17 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
     """Return other ends, with another origin of the frame, of the newest carrying motion that explains everything so.
 
     Neither is explained without the other: where an object was blocked depends on where it lay, which is known in
-    squares; where the observations since were made depends on the origin.
+    squares; where the observations since were made depends on the origin. MAX_MOTIONS_WITH_ORIGIN motions are tried.
 
     Parameters
     ----------
     surprise : the newest observation, which the believed ends contradict.
-    motions : earlier straight motions, oldest first.
+    motions : earlier straight motions, oldest first; those with an empty hand are skipped.
 
     Returns
     -------
     list of ReestimatedMotion
-        Of one motion only; contacts with something known first.
+        Of one motion only; contacts with something known first; [] when there is none.
     """
     tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
     found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
@@ -150,13 +161,13 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
 
 
 def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
-    """Return whether the pose of the object in hand before a motion is known, if there was one."""
+    """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
     before = surprise.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
 def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion in the believed frame."""
+    """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
     observations, frame = surprise.observations, surprise.frame
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
@@ -186,7 +197,7 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
 
 
 def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion of an object, each with another origin of the frame."""
+    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
     origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
         corrected, correction = _corrected(surprise, motion, end)
@@ -210,7 +221,12 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
 
 
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
-    """Return a surprise as it is if an earlier motion ended at `end`, and the correction."""
+    """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since.
+
+    Places, observations and objects are corrected; the map of the surprise is not, and must be made anew.
+
+    motion : earlier than the newest observation. end : Utak's own frame.
+    """
     frame, believed = surprise.frame, surprise.observations[motion.number].place
     shift = end.place[0] - believed[0], end.place[1] - believed[1]
     since = [held for held in surprise.held_objects.values() if held.since > motion.number]
@@ -225,10 +241,12 @@ def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tu
 
 
 def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Position:
-    """Return the shift of an object when the observation that showed it was made `shift` away, Utak's own frame.
+    """Return the shift of an object when the observation that showed it was made `shift` away.
 
     An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     the observation is made.
+
+    shift, result : (east, north) in squares, Utak's own frame.
     """
     if not is_grid_aligned(held.first):
         return shift
@@ -241,7 +259,20 @@ def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Posi
 def _moved_since(
     under: RemappedMap, observations: Sequence[Observation], motion: MotionHypothesis, frame: Frame
 ) -> frozenset[Square]:
-    """Return the squares that objects covered when a motion was made, without the object in hand, map frame."""
+    """Return the squares that objects covered when a motion was made, without the object in hand.
+
+    Parameters
+    ----------
+    under : the map and all objects that were ever held, where they lie now, map frame of `frame`.
+    observations : all, oldest first.
+    motion : the motion in question.
+    frame : that of the map.
+
+    Returns
+    -------
+    frozenset of (column, row)
+        Map frame. An object that was first held later counts where it was first held.
+    """
     before = {pose.name: pose for pose in observations[motion.number - 1].moved}
     squares: frozenset[Square] = frozenset()
     for held in under.held_objects.values():

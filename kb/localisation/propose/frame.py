@@ -47,7 +47,7 @@ def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | N
     Returns
     -------
     WhatIf or None
-        Its residual is 0 where a frame explains everything.
+        Its residual is 0 where a frame explains everything; else it is the least one.
     """
     if surprise.any_turned:
         found = _other_orientation(surprise) or origin_from_turn(surprise, simple)
@@ -59,7 +59,7 @@ def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | N
 def _other_orientation(surprise: Surprise) -> WhatIf | None:
     """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none.
 
-    Its origin is taken to be the middle of the square.
+    Its origin is taken to be the middle of the square of waking.
     """
     angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
@@ -70,7 +70,10 @@ def _other_orientation(surprise: Surprise) -> WhatIf | None:
 
 
 def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
-    """Return the evaluation of the least residual; None when no frame is left."""
+    """Return the evaluation of the least residual; None when no frame is left.
+
+    The first frame without residual is returned at once. reconsider : whether frames that were given up may be tried.
+    """
     found: list[WhatIf] = []
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(surprise.observations) + 1)
     few = max(MIN_EVALUATED_FRAMES, min(MAX_EVALUATED_FRAMES, affordable))
@@ -95,9 +98,11 @@ def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
 
 
 def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
-    """Yield hypotheses to evaluate, the likeliest first, each time with whether they had been given up.
+    """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether they had been given up before.
 
-    Another origin is tried before orientations of a worse map prior.
+    Another origin is tried before orientations of a worse map prior. A set may be empty.
+
+    reconsider : whether hypotheses that were given up are yielded at all.
     """
     recent, unsettled = surprise.judging_observations, surprise.unsettled_discs
     left = consistent_hypotheses(recent, surprise.hypotheses, unsettled)
@@ -112,7 +117,10 @@ def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[Frame
 
 
 def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """Return all hypotheses that observations leave, of orientations near to those that are left."""
+    """Return all hypotheses that observations leave, of orientations near to those that are left.
+
+    Near is within SEARCHED_ANGLE_MARGIN (2) degrees; of the believed orientation alone when they differ widely.
+    """
     angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
         angles = [surprise.frame.angle]
@@ -124,7 +132,7 @@ def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
     """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts.
 
     A contact with something known is preferred; among orientations that do as well, the middle one is returned. None
-    when there is none. few : frames to evaluate, at most.
+    when there is none, or when no object was to be moved. few : frames to evaluate, at most.
     """
     if surprise.carried is None:
         return None
@@ -143,9 +151,9 @@ class BlockedPushWithOrigin(NamedTuple):
 
     Attributes
     ----------
-    what_if : its evaluation.
-    chance : the probability that the push was blocked so.
-    against : log odds against the part of the square in which the origin lies then.
+    what_if : its evaluation, without residual.
+    chance : the probability that the push was blocked so, 0 to 1.
+    against : log odds (natural logarithm) against the part of the square of waking in which the origin lies then.
     """
 
     what_if: WhatIf
@@ -165,8 +173,8 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
     Returns
     -------
     list of BlockedPushWithOrigin
-        One for each square of Utak and each contact. Empty without a push, and once an object was turned, for turned
-        objects tell the origin.
+        One for each square of Utak and each contact, with the most central origin of those that give it. [] without a
+        push, and once an object was turned, for turned objects tell the origin.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
     asked = surprise.carried is not None and not surprise.any_turned
@@ -186,7 +194,10 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
 
 
 def _blocked_pushes(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
-    """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability."""
+    """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability.
+
+    Nothing is yielded when earlier observations contradict the frame. An end on a grid line comes once for each side.
+    """
     under = surprise.remapped(frame, only_whether=True)
     if under.residual:
         return

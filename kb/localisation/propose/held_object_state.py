@@ -24,11 +24,13 @@ TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touc
 def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
     """Return an object in hand after a motion.
 
+    Where it did not move, only the counts `stuck` and `thwarted` go on, and its place may become inexact.
+
     Parameters
     ----------
-    held : the object before the motion.
+    held : the object before the motion, map frame.
     outcome : the chosen outcome; None when nothing is known to have moved.
-    residual : fields that the outcome leaves unexplained.
+    residual : number of fields that the outcome leaves unexplained.
     suspected : whether an open square is suspected to have blocked the motion.
     """
     held = replace(held, unexplained=max(held.unexplained, residual))
@@ -50,13 +52,14 @@ def lean_on_obstacle(
 ) -> HeldObject:
     """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
 
-    It stays where it is when it touches something there, or when every touching place contradicts more of what is seen.
+    It stays where it is after a turn, when it touches something there, when nothing is within MAX_LEANING_DISTANCE
+    (0.8) squares, or when every touching place contradicts more of what is seen.
 
     Parameters
     ----------
-    held : the object after the motion.
+    held : the object after the motion, map frame.
     motion : as commanded, map frame.
-    known : the known obstacles.
+    known : the known obstacles, map frame.
     count_clashes : returns how many fields contradict an object where it lies.
     """
     if not isinstance(motion, Translate):
@@ -72,7 +75,12 @@ def lean_on_obstacle(
 
 
 def _touching_places(polygon: Any, motion: Translate, known: Obstacles) -> Iterator[tuple[float, Any]]:
-    """Yield outlines that touch an obstacle on the motion or beside it, each with its distance in squares."""
+    """Yield outlines that touch an obstacle on the motion or beside it, each with its distance from the believed one.
+
+    Pairs of the distance in squares and a shapely Polygon, map frame; not in the order of distance.
+
+    polygon : the believed outline after the motion, shapely Polygon, map frame. known : obstacles, map frame.
+    """
     if not any(motion):
         return
     onward = motion.steered(2 * MAX_LEANING_DISTANCE, 0.0)

@@ -24,18 +24,19 @@ SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, 
 def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
     """Yield explanations that a push went as commanded and the object is larger than it seemed, the least larger first.
 
-    Only for an object that never moved before, with its sides on grid lines.
+    Only for an object that never moved before, with its sides on grid lines; nothing for a turn.
 
     Parameters
     ----------
     surprise : the observation after the push.
-    held : the object in hand, before the push.
+    held : the object in hand, before the push, map frame.
     motion : as commanded, map frame.
 
     Yields
     ------
     Explanation
-        Without residual; `larger` is the object before the push.
+        Without residual; `larger` is the object before the push; `distance` is how far it goes on beyond what was seen,
+        1 to 3 squares.
     """
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
@@ -56,7 +57,10 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
 
 
 def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
-    """Return an object that goes on to one side by `depth` squares; its shape class is unknown then."""
+    """Return an object that goes on to one side by `depth` squares; its shape class is unknown then.
+
+    side : one of SIDE_DIRECTIONS, a unit step (x, y) of the map frame.
+    """
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
     polygon = shapely.union_all([step.carry(held.polygon) for step in steps])
     return replace(held, polygon=polygon, first=polygon, shape={})

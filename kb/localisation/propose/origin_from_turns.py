@@ -44,9 +44,9 @@ class TurnOriginCell(NamedTuple):
 
     Attributes
     ----------
-    turn : fractions of the turn, 0 to 1.
-    columns : west and east bound of the origin in the square of waking.
-    rows : its south and north bound.
+    turn : from and to which fraction of the turn, 0 to 1.
+    columns : west and east bound of the origin in the square of waking, in squares, map frame, 0 to 1.
+    rows : its south and north bound, likewise.
     """
 
     turn: Interval
@@ -55,7 +55,7 @@ class TurnOriginCell(NamedTuple):
 
     @property
     def origin(self) -> Position:
-        """Return the origin in the middle of the cell."""
+        """Return the origin in the middle of the cell, (x, y) in squares, map frame."""
         return sum(self.columns) / 2, sum(self.rows) / 2
 
     @property
@@ -65,7 +65,10 @@ class TurnOriginCell(NamedTuple):
         return math.hypot(east - west, north - south) / 2
 
     def cut(self, *times: int) -> "list[TurnOriginCell]":
-        """Return the parts of the cell, its sides cut into so many: of the turn, west to east, south to north."""
+        """Return the parts of the cell, its sides cut into so many equal parts, in their order.
+
+        times : three numbers of parts: of the turn, west to east, south to north.
+        """
         sides = [np.linspace(*side, n + 1).tolist() for side, n in zip(self, times, strict=True)]
         return [TurnOriginCell(*spans) for spans in itertools.product(*map(itertools.pairwise, sides))]
 
@@ -74,7 +77,7 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
     """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none.
 
     The orientation is the believed one. The turn went to its end, or as far as known obstacles let it go; else it may
-    have ended anywhere. The hypotheses left are all origins that do.
+    have ended anywhere. Of all origins that do, the middle one is returned; the hypotheses left are all of them.
 
     Parameters
     ----------
@@ -91,18 +94,21 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
 
 
 def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
-    """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave."""
+    """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave.
+
+    An exact origin is a hypothesis of the believed angle whose box is one point.
+    """
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
     return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
 
 
 def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
-    """Return what fits if a turn of the held object ended early; nothing if there was no turn.
+    """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits.
 
     Cells are cut as long as nothing contradicts them and they are not too many. Larger cells leave more room for where
     the object lies.
 
-    bounds : of the origins.
+    bounds : of the origins, (west, south, east, north) in squares, map frame.
     """
     if surprise.degrees == 0.0:
         return []
@@ -122,7 +128,13 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
 
 
 def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
-    """Return what contradicts an origin and an end of the turn in a cell. length : of the turn, in squares."""
+    """Return what contradicts an origin and an end of the turn in a cell.
+
+    Both are taken in its middle, with room for all others of the cell. The residual is 0 when nothing contradicts them;
+    else it may be too small.
+
+    length : of the turn, in squares: the path of the outermost point of the object.
+    """
     frame = Frame(surprise.frame.angle, cell.origin)
     left = (exact_hypothesis(frame),)
     refuted = surprise.refuted(frame, left)
@@ -134,9 +146,14 @@ def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> W
 
 
 def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, WhatIf]], length: float) -> list[WhatIf]:
-    """Return those turns that ended near a likely contact, ended at the contact; all when none has one.
+    """Return those turns that ended near a likely contact, ended at the contact; all as they are when none has one.
 
-    fitting : the cells that nothing contradicts. length : of the turn, in squares.
+    Contacts less likely than a tenth of the likeliest one are left out.
+
+    Parameters
+    ----------
+    fitting : the cells that nothing contradicts, with their evaluations.
+    length : of the turn, in squares: the path of the outermost point of the object.
     """
     contacts = cache(lambda frame: surprise.obstructions.contacts(*surprise.motion_in(frame)))
     stopped = []
@@ -156,13 +173,19 @@ def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, Wha
 
 
 def _cell_slack(cell: TurnOriginCell, length: float) -> float:
-    """Return how far an object may lie from where the middle of a cell leaves it, in squares. length : of the turn."""
+    """Return how far an object may lie from where the middle of a cell leaves it, in squares.
+
+    length : of the turn, in squares: the path of the outermost point of the object.
+    """
     begin, end = cell.turn
     return length * (end - begin) / 2
 
 
 def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
-    """Return the bounds of the cells for which some points of an origin grid stand."""
+    """Return the bounds of the cells for which some points of an origin grid stand: (west, south, east, north).
+
+    In squares, map frame, within the square of waking. points : exact origins, at least one.
+    """
     corners, half = np.array([point.box for point in points]), np.array(grid_cell_size(points)) / 2
     west, south = np.maximum(corners[:, :2].min(0) - half, 0.0).tolist()
     east, north = np.minimum(corners[:, 2:].max(0) + half, 1.0).tolist()
@@ -170,7 +193,10 @@ def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
 
 
 def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
-    """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left."""
+    """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left.
+
+    fitting : at least one.
+    """
     fits = np.array([[one.frame.origin, *_object_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
     left = dict.fromkeys(hypothesis for one in fitting for hypothesis in one.hypotheses)
@@ -178,7 +204,7 @@ def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
 
 
 def _object_corners(one: WhatIf) -> list[Position]:
-    """Return the corners of the object in hand, map frame; none when there is none."""
+    """Return the corners of the object in hand, (x, y) in squares, map frame; [] when there is none."""
     if one.outcome is None:
         return []
     return [(float(x), float(y)) for x, y in shapely.get_coordinates(one.outcome.polygon)]
