@@ -275,7 +275,11 @@ PROCESS_SPLIT: dict[bool, tuple[tuple[Use, ...], ...]] = {
 
 # The kernel of each use that takes longest to compile, as numba's cache names it. When it is in the cache, the use is
 # taken for compiled.
-LONGEST_KERNEL = {search: "router.itineraries", carry: "astar.haul", sightlines: "visibility_graph.line_open"}
+LONGEST_KERNEL = {
+    search: "router.itineraries",
+    carry: "astar.find_carrying_path",
+    sightlines: "visibility_graph.line_open",
+}
 
 
 def main(names: Sequence[str], compiler: KernelCompiler = THIS_INSTALLATION) -> None:

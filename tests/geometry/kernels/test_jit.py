@@ -61,7 +61,7 @@ def test_kernels_of_routes_are_compiled_in_advance_for_the_types_of_screens() ->
         "queries.compile_route_kernels(); "
         "screen = Screen(np.ones((4, 4), bool)); print(len(screen.routes((0.5, 0.5), (3.5, 3.5), k=4)), "
         "screen.shortest((0.5, 0.5), (3.5, 3.5)) is not None); "
-        "kernels = router.itineraries, polyanya.shortest_line, landmarks.measure_ways; "
+        "kernels = router.itineraries, polyanya.shortest_line, landmarks.measure_chains; "
         "dispatchers = [kernel.dispatcher() if hasattr(kernel, 'dispatcher') else kernel for kernel in kernels]; "
         "print(*(len(getattr(dispatcher, 'overloads', [None])) for dispatcher in dispatchers))"
     )  # in a process of its own, where no other screen has had other types

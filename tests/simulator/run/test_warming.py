@@ -6,11 +6,13 @@ import pty
 import subprocess
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
 from simulator.run import warming
 
+ROOT = Path(__file__).resolve().parents[3]
 COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
 
 
@@ -99,6 +101,13 @@ def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> N
     assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
 
 
+def test_each_kernel_that_is_looked_for_in_the_cache_is_there() -> None:
+    for name in warming.LONGEST_KERNEL.values():
+        module, function = name.split(".")
+        texts = [path.read_text() for path in (ROOT / "geometry").rglob(f"{module}.py")]
+        assert any(f"\ndef {function}(" in text for text in texts), name
+
+
 def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     uses = list(warming.LONGEST_KERNEL)
@@ -106,7 +115,7 @@ def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     (tmp_path / "geometry_1234").mkdir()
     (tmp_path / "geometry_1234" / "router.itineraries-17.py311.nbi").touch()
     assert warming.THIS_INSTALLATION.uncompiled(uses) == [warming.carry, warming.sightlines]
-    (tmp_path / "geometry_1234" / "astar.haul-20.py311.nbi").touch()
+    (tmp_path / "geometry_1234" / "astar.find_carrying_path-20.py311.nbi").touch()
     (tmp_path / "other.function-1.py311.nbi").touch()
     assert warming.THIS_INSTALLATION.uncompiled([warming.search, warming.carry]) == []
     assert warming.count_cached_kernels() == 2
