@@ -32,7 +32,7 @@ class Informed(Knowledge):
 
     def __init__(self, world: RandomScenario) -> None:
         super().__init__()
-        self._world = world
+        self._truth = world
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
         """As of Knowledge, after the whole table was settled."""
@@ -41,7 +41,7 @@ class Informed(Knowledge):
 
     def learn(self) -> None:
         """Settle every square of the table, as it is."""
-        world, memory = self._world, self.memory
+        world, memory = self._truth, self.memory
         quarters = round(world.heading / 90 - 1e-9)
         angle = world.heading - 90 * quarters
         x, y = math.floor(world.utak.x), math.floor(world.utak.y)

@@ -100,7 +100,7 @@ def _node_facts(node: Node) -> Iterable[str]:
 
     These are `candidate(Node,Percent)` and `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where
     no impression can change it; `fixed(Node)` and `moved(Node)`; and
-    `possible_rectangle_shapes(Node,shape,square|brick)`, what a rectangle may be as far as its size is known.
+    `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size is known.
     """
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):
@@ -115,4 +115,4 @@ def _node_facts(node: Node) -> Iterable[str]:
     if node.moved:
         yield f"moved({node.name})"
     for shape in possible_rectangle_shapes(node.polygon, node.insets):
-        yield f"possible_rectangle_shapes({node.name},shape,{shape})"
+        yield f"may_be({node.name},shape,{shape})"

@@ -385,7 +385,7 @@ def next_room_missing(situation: Situation) -> str:
     at = model.point_in_words(opening.place)
     return (
         f"no door is seen yet: the opening {opening.width:.1f} squares wide at {at} is none, "
-        f"for the floor {where} it is unknown_destination wider than {opening.least:.1f}, less than twice as wide"
+        f"for the floor {where} it is nowhere wider than {opening.least:.1f}, less than twice as wide"
     )
 
 

@@ -301,7 +301,7 @@ def test_the_destination_of_an_object_is_beside_it() -> None:
 
 def _situation(kind, model, binding):  # type: ignore[no-untyped-def]
     """Return a situation, with whatever fields it has."""
-    known = {"model": model, "screens": CostMaps(model), "binding": binding, "rooms": rooms_of(model)}
+    known = {"model": model, "cost_maps": CostMaps(model), "binding": binding, "rooms": rooms_of(model)}
     known |= {"corners": corners(model), "task": SQUARE, "rules": (), "track": ()}
     return kind(**{name: known[name] for name in kind.__dataclass_fields__})
 

@@ -11,7 +11,7 @@ from kb.world.rooms import Door, count_crossings, went_through
 from planner.situation import Situation
 from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
-from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of
 
 DOOR = Door("d1", (5.0, 2.0), (5.0, 5.0), (1, 2), 99)
@@ -20,7 +20,7 @@ OPEN = "b" + "." * 24 + "b"
 BEGUN = "b..U" + "." * 8 + "bb" + "." * 11 + "b"
 ONE_DOOR = ["b" * 26, *[WALL] * 4, BEGUN, *[OPEN] * 3, *[WALL] * 4, "b" * 26]
 TWO_DOORS = [row[:-1] + ("." if row == OPEN else "b") + row[12:] for row in ONE_DOOR]  # and a third room
-NEVER = Task({}, (), facts_of("not_through(utak, d)."))
+NEVER = Task({}, (), facts_from_text("not_through(utak, d)."))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from geometry.motion.se2 import Pose
 from planner.goals.joint import conflicting_goals, enclosing_region, opposite_corners_reason
 from planner.goals.placement import Placement
 from tests.kb.drawings import known_model
-from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of
 
 THING = shapely.box(3, 3, 6, 5)
@@ -59,13 +59,13 @@ def test_a_shape_that_meets_an_end_lies_within_its_enclosing_region(
 
 def test_opposite_corners_are_too_far_apart() -> None:
     situation = situation_of(known_model(BESIDE_A_THING))
-    both = facts_of("at(utak, corner(northeast)). at(utak, corner(southwest)).")
+    both = facts_from_text("at(utak, corner(northeast)). at(utak, corner(southwest)).")
     assert "too far apart" in opposite_corners_reason(both, situation)
-    one_side = facts_of("at(utak, corner(northeast)). at(utak, corner(northwest)).")
+    one_side = facts_from_text("at(utak, corner(northeast)). at(utak, corner(northwest)).")
     assert opposite_corners_reason(one_side, situation) == ""  # with more floor they may be one corner
 
 
 def test_opposite_corners_of_a_nook_are_near_enough() -> None:
     situation = situation_of(known_model(["bbbb", "b.Ub", "b..b", "bbbb"]))
-    both = facts_of("at(utak, corner(northwest)). at(utak, corner(southeast)).")
+    both = facts_from_text("at(utak, corner(northwest)). at(utak, corner(southeast)).")
     assert opposite_corners_reason(both, situation) == ""

@@ -17,13 +17,13 @@ from planner.skills.into_corner import (
 )
 from planner.stages import Stage
 from tests.kb.drawings import known_model
-from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import situation_of
 
 STRAIGHT_ROOM = ["bbbbbbbb", "b......b", "b......b", "b......b", "b.U....b", "b......b", "bbbbbbbb"]
 ASKEW_ROOM = ["bbbbbbbb", "bbb.bbbb", "bb...bbb", "bb....bb", "b.U....b", "b......b", "bbbbbbbb"]
-NORTHEAST = Stage(facts_of("at(utak, corner(northeast))."))
-SOUTHWEST = Stage(facts_of("at(utak, corner(southwest))."))
+NORTHEAST = Stage(facts_from_text("at(utak, corner(northeast))."))
+SOUTHWEST = Stage(facts_from_text("at(utak, corner(southwest))."))
 
 
 def standing(rows: list[str], x: float, y: float) -> Situation:
@@ -49,7 +49,7 @@ def test_other_commands_are_kept(command: Move | Grasp | None) -> None:
 
 
 def test_a_move_for_another_goal_is_kept() -> None:
-    stage = Stage(facts_of("at(utak, start)."))
+    stage = Stage(facts_from_text("at(utak, start)."))
     assert halt_beside_walls(Move(4.0, 3.0), stage, standing(STRAIGHT_ROOM, 0.0, 0.0)) == Move(4.0, 3.0)
 
 

@@ -14,10 +14,10 @@ from planner.goals.placement import Placement
 from planner.situation import Situation
 from planner.skills.press import Presser
 from tests.kb.drawings import known_model
-from tests.planner.goals.test_object_goals import facts_of
+from tests.planner.goals.test_object_goals import facts_from_text
 from tests.planner.situations import BESIDE_A_THING, situation_of
 
-(GOAL,) = facts_of("at(x, corner(northeast)).")
+(GOAL,) = facts_from_text("at(x, corner(northeast)).")
 ACROSS, UP = Translate(1.0, 0.0), Translate(0.0, 1.5)
 LAND = Placement({}, holds=True, presses={"across": ACROSS, "up": UP})
 
@@ -68,7 +68,7 @@ def test_presses_count_for_one_held_object_one_goal_and_one_corner(change: str) 
     if change == "released":
         situation = replace(situation, model=replace(situation.model, held=None))
     elif change == "another goal":
-        (goal,) = facts_of("at(x, corner(southwest)).")
+        (goal,) = facts_from_text("at(x, corner(southwest)).")
     elif change == "another corner":
         corner = situation.corners["northeast"]
         corners = {**situation.corners, "northeast": corner._replace(point=(corner.point[0] + 3.0, corner.point[1]))}

@@ -13,6 +13,7 @@ import pytest
 import geometry
 from simulator.run import warming
 
+ROOT = Path(__file__).resolve().parents[3]
 COMPILED = os.environ.get("NUMBA_DISABLE_JIT", "0") == "0"
 
 
@@ -99,6 +100,13 @@ def test_bytecode_is_kept_where_python_keeps_none(monkeypatch, tmp_path) -> None
 def test_every_package_of_the_robot_is_among_those_whose_bytecode_is_kept() -> None:
     assert warming.THIS_INSTALLATION.packages == warming.PACKAGES
     assert all((package / "__init__.py").is_file() for package in warming.PACKAGES)
+
+
+def test_each_kernel_that_is_looked_for_in_the_cache_is_there() -> None:
+    for name in warming.LONGEST_KERNEL.values():
+        module, function = name.split(".")
+        texts = [path.read_text() for path in (ROOT / "geometry").rglob(f"{module}.py")]
+        assert any(f"\ndef {function}(" in text for text in texts), name
 
 
 def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
