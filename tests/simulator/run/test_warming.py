@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-import geometry
 from simulator.run import warming
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -120,13 +119,6 @@ def test_uncompiled_uses_are_found_one_by_one(monkeypatch, tmp_path) -> None:
     (tmp_path / "other.function-1.py311.nbi").touch()
     assert warming.THIS_INSTALLATION.uncompiled([warming.search, warming.carry]) == []
     assert warming.count_cached_kernels() == 2
-
-
-@pytest.mark.parametrize("kernel", warming.LONGEST_KERNEL.values())
-def test_the_kernel_by_which_a_use_is_known_exists(kernel: str) -> None:
-    module, name = kernel.split(".")
-    sources = [path.read_text() for path in Path(geometry.__file__).parent.rglob(f"{module}.py")]
-    assert sum(f"@compiled\ndef {name}(" in source or f"@bare\ndef {name}(" in source for source in sources) == 1
 
 
 def test_only_uncompiled_uses_are_compiled(monkeypatch) -> None:
