@@ -213,6 +213,9 @@ def persons(root: Path) -> Iterator[str]:
             found += sum(len(PERSON.findall(text)) for text in texts)
         if found > PERSON_PER_THOUSAND * words / 1000:
             yield f"{package}: he, his or him {found} times in {words} words"
+    for path in sorted((root / "examples").rglob("*.lp")):
+        if PERSON.search(path.read_text()):
+            yield f"{short(path, root)} speaks of him"
 
 
 def shapeless_modules(root: Path) -> Iterator[str]:

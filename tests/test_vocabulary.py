@@ -1,4 +1,4 @@
-"""docs/vocabulary.md is what the encodings say, and the facts of the world model are those that it declares."""
+"""The vocabulary page is what the encodings say, and the world model states the facts that they declare."""
 
 import importlib.util
 import subprocess

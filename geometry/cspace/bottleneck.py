@@ -76,7 +76,7 @@ def _narrowest_index(clearance: Floats, candidates: Bools) -> int:
     """Return the index of the pixel where a path is narrowest, starting from the pixels in `candidates`.
 
     From their narrowest it goes on along the path as long as the path grows narrower, then to the middle of a stretch
-    of equal clearance: amid a neck of several pixels, not at its mouth.
+    of equal clearance: in the middle of a neck of several pixels, not at its mouth.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import require_bounded, valid_polygons
 
 MIN_WALLS_SINE = 0.1  # sine of the angle between the two walls of a corner, at least; convention
-# Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.RING.
+# Commands; derived: with the extra cost of a tight turn it stays below geometry.kernels.bucket_queue.BUCKETS.
 MAX_TURN_COST = 2.5
 __all__ = ["At", "Between", "CarryingPlan", "InCorner", "Inside", "Leg", "Pose", "plan_carrying"]
 

@@ -13,5 +13,6 @@ vocabulary        the predicates of each kind of fact file and of the world mode
 integers          the check for integers beyond 32 bits
 operating_system  process limits, file locks and other features that some systems lack
 
-Public names: `read_facts`, `parse_facts`, `facts_of`, `parse_wkt`, `check_facts`, `BadInputError`, `CannotOpenError`.
+Public names: `read_facts`, `parse_facts`, `facts_from_text`, `parse_wkt`, `check_facts`, `BadInputError`,
+`CannotOpenError`.
 """

@@ -10,7 +10,7 @@ score  what contradicts an explanation, slower proposals, and the choice among a
 hypotheses  the values: frames, outcomes, contacts, explanations, and maps remapped to another frame
 propose  the proposals, one kind a module
 
-Public names: `tracker.Tracker`, `state.TrackerState`, `hypotheses.explanation.Accommodated`.
+Public names: `tracker.Tracker`, `state.TrackerState`, `hypotheses.explanation.Accommodation`.
 
 Two frames: the map frame has its axes along the grid and its origin at the corner of the square of waking; Utak's own
 frame has its origin where Utak woke, with north the way it faced. Constants marked "tuned" were tuned on random worlds

@@ -9,6 +9,7 @@ completions      sampled maps that agree with all counts
 object_heat      what the completions have in common: probabilities, and where an object of a shape may be
 obstacle_chance  the probability that something stands on the squares that a motion enters
 
-Public names: `OccupancyMap`, `MapView`, `FREE`, `OCCUPIED`, `OPEN` (occupancy); `Patch`, `patch_of`, `covered` (patch);
+Public names: `OccupancyMap`, `MapView`, `FREE`, `OCCUPIED`, `OPEN` (occupancy); `Patch`, `patch_of`,
+`patch_of_polygon` (patch);
 `Completions` (completions); `CompletionSummary` (object_heat); `ObstacleChance` (obstacle_chance).
 """

@@ -13,5 +13,5 @@ user_rules    reading, testing and solving with users' rules
 rule_reader   rule files parsed to statements, in the separate process
 rule_solver   encodings solved with users' rules, in the separate process
 
-Public names: `solve`, `QueryEngine`, `read_rules`, `checked_rules`.
+Public names: `solve`, `QueryEngine`, `read_rules`, `read_tested_rules`.
 """

@@ -256,7 +256,7 @@ class Rulebook:
                 {_form(atom.signature) for atom in (*one.heads, *one.body)} - {_form(s) for s in self.own_predicates}
             )
             what = f"this rule counts nowhere: no encoding knows all of {', '.join(names) or 'what it rests on'}"
-            yield one.problem(what, hint="docs/vocabulary.md says which predicates are known together")
+            yield one.problem(what, hint="docs/reference/vocabulary.md says which predicates are known together")
         elif where == [QUERY_INTERFACE] and not (
             one.is_single_atom_rule and one.heads[0].signature in self.own_predicates
         ):

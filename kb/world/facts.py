@@ -1,4 +1,4 @@
-"""The world model as facts, and as the `belief` of an episode's line; docs/vocabulary.md lists the predicates.
+"""The world model as facts, and as the `belief` of an episode's line (docs/reference/vocabulary.md).
 
 Lengths are hundredths of squares in the robot frame, whose origin is where the robot woke. Confidences are percent.
 """

@@ -28,7 +28,9 @@ from kb.world.model import Node, WorldModel, count_open_squares, free_squares, o
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
 LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a held object's outline leaves open; tuned
-PLAY_PROBABILITY = 0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below SPACE
+PLAY_PROBABILITY = (
+    0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
+)
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 

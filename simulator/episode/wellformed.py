@@ -9,6 +9,7 @@ from typing import Any
 
 from kb.body import DIRECTIONS
 from kb.language.vocabulary import MAX_TABLE_SIDE
+from simulator.scenario.settings import PATH_CHOICES
 
 KeyPath = tuple[str, ...]  # the keys that lead to a value
 LineComplaint = tuple[KeyPath, str]  # the place of a value, and what is wrong with it
@@ -154,7 +155,7 @@ HEADER_CHECK = keys(
             {
                 "seed": whole_number(0, 2**63 - 1),
                 "noise": number(0, 1),
-                "paths": one_of("skeleton", "visibility", "grid"),
+                "paths": one_of(*PATH_CHOICES),
                 "max_steps": whole_number(0, 1_000_000),
                 "pull": one_of(True, False),
                 "kb": list_of(text()),

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+PATH_CHOICES = ("skeleton", "visibility", "grid")  # the path-finders, as `--paths` and episodes name them
+
 
 @dataclass(frozen=True)
 class Settings:

@@ -4,6 +4,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any, TextIO
 
+from simulator.scenario.settings import PATH_CHOICES
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
 from simulator.terminal.action_in_words import describe
@@ -14,8 +15,6 @@ from simulator.terminal.streams import escape_controls
 if TYPE_CHECKING:
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
-
-PATH_CHOICES = ("skeleton", "visibility", "grid")  # the choices of --paths
 
 
 def add(parts: Any) -> None:

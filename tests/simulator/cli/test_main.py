@@ -10,7 +10,9 @@ import pytest
 import scripted_robot
 from random_scenes import write_scene
 
+from planner.navigation.routes import PATH_FINDERS
 from simulator.cli.main import main
+from simulator.scenario.settings import PATH_CHOICES
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -131,3 +133,7 @@ def test_installed_name_and_environment() -> None:
         check=True,
     )
     assert done.stdout.startswith("usage: utak")
+
+
+def test_the_command_line_offers_every_path_finder_of_the_planner() -> None:
+    assert set(PATH_CHOICES) == set(PATH_FINDERS)
