@@ -54,8 +54,10 @@ def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     Returns
     -------
     Judgement
-        The choice, with where a push may have ended. Where nothing explains the observation without residual, the
-        cheapest explanation is chosen all the same.
+        `explanation` is the choice: its kind, Utak's place (x, y) in squares, map frame of its frame, the outcome for
+        the object, and the number of fields left unexplained (its residual). `blocked` is where a push may have ended,
+        `searches` the number of slow searches spent so far. Where nothing explains the observation without residual,
+        the cheapest explanation is chosen all the same.
     """
     whole = _outcome(state, surprise, predicted_outcome(state.place, held.polygon, motion))
     blocked = _blocked_push(state, surprise, held, motion)
@@ -92,13 +94,19 @@ def _outcomes(
 ) -> list[Explanation]:
     """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, larger.
 
+    Each has its kind (`how`), Utak's place (x, y) and the object's outline, map frame, in squares, and the number of
+    fields left unexplained. Blocked by a contact comes first, then stuck, blocked anywhere on the way (the furthest
+    first), slipped (the nearest first), smaller and larger.
+
     Parameters
     ----------
-    state, surprise, held, motion : as for `explain_carry`: what was believed, the observation, the object before the
-        motion, the commanded motion (map frame).
+    state : what was believed before the observation.
+    surprise : the observation.
+    held : the object before the motion, map frame.
+    motion : as commanded, map frame.
     whole : the explanation that the motion went as commanded.
     blocked : where a push may have ended, by the observation; if there are none, contacts without residual are taken.
-    contacts : all contacts that may have blocked the motion.
+    contacts : all contacts that may have blocked the motion, each a fraction (0 to 1) of the motion and its chance.
     """
     ends = contact_outcomes(contacts, state.place, held.polygon, motion)
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
@@ -114,8 +122,13 @@ def _facts(
 
     They are predicates without arguments and without a full stop: unchanged (the observation equals the one before),
     clear (the motion hardly met anything), uneven (the object is known not to fill its squares). Those that do not hold
-    are left out.
+    are left out; [] when none holds.
 
+    Parameters
+    ----------
+    state : what was believed; its newest observation is compared with the new one.
+    surprise : the new observation.
+    held : the object in hand, before the motion.
     contacts : the contacts that the motion may have met, each with its probability.
     """
     facts = {
@@ -129,8 +142,12 @@ def _facts(
 def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, motion: Motion) -> tuple[Explanation, ...]:
     """Return where a push may have ended, its whole way included, as far as the observation agrees.
 
-    Each has its chance. Empty for a turn, when the push can hardly have met anything, or when the observation agrees
+    One explanation for each end, the whole way first (kind predicted), then contacts (kind blocked), the likeliest
+    first. Each has Utak's place (x, y) in squares, map frame, the object's outline there, and its chance (0 to 1)
+    before the observation. Empty for a turn, when the push can hardly have met anything, or when the observation agrees
     with none.
+
+    held : the object before the push, map frame. motion : as commanded, map frame.
     """
     ended = []
     for end in possible_ends(surprise, held, motion):
@@ -142,7 +159,16 @@ def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, mot
 def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: Explanation) -> list[Explanation]:
     """Return the explanation that the object does not fill its squares, in a list; [] when that explains nothing.
 
-    It is of kind smaller, without residual. whole : the explanation that the motion went as commanded.
+    It is of kind smaller, without residual (no field contradicts it), at the place of `whole`; its outcome has the
+    smaller outline (shapely Polygon, map frame) and the narrowed sub-cell extent (how far each side lies within the
+    squares in which the object was seen).
+
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+    held : the object before the motion, map frame.
+    whole : the explanation that the motion went as commanded; it has an outcome.
     """
     outcome = whole.outcome
     assert outcome is not None
@@ -157,7 +183,10 @@ def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: 
 def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:
     """Return the explanation that the motion of the object in hand had an outcome, in the believed frame.
 
-    Its residual is the number of fields that contradict that outcome.
+    It is of the kind and at the place (x, y in squares, map frame) of the outcome. Its residual is the number of fields
+    that contradict that outcome, 0 when none does.
+
+    outcome : where Utak and the object ended, map frame.
     """
     residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
     return Explanation(outcome.how, outcome.place, state.frame, residual, outcome.distance, outcome)
@@ -167,7 +196,10 @@ def refined_extent(state: TrackerState, held: HeldObject, ranges: FieldRanges, p
     """Return an object with the sub-cell extent that an observation at `place` shows; None when none agrees with it.
 
     The sub-cell extent is how far, by less than a square, each side lies within the squares in which the object was
-    seen. Squares that the object may leave free are taken for floor, not for something that happens to fill them.
+    seen. The result is `held` with narrower `insets` (the possible distances of each side from the outer line of those
+    squares, inwards, in squares) and with its outline `polygon` (shapely Polygon, map frame) drawn accordingly; all
+    else is as in `held`, which is not changed. Squares that the object may leave free are taken for floor, not for
+    something that happens to fill them.
 
     Parameters
     ----------
@@ -215,9 +247,11 @@ def moved_object(
     ranges: FieldRanges,
     suspected: frozenset[Square],
 ) -> HeldObject:
-    """Return the object in hand after the chosen outcome of a motion, map frame.
+    """Return the object in hand after the chosen outcome of a motion: its outline, map frame, and what else changed.
 
-    An object whose place is known only roughly is moved to touch the known obstacle that seems to have blocked it.
+    That is its rotation in degrees, its tolerance `slack` in squares, and the counts of its motions without effect.
+    Where it did not move only those counts change, and its place may become inexact. An object whose place is known
+    only roughly is moved to touch the known obstacle that seems to have blocked it.
 
     Parameters
     ----------
@@ -240,10 +274,11 @@ def moved_object(
 
 
 def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHypothesis, ...]:
-    """Return the frame hypotheses left by an observation of objects that were turned.
+    """Return the frame hypotheses left by an observation of objects that were turned, in their order.
 
-    Where several exact origins (hypotheses that name one point) of the believed orientation are left, those are
-    returned that agree with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
+    Each is an angle in degrees and a box of origins (west, south, east, north) in squares, map frame. Where several
+    exact origins (hypotheses that name one point) of the believed orientation are left, those are returned that agree
+    with the observation, or all of them when none does; otherwise all hypotheses, unchanged.
 
     Parameters
     ----------
@@ -261,8 +296,9 @@ def agreeing_origins(state: TrackerState, ranges: FieldRanges) -> tuple[FrameHyp
 def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
     """Return all held objects, by name, with `astray` set: how far each may lie from its believed place, in squares.
 
-    Every turn was about the true place of Utak, so an origin that is open leaves the place of a turned object open. It
-    is 0, or the rounding of commands, where the origin is certain.
+    All else of them stays as it was, map frame; `state` is not changed. Every turn was about the true place of Utak, so
+    an origin that is open leaves the place of a turned object open. It is 0, or the rounding of commands, where the
+    origin is certain.
     """
     origins = [hypothesis.frame.origin for hypothesis in _exact_origins(state)]
     away = np.array(origins).reshape(-1, 2) - np.array(state.frame.origin)
@@ -275,5 +311,8 @@ def objects_astray(state: TrackerState) -> dict[str, HeldObject]:
 
 
 def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
-    """Return the hypotheses of the believed orientation that name an exact origin; empty when there is none."""
+    """Return the hypotheses of the believed orientation that name an exact origin, in their order; empty for none.
+
+    Each has the believed angle (degrees) and a box that is one point of the square of waking (squares, map frame).
+    """
     return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)

@@ -78,7 +78,10 @@ def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, 
     Returns
     -------
     Judgement
-        The choice, with what was learnt. Where nothing explains the observation without residual, the cheapest
+        `explanation` is the choice: its kind, Utak's place (x, y) in squares, map frame of its frame, and the number of
+        fields left unexplained (its residual). With it, what was learnt: where the walk may have ended (`blocked`), the
+        hypotheses of the frame, weighed anew (None when they stay), and the number of slow searches spent. Where
+        nothing explains the observation without residual, the cheapest
         explanation is chosen all the same.
     """
     return _WalkExplainer(state, ranges, ends, command).judge()
@@ -90,8 +93,12 @@ class _WalkExplainer:
     def __init__(self, state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, command: Command | None) -> None:
         """Compute the explanation that the walk went its whole way, and where it may have been blocked.
 
-        state, ranges, ends, command : as for `explain_walk`: what was believed, the counts, the dead reckoning, the
-        command.
+        Parameters
+        ----------
+        state : what was believed before the observation.
+        ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
+        ends : the end of the walk by dead reckoning, map frame.
+        command : the command before the observation, Utak's own frame; None on waking.
         """
         self._state, self._ranges, self._blocked_places, self._command = state, ranges, ends.blocked, command
         self._budget = SearchBudget(state.search_count)
@@ -109,7 +116,11 @@ class _WalkExplainer:
         )
 
     def judge(self) -> Judgement:
-        """Return the chosen explanation, with what was learnt while choosing; the state is not changed."""
+        """Return the chosen explanation, with what was learnt while choosing; the state is not changed.
+
+        That is a kind, a place (x, y) in squares, map frame of its frame, and the number of fields left unexplained;
+        with it where the walk may have ended, the frame hypotheses weighed anew, and the number of searches spent.
+        """
         state, first = self._state, self._whole
         if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]
@@ -137,12 +148,19 @@ class _WalkExplainer:
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
         """Return a chosen explanation with what was learnt while choosing it.
 
+        That is the number of slow searches spent so far, and where the walk may have ended by its observation (empty
+        where it can have met nothing).
+
         left : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
         """
         return Judgement(chosen, self._budget.spent, self._possible_ends, left)
 
     def _all(self, first: Explanation, turned: list[Explanation]) -> list[Explanation]:
         """Return all explanations: first the walk as predicted, then blocked, slipped, other frames, earlier motions.
+
+        Each has its kind (`how`), the place of the observation (x, y) in squares, map frame of its frame, and the
+        number of fields that it leaves unexplained. Blocked ones: the likeliest first where chances are known, else the
+        last grid line first; slipped ones: the nearest to the predicted end first.
 
         Parameters
         ----------
@@ -175,7 +193,9 @@ class _WalkExplainer:
     def _blocked_walk(self, command: Move) -> tuple[Explanation, ...]:
         """Return where the walk may have ended, its whole way included, as far as the observation agrees.
 
-        Each has its chance. Empty when the walk can hardly have met anything, or when the observation agrees with none.
+        One explanation for each end and side of a grid line, the whole way first, then contacts, the likeliest first.
+        Each has its place (x, y) in squares, map frame, and its chance (0 to 1) before the observation. Empty when the
+        walk can hardly have met anything, or when the observation agrees with none.
         """
         surprise = self._state.surprise(command, self._ranges)
         motion = Translate(*self._state.frame.to_map(command.east, command.north))
@@ -188,7 +208,8 @@ class _WalkExplainer:
 
         Where another frame explains everything, only contacts with something known, or of a known chance, are proposed;
         where there are none, both the newest and an earlier walk may have been blocked. All are of kind misled; [] for
-        none.
+        none. Each has the corrected place of the newest observation, (x, y) in squares, map frame of its frame, and the
+        number of fields left unexplained; contacts with something known come first.
 
         Parameters
         ----------
@@ -210,6 +231,8 @@ class _WalkExplainer:
         """Return explanations, of kind misled, by which one of some walks was blocked elsewhere than believed.
 
         Ends of the newest walk in the believed frame are left out if they were proposed already. [] when there is none.
+        Each has the corrected place of the newest observation, (x, y) in squares, map frame of its frame. Contacts with
+        something known come first, then the orientations nearest to the median.
 
         walks : for each walk its re-estimations (other ends with which no observations contradict each other).
         """
@@ -226,7 +249,8 @@ class _WalkExplainer:
         """Return explanations by which both the newest walk and an earlier one were blocked, in the believed frame.
 
         All are of kind misled and without residual, with the newest of the earlier walks first; [] when the believed
-        frame was not among the hypotheses when the walk began, or when nothing fits.
+        frame was not among the hypotheses when the walk began, or when nothing fits. The place of each is where the
+        newest walk ended, (x, y) in squares, map frame; `distance` adds up both corrections, in squares.
         """
         state, newest, found = self._state, self._state.motions[-1], []
         believed = [hypothesis for hypothesis in newest.hypotheses if hypothesis.frame == state.frame][:1]
@@ -240,7 +264,8 @@ class _WalkExplainer:
     def _best_prior(self, ended: Sequence[Explanation], left: tuple[FrameHypothesis, ...]) -> Explanation:
         """Return the choice between the believed frame, which nothing contradicts, and the one of the best map prior.
 
-        The map prior of a frame is how simple the simplest map is that agrees with all counts in it.
+        The map prior of a frame is how simple the simplest map is that agrees with all counts in it. The choice is one
+        of `ended` (their kind and place), or of kind turned: the same place of Utak's own frame in the best frame.
 
         Parameters
         ----------
@@ -259,7 +284,9 @@ class _WalkExplainer:
     def _other_frame(self, left: tuple[FrameHypothesis, ...], recent: list[Observation]) -> list[Explanation]:
         """Return the explanation by another frame, where observations contradict the believed one, in a list.
 
-        It is of kind turned; [] when no frame is left. All frames are searched anew, at the cost of 1 slow search, when
+        It is of kind turned; [] when no frame is left, else one: the frame, the place (x, y) in squares, map frame of
+        it, the number of fields unexplained (1 more when the origin has suspiciously little room), and the hypotheses
+        left. All frames are searched anew, at the cost of 1 slow search, when
         those that are left explain too little and the budget allows it.
 
         Parameters
@@ -288,8 +315,10 @@ class _WalkExplainer:
     def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
         """Return the frame of the least residual among those left, and that residual (a count of fields).
 
-        The residual is over all observations. Not all frames are tried where there are many observations. When no
-        hypothesis is left, the believed frame is returned with NO_FRAME_RESIDUAL.
+        A frame is an angle in degrees and an origin in the square of waking. The residual is over all observations; of
+        equal ones the likeliest frame is returned, and the search ends at the first without residual. Not all frames
+        are tried where there are many observations. When no hypothesis is left, the believed frame is returned with
+        NO_FRAME_RESIDUAL.
         """
         state = self._state
         if not left:
@@ -306,6 +335,8 @@ class _WalkExplainer:
 
     def _explanation(self, how: str, place: Position, predicted: Position) -> Explanation:
         """Return the explanation that the observation was made at `place`, in the believed frame.
+
+        Its residual is the number of fields that contradict the map, or a held object, from there; 0 when none does.
 
         Parameters
         ----------

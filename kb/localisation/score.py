@@ -55,7 +55,8 @@ class SearchBudget:
 
         A proposal that finds nothing spends 1 search.
 
-        propose : the slow proposal, called at most once; it returns what it found, [] for nothing.
+        propose : the slow proposal, called at most once; it returns what it found, [] for nothing. The list is returned
+            as it is.
         """
         if self.exhausted:
             return []
@@ -111,7 +112,8 @@ def consistent_ends(
     -------
     tuple of Explanation
         Those without residual, in the order given, with `chance`, `contact_squares` and a `prior_cost` (log odds,
-        relative to the best of them). Empty when the observation agrees with none.
+        relative to the best of them). Each keeps its place, (x, y) in squares, map frame. Empty when the observation
+        agrees with none.
     """
     fitting = (
         one._replace(chance=end.chance, contact_squares=end.contact_squares) for end, one in ended if not one.residual
@@ -123,6 +125,9 @@ def propose_frame(
     state: TrackerState, surprise: Surprise, residual: int, budget: SearchBudget, simple: bool = False
 ) -> list[Explanation]:
     """Return the frame that explains a surprise with fewer than `residual` unexplained fields, if there is one.
+
+    It comes as an explanation: the frame, the place of Utak (x, y) in squares, map frame of that frame, the outcome for
+    an object in hand, and the number of fields left unexplained.
 
     Parameters
     ----------
@@ -164,7 +169,10 @@ def propose_blocked_push_and_origin(surprise: Surprise, budget: SearchBudget) ->
 
     Each is of kind turned and without residual, with the probability of the contact as `chance`. Its `prior_cost` (log
     odds against that origin) is the less the larger the part of the square of waking is in which the origin may lie
-    then. [] when nothing fits, without a push, and when the budget of slow searches is exhausted.
+    then. One for each square of Utak and each contact; its place is (x, y) in squares, map frame of its frame. [] when
+    nothing fits, without a push, and when the budget of slow searches is exhausted.
+
+    surprise : the observation after the push. budget : of slow searches; 1 is spent when nothing is found.
     """
     found = []
     for one, chance, against in budget.search(lambda: blocked_pushes_with_origin(surprise)):
@@ -217,7 +225,9 @@ def propose_earlier_motions(
     Returns
     -------
     list of Explanation
-        Of kind misled and without residual; [] when there is none.
+        Of kind misled and without residual; [] when there is none. One for each other end of a motion, contacts with
+        something known first, then the newest motion first. Its place is that of the newest observation, (x, y) in
+        squares, map frame of its frame; its `distance` is how far the end is shifted, in squares.
     """
     simple = [other for other in others if is_simple(state, other)]
     here = [other for other in simple if other.frame == state.frame]
@@ -241,7 +251,13 @@ def is_simple(state: TrackerState, explanation: Explanation) -> bool:
 
 
 def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanation:
-    """Return the explanation, of kind misled, that an earlier motion ended as it was re-estimated; without residual."""
+    """Return the explanation, of kind misled, that an earlier motion ended as it was re-estimated; without residual.
+
+    Its place is where the newest observation was made then, (x, y) in squares, map frame of its frame; its `distance`
+    is how far the end of the earlier motion is shifted, in squares.
+
+    motion : the correction of the earlier motion, with the evaluation of the newest observation by it.
+    """
     walk, one = motion
     distance = math.hypot(*walk.correction.shift)
     misled = Explanation("misled", one.place, one.frame, 0, distance, one.outcome, one.hypotheses, walk)
@@ -253,7 +269,7 @@ def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
 
     explanation : its `reestimated` is not None. It is returned unchanged when the motion is not remembered, when its
     observation is the newest one, or when the frame is another one; `chance` is None when that end was no known
-    alternative.
+    alternative. The chance is a probability, 0 to 1, before the newest observation; all else stays as it is.
     """
     assert explanation.reestimated is not None
     correction = explanation.reestimated.correction
@@ -266,7 +282,8 @@ def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
 def prior_cost(state: TrackerState, angle: int) -> float:
     """Return by how much the map prior of an orientation is worse than the best one, in log odds (natural logarithm).
 
-    The believed orientation has 0, one that is no longer among the hypotheses UNTRIED_COST.
+    The map prior is how simple the simplest map is that agrees with all counts; less is better. The believed
+    orientation has 0, one that is no longer among the hypotheses UNTRIED_COST.
 
     angle : the orientation in degrees, counter-clockwise positive, as of `Frame.angle`.
     """
@@ -277,6 +294,9 @@ def prior_cost(state: TrackerState, angle: int) -> float:
 
 def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
     """Return the cheapest explanation by kb/asp/accommodation.lp; of those that cost the same the first.
+
+    It is one of `explanations`, unchanged. Costs grow with the fields left unexplained, with the distance from the
+    predicted end, with improbability, and by its kind.
 
     Parameters
     ----------

@@ -80,6 +80,9 @@ class TrackerState:
     def surprise(self, command: Command, ranges: FieldRanges) -> Surprise:
         """Return an observation that contradicts this state, with what of the state it is judged by.
 
+        The result holds the command and the counts as given and, unchanged from this state, the frame, place, map,
+        observations, held objects, hypotheses and completions; nothing is computed, and nothing is changed here.
+
         Parameters
         ----------
         command : the command before the observation, Utak's own frame.
@@ -109,7 +112,7 @@ class TrackerState:
     def track(self) -> list[Position]:
         """Return all places of observations as (x, y) in squares, oldest first; map frame.
 
-        Those before a new beginning of the tracker are included.
+        One for each observation, repeated places included. Those before a new beginning of the tracker are included.
         """
         return [
             self.frame.place_from_utak(*place)
@@ -236,7 +239,8 @@ class TrackerState:
     def reestimable(self) -> tuple[MotionHypothesis, ...]:
         """Return the last straight motions, oldest first, that can be re-estimated (other ends of them can be tried).
 
-        Those are the ones with an empty hand, or with an object that is known still.
+        Those are the ones with an empty hand, or with an object that is known still. Each holds the number of the
+        observation after it, the commanded shift (east, north) in squares, Utak's own frame, and its other ends.
         """
         return tuple(motion for motion in self.motions if motion.in_hand is None or motion.in_hand in self.held_objects)
 
@@ -244,8 +248,9 @@ class TrackerState:
     def earlier(self) -> tuple[MotionHypothesis, ...]:
         """Return the last straight motions whose observation has been integrated already, oldest first.
 
-        Only those that can be re-estimated (see `reestimable`): with an empty hand, or with an object that is known
-        still.
+        Each holds the number of that observation, the commanded shift (east, north) in squares, Utak's own frame, and
+        its other ends. Only those that can be re-estimated (see `reestimable`): with an empty hand, or with an object
+        that is known still.
         """
         return tuple(motion for motion in self.reestimable if motion.number < len(self.observations))
 
@@ -254,10 +259,13 @@ class TrackerState:
         """Return those of the last straight motions that may well have ended elsewhere than believed, oldest first.
 
         Their observation is integrated already, and they have another end of a probability above LIKELY_END_CHANCE
-        (0.05).
+        (0.05). Each holds its commanded shift and its other ends, (east, north) in squares, Utak's own frame.
         """
         return tuple(motion for motion in self.earlier if motion.likely_ends(LIKELY_END_CHANCE))
 
     def others(self, held: HeldObject) -> list[HeldObject]:
-        """Return all objects that were ever held except the one of the name of `held`, map frame."""
+        """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame.
+
+        They come in the order in which they were first held; [] when there is no other.
+        """
         return [other for other in self.held_objects.values() if other.name != held.name]
