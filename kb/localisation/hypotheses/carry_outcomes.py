@@ -69,6 +69,9 @@ class CarryOutcome(NamedTuple):
 def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOutcome:
     """Return the outcome of the whole motion as commanded, at a distance of 0 from the predicted one.
 
+    It is of kind predicted: Utak's place (x, y) and the object's outline after it, in squares, map frame, and by how
+    many degrees the object was turned (0 for a straight motion).
+
     Parameters
     ----------
     place : of Utak before it, (x, y) in squares, map frame.
@@ -80,6 +83,9 @@ def predicted_outcome(place: Position, polygon: Any, motion: Motion) -> CarryOut
 
 def blocked_by_known(place: Position, polygon: Any, motion: Motion, known: Obstacles) -> CarryOutcome | None:
     """Return the motion as far as its first contact with known obstacles; None when it meets none.
+
+    It is an outcome of kind blocked: Utak's place (x, y) and the object's outline at the contact, in squares, map
+    frame; it names no contact squares.
 
     Parameters
     ----------
@@ -101,6 +107,9 @@ def partial_outcome(
 ) -> CarryOutcome:
     """Return the outcome of a motion that was blocked after a fraction of it.
 
+    It is of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map frame, the rotation so
+    far in degrees, and the `distance` that the outermost point of the object had still to go, in squares.
+
     Parameters
     ----------
     place : of Utak before it, (x, y) in squares, map frame.
@@ -116,6 +125,8 @@ def partial_outcome(
 
 def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, Any]:
     """Return Utak's place (x, y) and the outline of the object CONTACT_REACH (0.5) squares further on the motion.
+
+    Both are in squares, map frame; the outline is a shapely Polygon, and Utak's place stays on a turn.
 
     An obstacle that blocked the motion at `place` is met there. A shorter motion is carried out once as a whole.
 
@@ -135,8 +146,10 @@ def advance(place: Position, polygon: Any, motion: Motion) -> tuple[Position, An
 def other_outcomes(place: Position, polygon: Any, motion: Motion) -> Iterator[CarryOutcome]:
     """Yield all outcomes but the commanded one, the likeliest of each kind first: stuck, blocked, slipped.
 
-    Blocked ones come at steps of at most 0.25 squares, the furthest first; slipped ones the nearest to the commanded
-    end first.
+    One stuck, at the place of the start. Blocked ones come at steps of at most 0.25 squares, the furthest first;
+    slipped ones the nearest to the commanded end first (for a turn first those turned otherwise, by up to 6 degrees,
+    then those shifted, by up to 1 square in each axis). Each has Utak's place (x, y) and the object's outline after it,
+    in squares, map frame, and its distance from the commanded end, in squares.
 
     Parameters
     ----------
@@ -174,9 +187,15 @@ def motion_length(place: Position, polygon: Any, motion: Motion) -> float:
 
 
 def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: float) -> CarryOutcome:
-    """Return the outcome of a motion that really happened.
+    """Return the outcome of a motion that really happened: Utak's place and the object's outline after it, map frame.
 
-    how : its kind. place, polygon : before the motion, map frame. distance : from the predicted outcome, in squares.
+    Parameters
+    ----------
+    how : its kind, taken over into the result.
+    place : of Utak before the motion, (x, y) in squares, map frame.
+    polygon : the outline of the object before it, shapely Polygon, map frame.
+    motion : the whole of what happened, map frame.
+    distance : from the predicted outcome, in squares; taken over.
     """
     if isinstance(motion, Translate):
         place = (place[0] + motion.dx, place[1] + motion.dy)
@@ -187,7 +206,10 @@ def _outcome(how: str, place: Position, polygon: Any, motion: Motion, distance: 
 def _slipped_motions(motion: Motion, length: float) -> list[tuple[Motion, float]]:
     """Return motions a little beside a motion, each with the distance of its end from the commanded one, in squares.
 
-    The nearest come first. length : of the motion, in squares, as of `motion_length`.
+    The nearest come first: for a turn 24 turns about the same point, up to 6 degrees more or less; for a straight
+    motion 80 others, up to 1 square aside in each axis. The motion itself is left out.
+
+    motion : as commanded, map frame. length : of it, in squares: the path of the outermost point of the object.
     """
     if isinstance(motion, Rotate):
         per_degree = length / max(abs(motion.degrees), 1.0)

@@ -77,14 +77,20 @@ class Obstructions:
 
     @cached_property
     def _open(self) -> list[tuple[Square, Obstacles]]:
-        """Return each open square about the motion, (column, row) of the map frame, with the obstacle it may be."""
+        """Return each open square about the motion, (column, row) of the map frame, with the obstacle it may be.
+
+        The obstacle is the square itself, of side 1, map frame. In raster order, row by row from the south; [] when no
+        square is open.
+        """
         return [(square, _obstacles((square,))) for square in self._squares]
 
     def contacts(self, place: Position, polygon: Any, motion: Motion) -> list[ContactHypothesis]:
         """Return all contacts that may have blocked the motion, in the order of the way; [] when nothing can be met.
 
-        Those with open squares come first, and last the one with known obstacles, beyond which the motion cannot go.
-        The chances sum to 1 at most; the rest is that the motion went its whole way.
+        One for each fraction (0 to 1) of the motion at which something can be met, with its chance and the open squares
+        (column, row), map frame, that may stand there. Those with open squares come first, and last the one with known
+        obstacles, beyond which the motion cannot go. The chances sum to 1 at most; the rest is that the motion went its
+        whole way.
 
         Parameters
         ----------
@@ -110,7 +116,10 @@ class Obstructions:
         return [*contacts, ContactHypothesis(end, max(1.0 - sum(chances), 0.0))] if end < 1.0 else contacts
 
     def outcomes(self, place: Position, polygon: Any, motion: Motion) -> list[CarryOutcome]:
-        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first.
+        """Return the outcomes of all contacts that may have blocked the motion, the likeliest first; [] for none.
+
+        One for each contact, of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map
+        frame, and the open squares one of which may have blocked it.
 
         Parameters
         ----------
@@ -126,7 +135,9 @@ def likeliest_contact_near(
 ) -> ContactHypothesis | None:
     """Return the likeliest contact near a fraction of a motion; None when there is none.
 
-    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object.
+    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object. The
+    result is one of `contacts`: the fraction (0 to 1) of the motion before it, its chance, and its open squares; of
+    equal chances the first given.
 
     Parameters
     ----------
@@ -144,7 +155,10 @@ def likeliest_contact_near(
 def contact_outcomes(
     contacts: Iterable[ContactHypothesis], place: Position, polygon: Any, motion: Motion
 ) -> list[CarryOutcome]:
-    """Return the outcomes of some contacts of a motion, all blocked, the likeliest first.
+    """Return the outcomes of some contacts of a motion, all blocked, the likeliest first; [] for no contacts.
+
+    One for each contact: Utak's place (x, y) and the object's outline there, in squares, map frame, its rotation in
+    degrees, and the open squares one of which may have blocked it.
 
     Parameters
     ----------
@@ -201,13 +215,15 @@ def square_polygon(square: Square) -> Any:
 def _likeliest_squares(odds: Mapping[Square, float]) -> frozenset[Square]:
     """Return those squares whose log odds are within LIKELIEST_ODDS_GAP (1) of the highest; empty for none.
 
-    odds : the log odds (natural logarithm) that each is occupied.
+    odds : by square (column, row), map frame: the log odds (natural logarithm) that it is occupied.
     """
     return frozenset(square for square, odd in odds.items() if odd >= max(odds.values()) - LIKELIEST_ODDS_GAP)
 
 
 def _are_reachable(squares: Sequence[Square], place: Position, polygon: Any, motion: Motion) -> list[bool]:
     """Return for each square whether Utak or the object may meet it on a motion; False only where neither can.
+
+    In the order of `squares`, one for each. It is a rough test by bounds: True does not mean that it is met.
 
     Parameters
     ----------
@@ -237,7 +253,8 @@ def _obstacles(squares: tuple[Square, ...]) -> Obstacles:
 def _squares_near(occupancy: OccupancyMap, place: Position, polygon: Any, motion: Motion, state: int) -> list[Square]:
     """Return the squares of one state within OBSTACLE_MARGIN (3) squares of the bounding box of a motion.
 
-    As (column, row) of the map frame; squares beyond the map are left out.
+    As (column, row) of the map frame, row by row from the south, each row from the west; squares beyond the map are
+    left out.
 
     Parameters
     ----------

@@ -130,7 +130,9 @@ def field_statuses(
 def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
     """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation.
 
-    All are of kind misled; among those alike the order given is kept. [] when there is no re-estimation.
+    All are of kind misled; among those alike the order given is kept. [] when there is no re-estimation. One for each:
+    where the newest observation was made then, (x, y) in squares, map frame of its frame, and the number of fields left
+    unexplained (residual). The hypotheses left are those of all of them.
 
     ends : the re-estimations of each motion (other ends with which no observations contradict each other).
     """
@@ -146,7 +148,14 @@ def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[
 def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, ...]) -> Explanation:
     """Return the explanation, of kind misled, by a re-estimated motion.
 
-    one : the re-estimation. left : the frame hypotheses that are left then.
+    Its place is where the newest observation was made then, (x, y) in squares, map frame of its frame; its `distance`
+    is how far the end of the motion is shifted, in squares; its residual is that of the re-estimation, a count of
+    fields.
+
+    Parameters
+    ----------
+    one : the re-estimation: another end of a motion, in some frame.
+    left : the frame hypotheses that are left then; taken over.
     """
     frame, distance = one.hypothesis.frame, math.hypot(*one.correction.shift)
     place = frame.place_from_utak(*one.newest)
@@ -154,7 +163,9 @@ def reestimated_explanation(one: ReestimatedWalk, left: tuple[FrameHypothesis, .
 
 
 def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Explanation:
-    """Return the explanation that kb/asp/accommodation.lp chooses.
+    """Return the explanation that kb/asp/accommodation.lp chooses: one of those given, unchanged.
+
+    Its price is the least: 20 for each field left unexplained, and so much for its kind, its distance and its chance.
 
     Parameters
     ----------

@@ -89,7 +89,8 @@ class FrameHypothesis(NamedTuple):
     def split(self, place: Position) -> "list[FrameHypothesis]":
         """Return the parts of the hypothesis for each of which `place` lies in one square, the centre's part first.
 
-        They are 1, 2 or 4; together they are the whole.
+        They are 1, 2 or 4; together they are the whole. Each has the angle and the prior cost of the whole and a part
+        of its box (west, south, east, north), in squares, map frame.
 
         place : a point of Utak's own frame, (east, north) in squares.
         """
@@ -103,7 +104,8 @@ class FrameHypothesis(NamedTuple):
 def exact_hypothesis(frame: Frame) -> FrameHypothesis:
     """Return the hypothesis that the frame is exactly `frame`: its box is the point of the origin.
 
-    Its prior cost is 0.
+    So `angle` is that of `frame`, in degrees, and `box` its origin twice, (x, y, x, y) in squares, map frame, within
+    the square of waking. Its prior cost is 0.
     """
     return FrameHypothesis(frame.angle, frame.origin + frame.origin)
 
@@ -206,8 +208,9 @@ def prune_hypotheses(
 ) -> tuple[FrameHypothesis, ...]:
     """Return what the last of the observations leaves of some hypotheses, in their order; empty when it refutes all.
 
-    A hypothesis is split where the last observation would fall on different squares. Hypotheses by which every
-    observation falls on the same squares are kept or given up together.
+    Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame, with the prior
+    cost that it had. A hypothesis is split where the last observation would fall on different squares. Hypotheses by
+    which every observation falls on the same squares are kept or given up together.
 
     Parameters
     ----------
@@ -234,6 +237,9 @@ def consistent_hypotheses(
 ) -> tuple[FrameHypothesis, ...]:
     """Return what all observations together leave of some hypotheses, in their order; empty when they refute all.
 
+    Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame. One hypothesis
+    may leave several parts, with boxes side by side; what is left is split where observations fall on other squares.
+
     Parameters
     ----------
     observations : in the order in which they were made.
@@ -247,7 +253,9 @@ def consistent_hypotheses(
 
 
 def any_origin(angles: Iterable[int]) -> tuple[FrameHypothesis, ...]:
-    """Return a hypothesis for each orientation in `angles` that allows every origin in the square of waking.
+    """Return a hypothesis for each orientation in `angles`, in that order, that allows every origin.
+
+    Its box is the whole square of waking, (0, 0, 1, 1), its prior cost 0.
 
     angles : degrees, counter-clockwise positive, as of `Frame.angle`.
     """
@@ -273,7 +281,9 @@ def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
     """Return the origins for which every observation falls on the square on which it is believed to have fallen.
 
     For all of these origins everything at rest looked the same. They are a box (west, south, east, north) within the
-    square of waking, in squares, map frame, 0 to 1.
+    square of waking, in squares, map frame, 0 to 1; the whole square without observations.
+
+    frame : the believed frame. observations : with their places in Utak's own frame.
     """
     away = np.array([frame.to_map(*observation.place) for observation in observations]).reshape(-1, 2)
     corners = observation_squares(frame, observations)
@@ -311,7 +321,8 @@ def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[Fram
     """Return ORIGIN_GRID x ORIGIN_GRID exact origins, evenly spaced in the box that `origin_box` returns.
 
     That box holds all origins for which every observation falls on the square on which it is believed to have fallen.
-    The hypotheses have the angle of `frame`; they come column by column from the west, each from south to north.
+    The hypotheses, 121 with 11 points a side, have the angle of `frame`, a box that is one point (x, y, x, y) in
+    squares, map frame, and a prior cost of 0; they come column by column from the west, each from south to north.
     """
     west, south, east, north = origin_box(frame, observations)
     steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
@@ -326,7 +337,7 @@ def is_cramped(hypotheses: Sequence[FrameHypothesis], observations: int) -> bool
     than CRAMPED_SIDE / observations about once in two hundred times. An observation made elsewhere than believed is
     likelier. False for no hypotheses, and where one assumes the middle of the square.
 
-    observations : their number.
+    hypotheses : those that are left, with their boxes of origins. observations : the number of observations.
     """
     if not hypotheses or any(hypothesis.is_centred for hypothesis in hypotheses):
         return False
@@ -347,8 +358,10 @@ def grid_cell_size(points: Sequence[FrameHypothesis]) -> tuple[float, float]:
 def frames_to_try(hypotheses: Sequence[FrameHypothesis], believed: Frame) -> list[Frame]:
     """Return the frames of some hypotheses, the likeliest first.
 
-    The order: the best map prior, the believed frame, Utak's own axes, then orientations from the median outwards. Of
-    one orientation the frame with the most room for the origin comes first.
+    A frame is an angle in degrees and an origin (x, y) in the square of waking: the middle of the square where the
+    hypothesis allows it, else the middle of its box. The order: the best map prior, the believed frame, Utak's own
+    axes, then orientations from the median outwards. Of one orientation the frame with the most room for the origin
+    comes first.
 
     Parameters
     ----------

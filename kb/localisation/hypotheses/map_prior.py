@@ -135,7 +135,10 @@ class FrameTrial:
     """
 
     def __init__(self, frame: Frame, observations: Sequence[Observation]) -> None:
-        """Begin with no completion. observations : those that are mapped, with their places in Utak's own frame."""
+        """Begin with no completion.
+
+        frame : that to map in. observations : those that are mapped, with their places in Utak's own frame.
+        """
         self.description = MapDescription(remap(frame, frame, observations, ()).occupancy)
         self._oblique = OBLIQUE_COST * (frame.angle != 0)
 
@@ -199,7 +202,7 @@ class AlikeHypotheses(NamedTuple):
 def weigh_hypotheses(
     hypotheses: Sequence[FrameHypothesis], observations: Sequence[Observation]
 ) -> tuple[FrameHypothesis, ...]:
-    """Return the same hypotheses, each with its prior cost relative to the best one.
+    """Return the same hypotheses (angle and box of origins unchanged), each with its prior cost relative to the best.
 
     The prior cost is the log odds (natural logarithm) against the simplest map in that frame, its orientation and its
     origin. Of hypotheses weighed before, only the likely ones and the orientations beside the best one are weighed
@@ -266,6 +269,10 @@ def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation
 def _alike(same: Sequence[FrameHypothesis]) -> AlikeHypotheses:
     """Return hypotheses of the same map, at least one, as one: the likeliest of their frames, and what is against it.
 
+    The frame is of the one that names the middle of the square of waking, else of the one with the largest box. What is
+    against it are log odds (natural logarithm) against an origin in their boxes together: the smaller the area the
+    more; 0 for the middle, or for exact origins.
+
     same : hypotheses of one angle by which all observations fall on the same squares.
     """
     likeliest = max(same, key=lambda one: (one.is_centred, one.area))
@@ -296,7 +303,11 @@ def _first_trials(
 ) -> dict[SquaresKey, FrameTrial]:
     """Return trials, by key, of the frames that may be best: the likeliest origin of each orientation, then others.
 
-    Completions (maps that agree with all counts) are drawn of all of them. alike : by key (see `_squares_key`).
+    A trial is the map in a frame with its simplest completion so far (a map that agrees with all counts), and the log
+    odds against it; completions were drawn of all of them. At most one frame an orientation, and MAX_REWEIGHED_FRAMES
+    (8) others, of the best orientations first.
+
+    alike : by key (angle in degrees, and the squares of all observations as bytes). observations : those to map.
     """
     parts: dict[int, list[SquaresKey]] = {}
     for key in sorted(alike, key=lambda key: (alike[key].against, key)):
@@ -310,7 +321,12 @@ def _first_trials(
 
 
 def _trial(one: AlikeHypotheses, observations: Sequence[Observation]) -> FrameTrial:
-    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT."""
+    """Return the trial of a frame, with completions (maps that agree with all counts) drawn by FULL_EFFORT.
+
+    Its `odds` are the log odds (natural logarithm) against the frame by its map and its orientation.
+
+    one : hypotheses of one map; its likeliest frame is tried. observations : those to map.
+    """
     trial = FrameTrial(one.frame, observations)
     trial.draw()
     return trial
@@ -328,7 +344,11 @@ class _Competition:
         self._trials: dict[int, FrameTrial] = {}
 
     def run(self) -> dict[int, FrameTrial]:
-        """Return the trials of the frames that may be the best, by orientation in degrees; all of them were drawn."""
+        """Return the trials of the frames that may be the best, by orientation in degrees; all of them were drawn.
+
+        They come in the order in which they were tried, not by their odds. A trial holds the map in the frame and the
+        log odds (natural logarithm) against it. Only orientations about Utak's own axes are there where those fit.
+        """
         trials = self._trials
         self._enter([0])
         if 0 in trials and trials[0].draw() and trials[0].description.bend_ratio < MAX_STRAIGHT_BENDS:

@@ -60,11 +60,16 @@ class WalkCorrection(NamedTuple):
     in_hand: str | None = None
 
     def place(self, place: Position) -> Position:
-        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame."""
+        """Return a place of Utak since the motion as corrected, (east, north) in squares, Utak's own frame.
+
+        place : as believed, same frame.
+        """
         return add(place, self.shift)
 
     def observations(self, observations: Sequence[Observation]) -> list[Observation]:
         """Return all observations, oldest first, with corrected places and object poses; earlier ones are unchanged.
+
+        As many as given, in the same order; their counts stay, places and poses are in squares, Utak's own frame.
 
         observations : all, oldest first, as believed.
         """
@@ -75,7 +80,9 @@ class WalkCorrection(NamedTuple):
         return [*observations[: self.since], *since]
 
     def held_objects(self, held_objects: Mapping[str, HeldObject], frame: Frame) -> dict[str, HeldObject]:
-        """Return all held objects, by name, where they lie and lay as corrected; same frame as given.
+        """Return all held objects, by name, where they lie and lay as corrected; same frame and order as given.
+
+        Outlines (shapely Polygons, in squares) are shifted; an object that the correction does not shift is the same.
 
         held_objects : by name, map frame. frame : that map frame.
         """
@@ -84,7 +91,8 @@ class WalkCorrection(NamedTuple):
     def _pose(self, pose: ObjectPose) -> ObjectPose:
         """Return the corrected pose of an object at an observation since the motion, Utak's own frame.
 
-        Where the object in hand was first held stays as it is.
+        Its `middle` is shifted, and `taken` (where it was first held), both (east, north) in squares; its rotation
+        stays. Where the object in hand was first held stays as it is.
         """
         aside = self._aside(pose.name)
         if pose.name != self.in_hand:
@@ -131,10 +139,13 @@ def reestimate_walk(
 ) -> Iterator[ReestimatedWalk]:
     """Yield other ends of a motion, each with the frame in which no observation contradicts another.
 
-    Until it was blocked the motion entered no occupied square, and it was blocked before no free one. Where a contact
-    with something known is possible in a frame, contacts with open squares are left out. Not yielded: what is believed
-    already, and a contact of the newest motion with something unknown in the believed frame. What is yielded may still
-    have a residual against the map.
+    What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
+    squares, Utak's own frame, whether something known blocked it, the number of fields that contradict it, and where
+    the newest observation was made. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost);
+    in each frame in the order of the way. Until it was blocked the motion entered no occupied square, and it was
+    blocked before no free one. Where a contact with something known is possible in a frame, contacts with open squares
+    are left out. Not yielded: what is believed already, and a contact of the newest motion with something unknown in
+    the believed frame. What is yielded may still have a residual against the map.
 
     Parameters
     ----------
@@ -167,7 +178,11 @@ def _other_ends(
     observations: Sequence[Observation],
     begun: ReplayPrefixes,
 ) -> Iterator[ReestimatedWalk]:
-    """Yield the other ends of one motion in one frame, with contacts known and unknown.
+    """Yield the other ends of one motion in one frame, with contacts known and unknown, in the order of the way.
+
+    Each holds the shift of all observations since the motion and where the newest was made, (east, north) in squares,
+    Utak's own frame, and the number of fields that contradict it. An end comes once for each square from which the
+    newest observation may be made then.
 
     Parameters
     ----------
@@ -207,7 +222,9 @@ def reestimate_two_walks(
 ) -> Iterator[ReestimatedWalk]:
     """Yield ends of an earlier motion and of the newest one, both blocked by something known, without contradictions.
 
-    The correction is that of the earlier motion; `newest` is where the newest one ended. A motion that goes on against
+    The correction is that of the earlier motion, a shift (east, north) in squares, Utak's own frame; `newest` is where
+    the newest one ended, same frame. The residual is 0. In the order of the way of the earlier motion, then of the
+    newest. A motion that goes on against
     what blocked the one before it does not move at all.
 
     Parameters
@@ -247,6 +264,10 @@ def remap_if_consistent(
 ) -> RemappedMap | None:
     """Return the map of all observations in a frame; None when two of the last observations contradict each other.
 
+    The result holds the occupancy map, the held objects where they lie after the last observation (by name), both map
+    frame of `frame`, and `residual`, the number of fields that contradict the frame over all observations; it may be
+    above 0 all the same. It is a new map; the arguments are not changed.
+
     Parameters
     ----------
     frame : the frame to map in.
@@ -255,7 +276,8 @@ def remap_if_consistent(
     unsettled : parts of the table (discs, Utak's own frame) where observations need not agree.
     recent : how many of the last observations are compared.
     begun : a replay of the first of the observations in that frame, which is copied; None to begin with an empty map.
-    only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
+    only_whether : stop at the first observation that contradicts the frame: the result has no held objects then, a map
+        of the observations up to it, and a residual that is a lower bound. False: the map of all, and the whole number.
     """
     squares = observation_squares(frame, observations)
     if not _are_consistent(frame, squares, stack_ranges(observations), unsettled, recent):
@@ -313,8 +335,11 @@ class WalkInFrame:
     def __init__(self, motion: MotionHypothesis, frame: Frame, observations: Sequence[Observation]) -> None:
         """Find the ends of a motion.
 
-        motion : at least one observation was made before it. observations : all, oldest first, at their believed
-        places.
+        Parameters
+        ----------
+        motion : with an empty hand; at least one observation was made before it.
+        frame : the frame whose grid lines may stop it.
+        observations : all, oldest first, at their believed places in Utak's own frame.
         """
         x, y = observations[motion.number - 1].place
         self._met = met = line_crossings(frame.place_from_utak(x, y), frame.to_map(*motion.shift))
