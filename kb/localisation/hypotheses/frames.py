@@ -281,9 +281,9 @@ def origin_box(frame: Frame, observations: Sequence[Observation]) -> OriginBox:
     """Return the origins for which every observation falls on the square on which it is believed to have fallen.
 
     For all of these origins everything at rest looked the same. They are a box (west, south, east, north) within the
-    square of waking, in squares, map frame, 0 to 1; the whole square without observations.
+    square of waking, in squares, map frame, 0 to 1.
 
-    frame : the believed frame. observations : with their places in Utak's own frame.
+    frame : the believed frame. observations : at least one, with their places in Utak's own frame.
     """
     away = np.array([frame.to_map(*observation.place) for observation in observations]).reshape(-1, 2)
     corners = observation_squares(frame, observations)

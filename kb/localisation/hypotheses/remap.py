@@ -52,6 +52,9 @@ class RemappedMap(NamedTuple):
 def object_pose(held: HeldObject, frame: Frame) -> ObjectPose:
     """Return where an object lies, and where it lay when it was first held, in Utak's own frame.
 
+    Both as the centroid of its outline, (east, north) in squares, with the degrees by which it was turned since it was
+    first held (counter-clockwise positive), and its tolerance `slack` in squares.
+
     held : map frame. frame : the frame that relates this map frame to Utak's own.
     """
     return ObjectPose(held.name, _centroid(held.polygon, frame), held.turned, held.slack, _centroid(held.first, frame))
@@ -74,7 +77,7 @@ class MapReplay:
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
     def copy(self) -> "MapReplay":
-        """Return an independent copy, to go on with: neither changes the other."""
+        """Return an independent copy, with the same observations integrated, to go on with: neither changes the other."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
@@ -94,7 +97,8 @@ class MapReplay:
             first of them.
         held_objects : all objects that were ever held, by name, old frame.
         stop : how many observations are to be integrated then.
-        only_whether : stop after the first observation that contradicts the frame.
+        only_whether : stop after the first observation that contradicts the frame, so that `number` may stay below
+            `stop`; False integrates all of them, contradictions included.
         """
         for number in range(self.number, stop):
             if only_whether and self._residual:
@@ -122,12 +126,16 @@ class MapReplay:
     ) -> RemappedMap:
         """Integrate the rest of the observations and return the map. The replay cannot go on afterwards.
 
+        The result holds the map, all held objects where they lie after the last observation (by name), both in the new
+        frame, and the number of fields that contradict that frame, over all observations.
+
         Parameters
         ----------
         observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the
             first of them.
         held_objects : all objects that were ever held, by name, old frame.
-        only_whether : stop at the first contradiction; the result is incomplete then.
+        only_whether : stop at the first contradiction; the result has no held objects then, and its residual is a lower
+            bound above 0. False: the map of all observations, whatever contradicts.
         """
         self.advance(observations, held_objects, len(observations), only_whether)
         if only_whether and self._residual:
@@ -162,6 +170,9 @@ def remap(
 ) -> RemappedMap:
     """Return the map and the held objects in another frame; the arguments are not changed.
 
+    The result holds a new occupancy map, all held objects where they lie after the last observation (by name), both map
+    frame of `new`, and the number of fields that contradict that frame, over all observations.
+
     Parameters
     ----------
     new : the frame to map in.
@@ -170,7 +181,8 @@ def remap(
     held_objects : all objects that were ever held, old frame.
     begun : a replay of the first of the observations, with the same objects; it is copied. None to begin with an empty
         map.
-    only_whether : ask only whether anything contradicts the frame; the result is incomplete if something does.
+    only_whether : stop at the first observation that contradicts the frame: the result has no held objects then, and a
+        residual that is a lower bound above 0. False: the map of all observations, and the whole number.
     """
     replay = MapReplay(new, old) if begun is None else begun.copy()
     return replay.finish(observations, {held.name: held for held in held_objects}, only_whether)
@@ -207,7 +219,11 @@ class RemapCache:
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
         """Return the map and the held objects in a frame; the map must not be changed, for it is kept.
 
-        only_whether : ask only whether anything contradicts the frame; then the result may be incomplete.
+        The result holds the occupancy map, all held objects where they lie now (by name), both map frame of `frame`,
+        and `residual`, the number of fields that contradict it; 0 in the believed frame.
+
+        only_whether : ask only whether anything contradicts the frame; if something does, the result may have no held
+            objects and too small a residual, but not 0. False: always complete.
         """
         if frame not in self._by_frame or (self._by_frame[frame].incomplete and not only_whether):
             self._by_frame[frame] = self._found(frame, only_whether)
@@ -215,6 +231,8 @@ class RemapCache:
 
     def _found(self, frame: Frame, only_whether: bool) -> RemappedMap:
         """Return the map of a frame, and the held objects in it, replayed or shifted from a frame of the same squares.
+
+        With them the number of fields that contradict the frame. All in the map frame of `frame`.
 
         only_whether : whether an incomplete map, which ends at the first contradiction, will do.
         """
@@ -255,7 +273,11 @@ class ReplayPrefixes:
         self._known = {0: MapReplay(frame, frame)}
 
     def first(self, number: int) -> MapReplay:
-        """Return the replay of the first `number` observations; it is kept, so copy it before going on with it."""
+        """Return the replay of the first `number` observations; it is kept, so copy it before going on with it.
+
+        It is the map of these observations alone, in the frame given at first, and tells whether any of them
+        contradicts it (`contradicted`); with 0 the map is empty.
+        """
         if number not in self._known:
             nearest = max(n for n in self._known if n < number)
             replay = self._known[nearest].copy()
@@ -268,7 +290,8 @@ class ReplayPrefixes:
 def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
     """Return a held object for another origin of the frame with which every observation falls on the same squares.
 
-    The object was first held where it was believed to lie, but every turn since was about another point.
+    The object was first held where it was believed to lie, but every turn since was about another point. So its
+    outline (shapely Polygon, squares, map frame of `new`) lies a little aside; all else of it stays.
 
     held : map frame of `old`. new : the frame of the result.
     """
@@ -276,7 +299,9 @@ def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
 
 
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
-    """Return a held object where it lay at another time, map frame.
+    """Return a held object where it lay at another time, map frame: its outline turned and shifted to that pose.
+
+    All else is as known now, but for the tolerance `slack`, which is that of the pose.
 
     held : where it lies now, map frame. pose : its pose at that time, Utak's own frame. frame : the believed frame.
     """
@@ -286,7 +311,8 @@ def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
 def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMap) -> HeldObject:
     """Return an object as it lay when it was first held, in the new frame.
 
-    Its outline is turned from the old frame, or fitted anew to the map where the two frames differ too much in angle.
+    Its outlines `polygon` and `first` (shapely Polygon, squares) are the same, map frame of `new`. It is turned from
+    the old frame, or fitted anew to the map where the two frames differ too much in angle.
 
     Parameters
     ----------
@@ -314,7 +340,9 @@ def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMa
 def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
     """Return an outline with its corners on grid corners, shifted to where the map contradicts it least.
 
-    At most one square in each axis. polygon : shapely Polygon with sides along the grid, map frame, as is the result.
+    At most one square in each axis from the nearest grid corner; of equal places the nearest.
+
+    occupancy : the map. polygon : shapely Polygon with sides along the grid, map frame, as is the result.
     """
     x0, y0 = polygon.bounds[:2]
     nearest = Translate(round(x0) - x0, round(y0) - y0).carry(polygon)
@@ -361,7 +389,7 @@ def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
 
 
 def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame) -> HeldObject:
-    """Return an object at a pose, map frame of `new`.
+    """Return an object at a pose, map frame of `new`: its outline (shapely Polygon, squares) turned and shifted there.
 
     Parameters
     ----------

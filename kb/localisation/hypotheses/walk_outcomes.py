@@ -58,6 +58,8 @@ class MotionHypothesis(NamedTuple):
     def likely_ends(self, min_chance: float) -> list[Position]:
         """Return the other ends of a probability above `min_chance`: (east, north) in squares, Utak's own frame.
 
+        In the order of `alternative_ends`, not by probability; [] when none is.
+
         min_chance : 0 to 1.
         """
         return [there for there, chance in self.alternative_ends if chance > min_chance]
@@ -65,7 +67,8 @@ class MotionHypothesis(NamedTuple):
     def chance_of_end(self, place: Position) -> float | None:
         """Return the probability of an end at `place`; None when it is no known other end.
 
-        Ends within 4e-6 squares count as the same. place : (east, north) in squares, Utak's own frame.
+        It is the probability (0 to 1) after the observation that followed the motion; of several ends there the
+        greatest. Ends within 4e-6 squares count as the same. place : (east, north) in squares, Utak's own frame.
         """
         near = (chance for there, chance in self.alternative_ends if math.dist(there, place) < 4 * LINE_DISTANCE)
         return max(near, default=None)
@@ -104,8 +107,9 @@ def slipped_ends(place: Position) -> tuple[Position, ...]:
 def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
     """Return where a motion crosses grid lines, in the order of the way; empty where it crosses none.
 
-    Through a corner of squares the motion enters the two squares beside it first, one after the other, and then the one
-    beyond. A line on which the motion begins or ends is not crossed.
+    One for each line crossed: the places 1e-6 squares before and after it, (x, y) in squares, and the square (column,
+    row) entered, all map frame. Through a corner of squares the motion enters the two squares beside it first, one
+    after the other, and then the one beyond. A line on which the motion begins or ends is not crossed.
 
     Parameters
     ----------
@@ -186,7 +190,9 @@ def add(place: Position, shift: Position) -> Position:
 
 
 def _crossing(line: int, across: float, axis: int, onward: float) -> Crossing:
-    """Return the crossing of a grid line by a motion, map frame.
+    """Return the crossing of a grid line by a motion, map frame: the places right before and after it.
+
+    They are (x, y) in squares, 1e-6 squares from the line; with them the square (column, row) entered.
 
     Parameters
     ----------

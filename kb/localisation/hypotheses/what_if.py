@@ -130,6 +130,7 @@ class Surprise:
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
         """Return what all observations before the command leave of the frame hypotheses, in their order; cached.
 
+        Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame.
         Only the last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute
         all.
         """
@@ -141,7 +142,8 @@ class Surprise:
     def judging_observations(self) -> list[Observation]:
         """Return the observations by which frames are judged, oldest first: the last earlier ones and the new one.
 
-        The new one has its place where it was commanded. Earlier ones are MAX_JUDGING_OBSERVATIONS (24) at most.
+        Each holds its counts, (160, 2), and its place, (east, north) in squares, Utak's own frame. The new one has its
+        place where it was commanded. Earlier ones are MAX_JUDGING_OBSERVATIONS (24) at most.
         """
         newest = Observation(self.ranges, self.commanded_place)
         return [*self.observations[-MAX_JUDGING_OBSERVATIONS:], newest]
@@ -150,7 +152,8 @@ class Surprise:
     def unsettled_discs(self) -> list[UnsettledDisc]:
         """Return the parts of the table where any object lay at any time, or is to lie now, sorted.
 
-        They are discs of Utak's own frame, each of the reach of the object plus UNSETTLED_MARGIN (1.5) squares.
+        They are discs of Utak's own frame: a middle (east, north) and a radius `reach`, in squares, that of the object
+        plus UNSETTLED_MARGIN (1.5). Without repetitions, sorted by middle; [] when no object was ever held.
         """
         discs = set()
         for held in self.held_objects.values():
@@ -168,7 +171,10 @@ class Surprise:
 
     @cached_property
     def prefixes(self) -> ReplayPrefixes:
-        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached."""
+        """Return the replays of the first observations (mapped one after the other) in the believed frame; cached.
+
+        Its method `first(n)` returns the map of the first n observations, with the held objects, as far as n came.
+        """
         return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 
     # -- evaluation of a frame -------------------------------------------------------------------
@@ -184,13 +190,20 @@ class Surprise:
     ) -> WhatIf:
         """Return what contradicts a frame, with the outcome of the motion that fits it best.
 
+        The result holds `frame`, the hypotheses given, Utak's place after the command, (x, y) in squares, map frame of
+        `frame`, the outcome for the object in hand (None when none was to be moved, or when `only_whether` found a
+        contradiction before), and `residual`: how many fields contradict, over all observations. Of equal outcomes the
+        first that is tried counts: stopped by known obstacles, then as commanded.
+
         Parameters
         ----------
         frame : the frame in question.
-        hypotheses, searched : taken over into the result.
+        hypotheses : the frame hypotheses that are left if it is true; taken over into the result.
+        searched : whether they had been given up before; taken over into the result.
         cut_short : whether the motion may have ended early without a known reason; then only such ends are tried.
         origin_error : squares by which the origin of the frame may be wrong.
         only_whether : ask only whether anything contradicts it; then the residual may be too small, though not 0.
+            False: the whole number.
         """
         if only_whether and (refuted := self.refuted(frame, hypotheses)) is not None:
             return refuted._replace(searched=searched)
@@ -211,7 +224,11 @@ class Surprise:
     def refuted(self, frame: Frame, hypotheses: tuple[FrameHypothesis, ...]) -> WhatIf | None:
         """Return the evaluation of a frame that earlier observations contradict; None when none does.
 
-        Its residual may be too small, and it has no outcome. hypotheses : taken over into the result.
+        The new observation is not asked. The result holds `frame`, the hypotheses given, the place to which the command
+        leads, (x, y) in squares, map frame of `frame`, no outcome, and `residual`: a number of fields above 0 that
+        contradict it, which may be too small; `searched` is False.
+
+        frame : the frame in question. hypotheses : the frame hypotheses that are left then; taken over.
         """
         residual = self.remapped(frame, only_whether=True).residual
         place = frame.place_from_utak(*self.commanded_place)
@@ -229,14 +246,19 @@ class Surprise:
     ) -> WhatIf:
         """Return what contradicts a frame together with an outcome of the motion of the object in hand.
 
+        The result holds what was given, Utak's place by that outcome, (x, y) in squares, map frame of `frame`, and
+        `residual`: how many fields contradict both, over all observations; 0 when none does. An object must be in hand.
+
         Parameters
         ----------
         frame : the frame in question.
-        hypotheses, searched : taken over into the result.
-        outcome : map frame of `frame`.
+        hypotheses : the frame hypotheses that are left if it is true; taken over into the result.
+        outcome : where Utak and the object ended, map frame of `frame`; taken over.
         slack : squares by which the object may have ended elsewhere.
         origin_error : squares by which the origin of the frame may be wrong.
-        only_whether : ask only whether anything contradicts them; then the residual may be too small, though not 0.
+        searched : whether the hypotheses had been given up before; taken over into the result.
+        only_whether : ask only whether anything contradicts them; then a residual may be too small, though not 0.
+            False: the whole number.
         """
         assert self.carried is not None
         name, held_objects = self.carried[0], self.remapped(frame).held_objects
@@ -273,6 +295,7 @@ class Surprise:
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
         """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame.
 
+        The motion is a shift in squares, or a turn in degrees about Utak's place, as commanded.
         The place is (x, y) in squares, the outline a shapely Polygon; all in the map frame of `frame`. An object must
         be moved.
         """
@@ -284,7 +307,11 @@ class Surprise:
     def remapped(self, frame: Frame, only_whether: bool = False) -> RemappedMap:
         """Return the map of all earlier observations in a frame, with the held objects; kept for each frame.
 
-        only_whether : ask only whether anything contradicts the frame; then the result is incomplete if something does.
+        The result holds the occupancy map, all held objects before the command (by name), both map frame of `frame`,
+        and `residual`, the number of fields of earlier observations that contradict that frame.
+
+        only_whether : ask only whether anything contradicts the frame; if something does, the result may have no held
+            objects and too small a residual, but not 0. False: always complete.
         """
         return self._maps.remapped(frame, only_whether)
 
@@ -297,7 +324,7 @@ class Surprise:
         """Yield the outcomes of the motion of the object in hand that are to be evaluated in a frame.
 
         In the map frame of `frame`: the motion as far as known obstacles let it go, if there are any on the way, and
-        then as commanded.
+        then as commanded. Each has Utak's place (x, y) and the object's outline after it, in squares.
 
         cut_short : whether it ended early without a known reason; then it is yielded as stuck, and with all early ends.
         """
@@ -317,7 +344,8 @@ class Surprise:
     def obstructions(self) -> Obstructions:
         """Return the obstacles, occupied squares and open ones, about the motion of the object in hand; cached.
 
-        In the map frame of the believed frame. An object must be in hand, and to be moved.
+        In the map frame of the believed frame, the squares within 3 squares of the bounds of the motion; asked for its
+        contacts it returns fractions of the motion, each with its chance. An object must be in hand, and to be moved.
         """
         return Obstructions(self.occupancy, *self.motion_in(self.frame), self.pictures)
 
@@ -326,7 +354,8 @@ class Surprise:
     def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
         """Return all held objects after an outcome of the motion of the one in hand, believed frame.
 
-        Its rotation is not counted in `turned`; outlines alone matter here.
+        One for each object, in the order of `held_objects`; the one in hand has the outline of the outcome (shapely
+        Polygon, map frame), the others lie as before. Its rotation is not counted in `turned`; outlines alone matter.
         """
         return [
             held.moved(outcome.polygon, held.slack, commanded=outcome.as_commanded) if name == self.in_hand else held
@@ -335,6 +364,9 @@ class Surprise:
 
     def map_after(self, held_objects: Sequence[HeldObject], place: Position) -> OccupancyMap:
         """Return a copy of the believed map with the new observation integrated as if it was made at `place`.
+
+        It is an occupancy map of squares settled as free, occupied or open, map frame of the believed frame; squares
+        that the observation contradicts are settled anew by it.
 
         Parameters
         ----------
@@ -360,11 +392,17 @@ def agreeing_hypotheses(
 ) -> tuple[FrameHypothesis, ...]:
     """Return those exact origins that agree with an observation of turned objects; all when none does.
 
+    In the order given, each an angle in degrees with a box that is one point, in squares, map frame. An origin agrees
+    when no field contradicts the map and the objects as they lie by it, give or take half a cell of the grid.
+
     Parameters
     ----------
     hypotheses : points of one origin grid, all of one angle; at least one.
-    frame, place, occupancy, observations, held_objects : as believed, with the motion before the observation applied;
-        place in squares, map frame.
+    frame : the believed frame.
+    place : of Utak where the observation was made, (x, y) in squares, map frame.
+    occupancy : the believed map, without the observation.
+    observations : all earlier ones, oldest first, with their places in Utak's own frame.
+    held_objects : all objects that were ever held, by name, map frame, after the motion before the observation.
     ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
     """
     own, error = frame.place_to_utak(*place), math.hypot(*grid_cell_size(hypotheses)) / 2
@@ -380,6 +418,8 @@ def agreeing_hypotheses(
 
 def command_motion(command: Push | Turn, frame: Frame, place: Position) -> Motion:
     """Return a command as a motion of the map frame of `frame`, in squares or degrees.
+
+    A turn is a Rotate by degrees, counter-clockwise positive, about `place`; a push a Translate (dx east, dy north).
 
     command : Utak's own frame. place : of Utak when the command is given, (x, y) in squares, map frame; a turn is about
     it.
@@ -408,7 +448,8 @@ def count_clashes(
     held_objects : all held objects where they lie, map frame.
     place : where the observation was made, (x, y) in squares, map frame.
     ranges : (160, 2) int16, least and greatest count of occupied squares under each field of the observation.
-    only_whether : ask only whether there are any; then the number may be too small, though not 0.
+    only_whether : ask only whether there are any; then the number may be too small, though not 0 where there are some:
+        fields of earlier observations are left out if one of this observation contradicts. False: all are counted.
     """
     x, y = math.floor(place[0]), math.floor(place[1])
     return occupancy.clashes(*subtract_held_objects(frame.samples(), ranges, x, y, held_objects), x, y, only_whether)
