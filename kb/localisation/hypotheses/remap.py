@@ -77,7 +77,7 @@ class MapReplay:
         self._taken: dict[str, HeldObject] = {}  # as they lay when they were first held, in the new frame
 
     def copy(self) -> "MapReplay":
-        """Return an independent copy, with the same observations integrated, to go on with: neither changes the other."""
+        """Return an independent copy to go on with, the same observations integrated; neither changes the other."""
         other = copy(self)
         other._occupancy, other._taken = self._occupancy.copy(), dict(self._taken)
         return other
@@ -301,7 +301,7 @@ def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
 def object_at(held: HeldObject, pose: ObjectPose, frame: Frame) -> HeldObject:
     """Return a held object where it lay at another time, map frame: its outline turned and shifted to that pose.
 
-    All else is as known now, but for the tolerance `slack`, which is that of the pose.
+    Its tolerance `slack` (squares) is set by the pose, and no squares count as seen full or empty; all else is as now.
 
     held : where it lies now, map frame. pose : its pose at that time, Utak's own frame. frame : the believed frame.
     """

@@ -65,7 +65,9 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
     Returns
     -------
     list of BlockedMotion
-        Their chances sum to 1 at most; no more than MAX_ENDS contacts.
+        Each holds its kind (predicted or blocked), the place from which the observation is made then, (x, y) in
+        squares, map frame, its chance (0 to 1) before the observation, the open squares one of which blocked it, and
+        the outcome for the object. Their chances sum to 1 at most; no more than MAX_ENDS contacts.
     """
     if not isinstance(motion, Translate):
         return []
@@ -82,7 +84,10 @@ def possible_ends(surprise: Surprise, held: HeldObject | None, motion: Motion) -
 def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
     """Return the likeliest ends, or contacts, the likeliest first: MAX_ENDS (24) of them at most.
 
-    Those of a chance of MIN_END_CHANCE or less are left out; [] when none is left.
+    They are returned as they were given. Those of a chance of MIN_END_CHANCE or less are left out; [] when none is
+    left; of equal chances the order given is kept.
+
+    ends : all of one kind, each with a probability `chance`, 0 to 1.
     """
     return sorted((end for end in ends if end.chance > MIN_END_CHANCE), key=lambda end: -end.chance)[:MAX_ENDS]
 
@@ -90,7 +95,8 @@ def likeliest_ends(ends: Iterable[EndOrContact]) -> list[EndOrContact]:
 def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
     """Return an end once for each place from which the observation may be made there, its chance divided evenly.
 
-    On a grid line those are both sides of it, at a grid corner all four squares; else the end alone.
+    On a grid line those are both sides of it, at a grid corner all four squares, 1e-6 squares from the line, the
+    south-west one first; else the end alone. Each has that place, (x, y) in squares, map frame, its outcome likewise.
     """
     found = observation_places(end.place)
     outcomes = (end.outcome and end.outcome._replace(place=view) for view in found)
@@ -103,7 +109,11 @@ def _both_sides(end: BlockedMotion) -> list[BlockedMotion]:
 def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]:
     """Return the ends of a walk at each grid line that it crosses, in order, once for each side of the line.
 
-    They are blocked; the chance of a contact is divided evenly between both sides. motion : map frame.
+    They are of kind blocked; the chance of a contact is divided evenly between both sides, the far side first. Each has
+    its place, (x, y) in squares, map frame, 1e-6 squares from the line, and the square (column, row) behind the line if
+    that is open. [] when no line is crossed.
+
+    surprise : the observation after the walk. motion : map frame.
     """
     way, occupancy = line_crossings(surprise.place, (motion.dx, motion.dy)), surprise.occupancy
     chances = ObstacleChance(occupancy, surprise.pictures).met([[crossing.entered] for crossing in way])
@@ -117,6 +127,10 @@ def _walk_contacts(surprise: Surprise, motion: Translate) -> list[BlockedMotion]
 
 def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> list[BlockedMotion]:
     """Return the ends of a push at each contact of Utak or of the object, in the order of the way.
+
+    They are of kind blocked: Utak's place (x, y) and the object's outline there, in squares, map frame, the chance of
+    the contact, and the open squares one of which it was with. On a grid line an end comes once for each side. [] when
+    nothing can be met.
 
     held : the object before the push. motion : as commanded, map frame.
     """
@@ -139,8 +153,8 @@ def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanati
     Returns
     -------
     list of Explanation
-        In the same order, [] when it agrees with none; `prior_cost` is in log odds (natural logarithm), relative to the
-        best one, which has 0.
+        In the same order, unchanged but for `prior_cost`: log odds (natural logarithm), relative to the best one, which
+        has 0. [] when it agrees with none.
     """
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}

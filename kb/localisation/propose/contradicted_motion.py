@@ -33,8 +33,9 @@ def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> 
     Returns
     -------
     CarryOutcome or None
-        The likeliest contact that nothing contradicts, or a shortened turn. None as well when the whole motion is
-        contradicted and no contact explains it.
+        The likeliest contact that nothing contradicts, or a shortened turn: Utak's place (x, y) and the object's
+        outline there, in squares, map frame, and the degrees by which the object was turned. None as well when the
+        whole motion is contradicted and no contact explains it.
     """
     if is_contradicted(surprise, predicted_outcome(surprise.place, held.polygon, motion)):
         return likeliest_contact(surprise, held, motion)
@@ -55,6 +56,10 @@ def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
 def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> CarryOutcome | None:
     """Return the outcome of the likeliest contact that nothing contradicts; None when there is none.
 
+    It is of kind blocked: Utak's place (x, y) and the object's outline at the contact, in squares, map frame, the
+    rotation so far in degrees, and the open squares one of which blocked it. Neither the map before nor what the new
+    observation itself settles contradicts it.
+
     held : the object before the motion. motion : as commanded, map frame.
     """
     for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
@@ -68,9 +73,11 @@ def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> C
 def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> CarryOutcome | None:
     """Return where a turn ended short, if that explains what seems to stand right beside the object now; else None.
 
-    No observation contradicts the whole turn. But nothing can have come to stand where the object lay before. Of ends
-    that explain as much the one of the middle rotation is returned, and only where it leaves fewer than half of the
-    newly occupied squares beside the object.
+    It is an outcome of kind blocked: Utak's place (x, y), which a turn does not change, the outline of the object there
+    (shapely Polygon, in squares, map frame), and by how many degrees it was turned, counter-clockwise positive; contact
+    squares are named where a contact is supposed there. No observation contradicts the whole turn. But nothing can have
+    come to stand where the object lay before. Of ends that explain as much the one of the middle rotation is returned,
+    and only where it leaves fewer than half of the newly occupied squares beside the object.
 
     held : the object before the turn. motion : as commanded, map frame.
     """

@@ -66,8 +66,10 @@ class CarriedMotion:
     def __init__(self, motion: MotionHypothesis, surprise: Surprise) -> None:
         """Find the ends of a motion with an object in hand.
 
-        motion : its object has a known pose at the observation before it. surprise : the believed frame, map and
-        objects.
+        Parameters
+        ----------
+        motion : its object has a known pose at the observation before it.
+        surprise : the believed frame, observations and objects; its newest observation is not asked.
         """
         assert motion.in_hand is not None
         frame, observations, held_objects = (
@@ -117,7 +119,12 @@ class CarriedMotion:
         return OPEN if end.progress == 1.0 or any(met) else FREE
 
     def _obstructions(self, occupancy: OccupancyMap) -> Obstructions:
-        """Return the obstacles about the motion in a map, known and possible."""
+        """Return the obstacles about the motion in a map: occupied squares (`known`) and open ones, map frame.
+
+        Asked for its contacts it returns fractions (0 to 1) of the motion, each with its chance by counts alone.
+
+        occupancy : the map in the believed frame.
+        """
         return Obstructions(occupancy, self._place, self._polygon, self._motion)
 
 
@@ -132,7 +139,9 @@ def reestimate_motions(surprise: Surprise, motions: Sequence[MotionHypothesis]) 
     Returns
     -------
     list of ReestimatedMotion
-        Contacts with something known first, then by motion, the newest first; [] when there is none.
+        One for each end that fits: the shift of everything since that motion, (east, north) in squares, Utak's own
+        frame, with the evaluation of the newest observation by it (Utak's place (x, y) in squares, map frame; residual
+        0). Contacts with something known first, then by motion, the newest first; [] when there is none.
     """
     tried = [motion for motion in reversed(motions) if _has_known_pose(motion, surprise)]
     found = [one for motion in tried for one in _other_ends(surprise, motion)]
@@ -153,7 +162,10 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
     Returns
     -------
     list of ReestimatedMotion
-        Of one motion only; contacts with something known first; [] when there is none.
+        Of one motion only, one for each end and frame that fits: the shift of everything since, (east, north) in
+        squares, Utak's own frame, and the evaluation by it: the frame with its origin, the hypotheses left, Utak's
+        place (x, y) in squares, map frame of that frame, and a residual of 0. Contacts with something known first; []
+        when there is none.
     """
     tried = (motion for motion in reversed(motions) if motion.in_hand is not None and _has_known_pose(motion, surprise))
     found = ([*_ends_with_origin(surprise, motion)] for motion in itertools.islice(tried, MAX_MOTIONS_WITH_ORIGIN))
@@ -161,13 +173,21 @@ def reestimate_with_origin(surprise: Surprise, motions: Sequence[MotionHypothesi
 
 
 def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
-    """Return whether the pose of the object in hand before a motion is known; True for an empty hand."""
+    """Return whether the pose of the object in hand before a motion is known; True for an empty hand.
+
+    It is known when the observation before the motion was made after the object was first held.
+    """
     before = surprise.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
 
 
 def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation."""
+    """Yield other ends of one motion in the believed frame, with which nothing contradicts the newest observation.
+
+    Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
+    the newest observation. In the order of the way for an empty hand, else the likeliest contact first; nothing when
+    the observations before the motion contradict each other.
+    """
     observations, frame = surprise.observations, surprise.frame
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
     if first.contradicted:  # whatever came of the motion
@@ -197,7 +217,12 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
 
 
 def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[ReestimatedMotion]:
-    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them."""
+    """Yield other ends of one motion of an object, each with another origin of the frame; nothing contradicts them.
+
+    Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
+    the newest observation in that frame. The likeliest contact first, and for each end the likeliest frame first, of
+    which 3 are tried at most.
+    """
     origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:
         corrected, correction = _corrected(surprise, motion, end)
@@ -223,6 +248,7 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
     """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since.
 
+    The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
     Places, observations and objects are corrected; the map of the surprise is not, and must be made anew.
 
     motion : earlier than the newest observation. end : Utak's own frame.
@@ -246,7 +272,11 @@ def _object_shift(held: HeldObject, shift: Position, surprise: Surprise) -> Posi
     An object with sides on grid lines is shifted by whole squares, for the retina tells squares, wherever in a square
     the observation is made.
 
-    shift, result : (east, north) in squares, Utak's own frame.
+    Parameters
+    ----------
+    held : the object, map frame; the observation before it was first held showed it.
+    shift : (east, north) in squares, Utak's own frame, as is the result.
+    surprise : the believed frame and all earlier observations, at their believed places.
     """
     if not is_grid_aligned(held.first):
         return shift

@@ -47,7 +47,9 @@ def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | N
     Returns
     -------
     WhatIf or None
-        Its residual is 0 where a frame explains everything; else it is the least one.
+        The frame (angle in degrees, origin), the hypotheses left then, Utak's place (x, y) in squares, map frame of
+        that frame, and the outcome for the object in hand. Its residual, the number of fields that contradict it, is 0
+        where a frame explains everything; else it is the least one.
     """
     if surprise.any_turned:
         found = _other_orientation(surprise) or origin_from_turn(surprise, simple)
@@ -59,7 +61,9 @@ def best_frame(surprise: Surprise, reconsider: bool, simple: bool) -> WhatIf | N
 def _other_orientation(surprise: Surprise) -> WhatIf | None:
     """Return a frame of another orientation that was never given up and nothing contradicts; None if there is none.
 
-    Its origin is taken to be the middle of the square of waking.
+    The result is its evaluation: the frame, the hypotheses left (all of other orientations), Utak's place (x, y) in
+    squares, map frame of that frame, and a residual of 0. Of several the likeliest is returned. Its origin is taken to
+    be the middle of the square of waking.
     """
     angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
@@ -72,7 +76,10 @@ def _other_orientation(surprise: Surprise) -> WhatIf | None:
 def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
     """Return the evaluation of the least residual; None when no frame is left.
 
-    The first frame without residual is returned at once. reconsider : whether frames that were given up may be tried.
+    The residual is the number of fields that contradict the frame; with it come Utak's place (x, y) in squares, map
+    frame of that frame, and the outcome for the object in hand. The first frame without residual is returned at once,
+    the likeliest tried first; of equal residuals the first tried. reconsider : whether frames that were given up may be
+    tried.
     """
     found: list[WhatIf] = []
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(surprise.observations) + 1)
@@ -100,7 +107,8 @@ def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
 def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[FrameHypothesis, ...], bool]]:
     """Yield sets of hypotheses to evaluate, the likeliest set first, each with whether they had been given up before.
 
-    Another origin is tried before orientations of a worse map prior. A set may be empty.
+    A hypothesis is an angle in degrees and a box of origins in squares, map frame. Another origin is tried before
+    orientations of a worse map prior. A set may be empty.
 
     reconsider : whether hypotheses that were given up are yielded at all.
     """
@@ -119,7 +127,8 @@ def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[Frame
 def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """Return all hypotheses that observations leave, of orientations near to those that are left.
 
-    Near is within SEARCHED_ANGLE_MARGIN (2) degrees; of the believed orientation alone when they differ widely.
+    Near is within SEARCHED_ANGLE_MARGIN (2) degrees; of the believed orientation alone when they differ widely. In the
+    order of their angles, each an angle in degrees and a box of origins in squares, map frame; empty when none is left.
     """
     angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
@@ -131,8 +140,10 @@ def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
 def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
     """Return a frame that was left before the motion, in which the motion was blocked and nothing contradicts.
 
-    A contact with something known is preferred; among orientations that do as well, the middle one is returned. None
-    when there is none, or when no object was to be moved. few : frames to evaluate, at most.
+    The result is its evaluation: the frame, the hypotheses left, Utak's place (x, y) in squares, map frame of that
+    frame, the outcome for the object, and a residual of 0. A contact with something known is preferred; among
+    orientations that do as well, the middle one is returned. None when there is none, or when no object was to be
+    moved. few : frames to evaluate, at most.
     """
     if surprise.carried is None:
         return None
@@ -173,7 +184,9 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
     Returns
     -------
     list of BlockedPushWithOrigin
-        One for each square of Utak and each contact, with the most central origin of those that give it. [] without a
+        Each an evaluation (the frame, Utak's place (x, y) in squares, map frame of that frame, the outcome, residual
+        0), the chance of the contact, and the log odds against that origin. One for each square of Utak and each
+        contact, with the most central origin of those that give it. [] without a
         push, and once an object was turned, for turned objects tell the origin.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
@@ -196,7 +209,9 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
 def _blocked_pushes(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, float]]:
     """Yield how a push may have been blocked in a frame so that nothing contradicts it, each with its probability.
 
-    Nothing is yielded when earlier observations contradict the frame. An end on a grid line comes once for each side.
+    Each is an evaluation (Utak's place (x, y) in squares, map frame of `frame`, the outcome, residual 0) with the
+    chance of its contact, 0 to 1, the likeliest first. Nothing is yielded when earlier observations contradict the
+    frame. An end on a grid line comes once for each side, each time with the whole chance.
     """
     under = surprise.remapped(frame, only_whether=True)
     if under.residual:

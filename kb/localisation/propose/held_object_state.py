@@ -22,8 +22,10 @@ TOUCHING_DISTANCE = 0.02  # squares from an obstacle within which an object touc
 
 
 def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, suspected: bool = False) -> HeldObject:
-    """Return an object in hand after a motion.
+    """Return an object in hand after a motion: with its new outline (shapely Polygon, in squares, map frame).
 
+    Its rotation `turned` (degrees), its tolerance `slack` (squares), the squares known to be empty of it, and the
+    greatest number of fields that a motion left unexplained are brought up to date as well; `held` is not changed.
     Where it did not move, only the counts `stuck` and `thwarted` go on, and its place may become inexact.
 
     Parameters
@@ -52,6 +54,7 @@ def lean_on_obstacle(
 ) -> HeldObject:
     """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
 
+    Only its outline (shapely Polygon, in squares, map frame) and what depends on its place change.
     It stays where it is after a turn, when it touches something there, when nothing is within MAX_LEANING_DISTANCE
     (0.8) squares, or when every touching place contradicts more of what is seen.
 

@@ -35,8 +35,8 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     Yields
     ------
     Explanation
-        Without residual; `larger` is the object before the push; `distance` is how far it goes on beyond what was seen,
-        1 to 3 squares.
+        Of kind larger, at the commanded place (x, y) in squares, map frame. Without residual; `larger` is the object
+        before the push; `distance` is how far it goes on beyond what was seen, 1 to 3 squares.
     """
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
@@ -58,6 +58,8 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
 
 def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
     """Return an object that goes on to one side by `depth` squares; its shape class is unknown then.
+
+    Its outlines `polygon` and `first` are both the larger one, shapely Polygon, in squares, map frame.
 
     side : one of SIDE_DIRECTIONS, a unit step (x, y) of the map frame.
     """

@@ -65,7 +65,9 @@ class TurnOriginCell(NamedTuple):
         return math.hypot(east - west, north - south) / 2
 
     def cut(self, *times: int) -> "list[TurnOriginCell]":
-        """Return the parts of the cell, its sides cut into so many equal parts, in their order.
+        """Return the parts of the cell, its sides cut into so many equal parts: the product of `times` cells.
+
+        By the turn first, then from west to east, then from south to north, which changes fastest.
 
         times : three numbers of parts: of the turn, west to east, south to north.
         """
@@ -76,7 +78,9 @@ class TurnOriginCell(NamedTuple):
 def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
     """Return the origin, with the outcome of a turn, so that nothing contradicts them; None when there is none.
 
-    The orientation is the believed one. The turn went to its end, or as far as known obstacles let it go; else it may
+    The result holds the frame (believed angle, that origin), the hypotheses left, Utak's place (x, y) in squares, map
+    frame of that frame, the outcome for the object (None without a turn), and a residual of 0. The orientation is the
+    believed one. The turn went to its end, or as far as known obstacles let it go; else it may
     have ended anywhere. Of all origins that do, the middle one is returned; the hypotheses left are all of them.
 
     Parameters
@@ -96,7 +100,8 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
 def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
     """Return the exact origins that are left; if fewer than two are, a grid of all that observations leave.
 
-    An exact origin is a hypothesis of the believed angle whose box is one point.
+    An exact origin is a hypothesis of the believed angle (degrees) whose box is one point, in squares, map frame. In
+    their order; a grid has 11 x 11 of them, column by column from the west, each from south to north.
     """
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
     return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
@@ -105,6 +110,8 @@ def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
 def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
     """Return what fits if a turn of the held object ended early; [] if there was no turn, or if nothing fits.
 
+    One evaluation for each cell (an interval of the turn and a box of origins) that fits: the frame with the origin in
+    its middle, Utak's place (x, y) in squares, map frame of that frame, the outcome of the turn, and a residual of 0.
     Cells are cut as long as nothing contradicts them and they are not too many. Larger cells leave more room for where
     the object lies.
 
@@ -130,8 +137,10 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
 def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> WhatIf:
     """Return what contradicts an origin and an end of the turn in a cell.
 
-    Both are taken in its middle, with room for all others of the cell. The residual is 0 when nothing contradicts them;
-    else it may be too small.
+    The result holds the frame with that origin, Utak's place (x, y) in squares, map frame of it, the outcome of the
+    turn (None when earlier observations alone contradict the origin), and the residual, a number of fields. Both are
+    taken in its middle, with room for all others of the cell. The residual is 0 when nothing contradicts them; else it
+    may be too small.
 
     length : of the turn, in squares: the path of the outermost point of the object.
     """
@@ -148,7 +157,8 @@ def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> W
 def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, WhatIf]], length: float) -> list[WhatIf]:
     """Return those turns that ended near a likely contact, ended at the contact; all as they are when none has one.
 
-    Contacts less likely than a tenth of the likeliest one are left out.
+    Contacts less likely than a tenth of the likeliest one are left out. Each result is an evaluation without residual:
+    the frame, Utak's place (x, y) in squares, map frame of it, and the outcome of the turn; in the order given.
 
     Parameters
     ----------
@@ -195,7 +205,9 @@ def _bounds(points: Sequence[FrameHypothesis]) -> OriginBox:
 def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
     """Return the one whose origin and object lie nearest to the mean of all; the hypotheses of all are left.
 
-    fitting : at least one.
+    Nearest is the one whose furthest point (the origin, or a corner of the object) is least far from its mean.
+
+    fitting : at least one evaluation of an origin and an outcome, all without residual; map frame of each its own.
     """
     fits = np.array([[one.frame.origin, *_object_corners(one)] for one in fitting])
     nearest = int(np.linalg.norm(fits - fits.mean(0), axis=2).max(1).argmin())
