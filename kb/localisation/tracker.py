@@ -60,7 +60,7 @@ class Tracker:
 
         Called after a localisation failure. The believed frame and place stay, and the track is kept, so that the robot
         knows about where it came from; the newest observation is left out of it, for it is made again. No object is
-        known or in hand.
+        known or in hand, and no observation, motion or completion is kept. This tracker is not changed.
         """
         state = self.state
         been = (*state.been, *(observation.place for observation in state.observations[:-1]))
@@ -76,7 +76,9 @@ class Tracker:
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields of the retina is accounted for.
+            The chosen explanation (its kind, the place of the observation (x, y) in squares, map frame, the frame, and
+            the number of fields left unexplained), and how each of the 160 fields of the retina is accounted for:
+            predicted, explained or noise, in the order of an impression.
         """
         return self._after_walk(count_ranges(impression.retina), DeadReckoning(self.state.place, ()), None)
 
@@ -91,7 +93,9 @@ class Tracker:
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields of the retina is accounted for.
+            The chosen explanation (its kind, where Utak is then (x, y) in squares, map frame, the frame, the outcome
+            for an object in hand, and the number of fields left unexplained), and how each of the 160 fields of the
+            retina is accounted for: predicted, explained or noise, in the order of an impression.
         """
         ranges, state = count_ranges(impression.retina), self.state
         if state.in_hand is not None and isinstance(command, Push | Turn):
@@ -149,12 +153,13 @@ class Tracker:
         ----------
         ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
         walk : where the walk ends, and may have been blocked, map frame.
-        command : None on waking.
+        command : in Utak's own frame; None on waking.
 
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields is accounted for.
+            The chosen explanation, with where Utak is then (x, y) in squares, map frame of its frame, and how each of
+            the 160 fields is accounted for (predicted, explained or noise). `state` is replaced.
         """
         if walk.blocked and isinstance(command, Move):
             self._remember(command)
@@ -174,6 +179,8 @@ class Tracker:
 
         Any other explanation leaves the count as it is if the chance of its end is known; else the count begins at 0
         again.
+
+        explanation : the chosen one; its kind `how` and its `chance` are asked.
         """
         number = self.state.confirmations
         number = number + 1 if explanation.how == "predicted" else number * (explanation.chance is not None)
@@ -183,6 +190,8 @@ class Tracker:
         """Note in `state` that motions slip, or which of the remembered motions was blocked, if an explanation says so.
 
         After a slip (an end beside the predicted one) all remembered motions are forgotten.
+
+        explanation : the chosen one, applied already; its kind and the motion that it re-estimates are asked.
         """
         state = self.state
         if explanation.how == "slipped":
@@ -202,12 +211,14 @@ class Tracker:
         ----------
         ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
         name : of the object in hand.
-        command : Utak's own frame.
+        command : the push (east, north in squares) or turn (degrees), Utak's own frame.
 
         Returns
         -------
         Accommodation
-            The chosen explanation, and how each of the 160 fields is accounted for.
+            The chosen explanation, with where Utak is then (x, y) in squares and the outcome for the object, map frame
+            of its frame, and how each of the 160 fields is accounted for (predicted, explained or noise). `state` is
+            replaced.
         """
         state, motion = self.state, command_motion(command, self.state.frame, self.state.place)
         held = state.held_objects[name]
@@ -255,7 +266,10 @@ class Tracker:
         """Believe in `state` what an explanation says of the frame and of earlier motions.
 
         If either is new, all observations and held objects are mapped anew, and objects are forgotten that are neither
-        in hand nor were ever seen to move.
+        in hand nor were ever seen to move. Otherwise nothing changes but what was learnt of earlier motions; the place
+        of the newest observation is not yet believed.
+
+        chosen : the chosen explanation.
         """
         state, held_objects = self.state, self.state.held_objects
         if chosen.remaps:
@@ -282,6 +296,9 @@ class Tracker:
 
         The other ends of the newest motion are stored in Utak's own frame, each with its probability after the
         observation; they are not stored when the chosen explanation is in another frame.
+
+        judged : the chosen explanation, with the possible ends of the newest motion, the hypotheses if they were
+        weighed anew, and the number of searches spent.
         """
         state, chosen = self.state, judged.explanation
         if judged.hypotheses is not None:
@@ -298,8 +315,9 @@ class Tracker:
     def _remember(self, command: Move | Push, name: str | None = None) -> None:
         """Remember a straight motion in `state`, for it may have ended otherwise than believed.
 
-        The oldest is forgotten when more than MAX_MOTIONS are remembered. name : of the object in hand; None for a
-        walk.
+        The oldest is forgotten when more than MAX_MOTIONS (12) are remembered.
+
+        command : (east, north) in squares, Utak's own frame. name : of the object in hand; None for a walk.
         """
         state = self.state
         motion = MotionHypothesis(
@@ -308,7 +326,10 @@ class Tracker:
         self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
     def _declare_floor(self, held: HeldObject) -> None:
-        """Settle all squares on which an object lies, or may lie, as free in the occupancy map."""
+        """Settle all squares on which an object lies, or may lie, as free in the occupancy map.
+
+        They are credited to the newest observation. held : the object where it lies, map frame.
+        """
         occupancy, patch = self.state.occupancy, held.possible
         squares = occupancy.squares(patch.west, patch.south, patch.mask)
         occupancy.declare(squares, FREE, len(self.state.observations) - 1)
@@ -324,7 +345,9 @@ class Tracker:
         Returns
         -------
         Accommodation
-            The explanation, and how each of the 160 fields was accounted for before the observation was integrated.
+            The explanation as given, and how each of the 160 fields was accounted for before the observation was
+            integrated: predicted, explained or noise, in the order of an impression. `state` is replaced, its map
+            updated in place.
         """
         state, occupancy = self.state, self.state.occupancy
         samples, number = state.frame.samples(), len(state.observations)
@@ -351,7 +374,8 @@ class Tracker:
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:
     """Return a state with another map and the objects on it; what belonged to the squares of the old map is dropped.
 
-    Dropped are blocked and suspected squares, and the completions; they stay where the map is the same object.
+    Dropped are blocked and suspected squares, and the completions; they stay where the map is the same object. All else
+    of the state stays.
 
     under : the map and the held objects in the new frame.
     """
@@ -367,7 +391,8 @@ def _standing_place(state: TrackerState, place: Position) -> Position:
     coordinate within 2e-6 squares of the middle of a square is moved onto it. Where something stands on all sides, the
     place of the observation stays.
 
-    place : where the observation was made, map frame.
+    Of several free sides the place of the observation comes first, then the south-west one. state : its map, and the
+    squares that stopped Utak, are asked. place : where the observation was made, map frame.
     """
     sides, occupancy = [place, *observation_places(place)], state.occupancy
     squares = [(math.floor(x), math.floor(y)) for x, y in sides]

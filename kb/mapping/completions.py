@@ -92,6 +92,8 @@ class Completions(NamedTuple):
     def at(self, x: int, y: int) -> Bools | None:
         """Return which completions show a square (x, y) of the map frame occupied, (MAX_COMPLETIONS,) bool.
 
+        One value for each completion, in their order. x : column, y : row, in squares.
+
         None where the square was never seen, or lies beyond the arrays.
         """
         row, column = y - self.south, x - self.west
@@ -104,8 +106,11 @@ class Completions(NamedTuple):
     def over(self, scene: CompletionTask, view: MapView) -> "Completions":
         """Return the part that lies where a scene of another map view lies, without samples of scenes.
 
-        Squares beyond these completions are UNSEEN_SQUARE. scene : the scene; its shape is that of the result. view :
-        the map view on whose arrays the scene lies, same map frame.
+        The result has new arrays of the scene's shape, [row, column], row 0 in the south, with its own `west` and
+        `south` (map frame). Squares beyond these completions are UNSEEN_SQUARE, and 0 in all images.
+
+        scene : the scene; its shape is that of the result. view : the map view on whose arrays the scene lies, same map
+        frame.
         """
         south, west = view.south + scene.rows.start - self.south, view.west + scene.columns.start - self.west
         ground: OccupancyImage = np.full(scene.ground.shape, UNSEEN_SQUARE, np.int8)
@@ -147,6 +152,10 @@ def given_squares(view: MapView) -> OccupancyImage:
 def draw_completions(view: MapView, ground: OccupancyImage, before: Completions) -> Completions:
     """Draw MAX_COMPLETIONS (12) completions that agree with the counts, and return them on the arrays of the view.
 
+    The result holds `images`, (12, rows, columns) int8, 1 where a square is occupied, what was given of each square,
+    and the samples of each scene (an independent part of the map), to be taken over next time. Draws are pseudo-random
+    of a fixed seed: the same arguments give the same result.
+
     Parameters
     ----------
     view : MapView
@@ -169,8 +178,11 @@ def draw_completions(view: MapView, ground: OccupancyImage, before: Completions)
 def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
     """Return samples of a scene at the n squares that are to be drawn, (MAX_COMPLETIONS, n) int8, 1 where occupied.
 
-    The squares come in raster order. before : earlier completions at the place of the scene; the samples begin with
-    them.
+    The squares come in raster order, row by row from the south. Of twice as many samples the cheaper ones are kept, and
+    some may be repeated.
+
+    scene : the part of the map to be drawn. before : earlier completions at the place of the scene, of its shape; the
+    samples begin with them where they are known.
     """
     open_ = scene.ground == DRAWN
     known = open_ & (before.ground != UNSEEN_SQUARE)
@@ -183,7 +195,10 @@ def _draw_scene(scene: CompletionTask, before: Completions) -> OccupancyImage:
 def _resample(costs: Floats) -> Longs:
     """Return which samples are kept, (MAX_COMPLETIONS,) indices, in ascending order and with repetitions.
 
-    Cheaper ones are kept more often (systematic resampling). costs : (n,), one for each sample.
+    Cheaper ones are kept more often (systematic resampling).
+
+    costs : (n,), one for each sample, at least one: for edges, corners and wrong counts, as of
+    `geometry.counts.gibbs.costs`; the less the better.
     """
     weight = np.cumsum(np.exp(-COST_WEIGHT * (costs - costs.min())))
     marks = (np.arange(MAX_COMPLETIONS) + 0.5) / MAX_COMPLETIONS
@@ -193,6 +208,11 @@ def _resample(costs: Floats) -> Longs:
 
 def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
     """Yield the independent scenes of a map; none where no square is to be drawn.
+
+    Each is a rectangle of the view's arrays (`rows`, `columns`), with what is given of its squares, where samples
+    begin, and the counts of the squares to be drawn, by flat index row * width + column of that rectangle. Rectangles
+    may overlap, the squares to be drawn do not. In the order of their labels, by first square from the south, as a
+    rule.
 
     Parameters
     ----------
@@ -227,7 +247,9 @@ def scenes(view: MapView, ground: OccupancyImage) -> Iterator[CompletionTask]:
 def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
     """Return what the fields that cover squares to be drawn say of these squares alone; other fields are left out.
 
-    Flat indices stay those of the ground: row * columns + column.
+    Flat indices stay those of the ground: row * columns + column. One field for each that is left, in the order given:
+    `where` and `weight` (n, m), `weight` 0 at squares not to be drawn, and `low` and `high` (n,), the least and
+    greatest count of occupied squares among those to be drawn; occupied squares that are given are subtracted.
 
     counts : of all fields, flat indices of the ground. ground : (rows, columns) int8, what is given of each square.
     """
@@ -241,7 +263,7 @@ def _counts_of_drawn(counts: Counts, ground: OccupancyImage) -> Counts:
 def _joined_labels(near: Components, counts: Counts) -> Labels:
     """Return the labels of parts, (rows, columns) int32; parts that one field covers together have one label.
 
-    Labels are 0 for no part, and not consecutive.
+    Labels are 0 for no part, and not consecutive: of joined parts the lowest label stays. Row 0 in the south.
 
     near : the parts before they are joined. counts : of the fields, with flat indices row * columns + column.
     """
@@ -265,7 +287,9 @@ def _joined_labels(near: Components, counts: Counts) -> Labels:
 def _interior(mask: Bools, depth: int) -> Bools:
     """Return the squares of a mask whose neighbours within `depth` rows and columns all belong to it: a mask like it.
 
-    Beyond its edge the mask is taken to go on as at the edge.
+    (rows, columns) bool, a new array. Beyond its edge the mask is taken to go on as at the edge.
+
+    mask : (rows, columns) bool. depth : in squares; diagonal neighbours belong to it.
     """
     for axis in (0, 1):
         framed = np.pad(mask, [(depth, depth) if a == axis else (0, 0) for a in (0, 1)], mode="edge")

@@ -104,6 +104,10 @@ NO_COMPLETION_SUMMARY = CompletionSummary(NO_COMPLETIONS)
 def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETION_SUMMARY) -> CompletionSummary:
     """Draw completions of a map, and return them with what they have in common.
 
+    The result holds 12 sampled maps that agree with all counts, (12, rows, columns) int8, 1 where a square is occupied,
+    on the arrays of the view. Asked by its methods it gives the probability that each square is occupied, or belongs to
+    an object of a shape.
+
     Parameters
     ----------
     view : MapView
@@ -117,7 +121,11 @@ def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETI
 def likeness(found: Blobs, shape: str) -> Floats:
     """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 (not at all) to 1.
 
-    found : the edge-connected occupied parts of a completion.
+    float64, in the order of `found`. For brick and rectangle slenderness counts against it, for square and disc that
+    it is longer than wide.
+
+    found : the n edge-connected occupied parts of a completion, with `area` in squares, `spread` (sum of the principal
+        moments by squared area) and `lengthy` (their difference by their sum).
     shape : square, disc, brick, rectangle; any other word stands for all other shapes.
     """
     ratio = np.sqrt((1 + found.lengthy) / np.maximum(1 - found.lengthy, 1e-6))
@@ -146,7 +154,10 @@ def end_probability(found: Blobs) -> Floats:
     It is 1 for a part that is seen all around, less by a factor for each side of a square beyond which nothing was
     seen, and 0 for one that is long enough to be a wall.
 
-    found : the edge-connected occupied parts of a completion.
+    float64, in the order of `found`: 0.7 to the power of the number of such sides.
+
+    found : the n edge-connected occupied parts of a completion, with `area` in squares and `outward`, the number of
+        sides of squares beyond which nothing was seen.
     """
     wall = (found.outward > 0) & (found.area >= WALL_ELONGATION * found.outward)
     return np.where(wall, 0.0, END_PROBABILITY**found.outward)
@@ -156,9 +167,10 @@ def part_seen_probability(found: Blobs) -> Floats:
     """Return how likely each of n parts is the seen part of the object looked for, (n,) from 0 to 1.
 
     It is 0 for a part that goes on unseen along one side of a square at most, along too many, or that has too great an
-    area for those sides.
+    area for those sides; else the higher the more squares of it are seen. float64, in the order of `found`.
 
-    found : the edge-connected occupied parts of a completion.
+    found : the n edge-connected occupied parts of a completion, with `area` in squares and `outward`, the number of
+        sides of squares beyond which nothing was seen.
     """
     compact = found.area <= MAX_DEPTH_RATIO * found.outward**2
     may_be = (found.outward > 1) & (found.outward <= MAX_OPEN_SIDES) & compact
@@ -187,7 +199,7 @@ def chance_by_seen_squares(squares: Longs) -> Floats:
 def _not_slender(ratio: Floats) -> Floats:
     """Return how well a ratio agrees with a brick: 1 up to 4, less beyond, but at least MIN_LIKENESS (0.1).
 
-    ratio : length divided by width of each of n parts, (n,).
+    ratio : length divided by width of each of n parts, (n,) float64, at least 1; the result is like it.
     """
     return np.maximum(_agreement_at_most(ratio, *BRICK_RATIO), MIN_LIKENESS)
 
@@ -195,12 +207,15 @@ def _not_slender(ratio: Floats) -> Floats:
 def _agreement_at_most(value: Floats, limit: float, tolerance: float) -> Floats:
     """Return 1 for values up to a limit, and less, down to 0, the further a value is above it; an array like `value`.
 
-    tolerance : above the limit, at which the result is 1 / e.
+    value, limit, tolerance : of one unit. tolerance : the excess over the limit at which the result is 1 / e.
     """
     return _agreement(np.maximum(value - limit, 0.0), tolerance)
 
 
 def _agreement(error: Floats, tolerance: Floats | float) -> Floats:
-    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`."""
+    """Return exp(-(error / tolerance)^2): 1 for no error, 1 / e for an error of `tolerance`; an array like `error`.
+
+    error, tolerance : of one unit; a tolerance above 0, one for all or an array like `error`.
+    """
     answer: Floats = np.exp(-((error / tolerance) ** 2))
     return answer

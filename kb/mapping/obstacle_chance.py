@@ -58,7 +58,8 @@ class ObstacleChance:
     def _probabilities(self, square: Square) -> Floats:
         """Return the probability that a square (x, y) of the map frame is occupied, by each completion; not yet kept.
 
-        (m,) float64, or (1,) where the square is settled, where there are no completions, or where nothing was seen.
+        (m,) float64, 0 to 1, or (1,) where the square is settled (0 or 1), where there are no completions (then by
+        counts alone), or where nothing was seen (UNSEEN_PROBABILITY itself, 0.12). The map grows to hold the square.
         """
         self._occupancy.make_room(*square)
         index = self._occupancy.index(*square)
@@ -74,7 +75,10 @@ class ObstacleChance:
         return np.where(shown, 1.0 - wrong, wrong)
 
     def _next_to_occupied(self, square: Square) -> bool:
-        """Return whether some completion shows an edge neighbour of a square (x, y) of the map frame occupied."""
+        """Return whether some completion shows an edge neighbour of a square (x, y) of the map frame occupied.
+
+        Neighbours that were never seen, or lie beyond the completions, do not count. Completions must be given.
+        """
         assert self._completions is not None
         x, y = square
         shown = (self._completions.at(x + dx, y + dy) for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1)))
@@ -83,7 +87,8 @@ class ObstacleChance:
     def odds(self, square: Square) -> float:
         """Return the log odds (natural logarithm) that an open square (x, y) of the map frame is occupied.
 
-        A settled square has none: it raises ValueError or ZeroDivisionError.
+        By the mean of its probability over all completions; above 0 where it is more likely occupied than free. A
+        settled square has none: it raises ValueError or ZeroDivisionError.
         """
         likely = float(self.occupied(square).mean())
         return math.log(likely / (1.0 - likely))

@@ -82,6 +82,8 @@ class MapView(NamedTuple):
     def part(self, rows: slice, columns: slice) -> "MapView":
         """Return the view of some rows and columns alone, without the counts; its arrays are shared with this one.
 
+        Its `west` and `south` are the square of the map frame at its own [0, 0].
+
         rows, columns : with a start that is not negative. `by_counts` stays that of the whole view.
         """
         return self._replace(
@@ -139,7 +141,10 @@ class OccupancyMap:
         return self._odds.logit
 
     def copy(self) -> "OccupancyMap":
-        """Return an independent copy, to which more impressions can be added; neither changes the other."""
+        """Return an independent copy, to which more impressions can be added; neither changes the other.
+
+        Same place, size and contents: flat indices of the one are those of the other, until one of them grows.
+        """
         other = copy(self)
         other.state, other.seen = self.state.copy(), self.seen.copy()
         other.settled_by, other._fresh = self.settled_by.copy(), self._fresh.copy()
@@ -149,10 +154,16 @@ class OccupancyMap:
     def view(self, places: Iterable[XY] = (), margin: int = 2) -> MapView:
         """Return a snapshot of the part of the map that was seen, and of all that lies in sight of some places.
 
+        It holds `west` and `south` (the square of the map frame at [0, 0]) and arrays [row, column], row 0 in the
+        south, copied from the map: the probability (0 to 1, by counts alone) that each square is occupied, what is
+        settled of it (OPEN, FREE or OCCUPIED), whether it was seen, and the impression that settled it (-1 for none);
+        with them the fields that still say something, by flat index row * columns + column of these arrays. `sure` is
+        True and `by_counts` None, whatever is known: others set them. Squares that fields only skipped count as seen.
+
         Parameters
         ----------
         places : iterable of (x, y)
-            The places, in squares, map frame; the map grows to hold what is in sight of them.
+            The places, in squares, map frame; the map grows to hold what is in sight of them (24 squares to each side).
         margin : int
             Squares around that part which are included, too, as far as the map goes.
 
@@ -182,8 +193,12 @@ class OccupancyMap:
     def _counts(self, top: int, left: int, columns: int) -> Counts:
         """Return the fields that still say something, with flat indices of a part of the map.
 
+        The index of a square is row * columns + column of the part. One row for each field, (n, 16), its squares and
+        how often each counts (0 is padding), and the least and greatest count of occupied squares among them. Arrays
+        but the indices are shared with the map.
+
         top, left : row and column of the map at which the part begins; top is its south. columns : the width of the
-        part.
+        part, in squares.
         """
         rows, places = np.divmod(self._where, self.state.shape[1])
         where = np.where(self._weight > 0, (rows - top) * columns + places - left, 0).astype(np.int32)
@@ -244,7 +259,8 @@ class OccupancyMap:
         x, y : int
             The robot's square, map frame.
         whether : bool
-            Whether to leave out the fields of impressions before if some field of this one cannot be right.
+            Whether to leave out the fields of impressions before if some field of this one cannot be right: then the
+            number may be too small, but is not 0. Otherwise all are counted.
         """
         new = int(self.misfits(samples, ranges, x, y).sum())
         if new and whether:
@@ -363,7 +379,9 @@ class OccupancyMap:
     def supposing(self, squares: Iterable[Square]) -> "OccupancyMap":
         """Return the map as if those of some squares that are more likely free than occupied were free.
 
-        The result is for reading only: it shares arrays with this map.
+        Those are open squares of log odds below 0; all others stay as they are, and squares beyond the map are left
+        out. Same arrays and indices as this map, of which only `state` is a copy. The result is for reading only: it
+        shares arrays with this map.
 
         Parameters
         ----------
@@ -397,7 +415,7 @@ class OccupancyMap:
         return (weight > 0) & ((low > 0) | (high < weight))
 
     def _keep(self, rows: Bools) -> None:
-        """Drop all fields but those of a mask. rows : (n,) bool, one for each field."""
+        """Drop all fields but those of a mask; their order stays. rows : (n,) bool, one a field, True to keep it."""
         self._where, self._weight = self._where[rows], self._weight[rows]
         self._low, self._high, self._fresh = self._low[rows], self._high[rows], self._fresh[rows]
 
@@ -406,7 +424,10 @@ class OccupancyMap:
     def _under(self, samples: Samples, x: int, y: int) -> Ints:
         """Return the flat indices on the map of the squares sampled from square (x, y), (160, 16) int32.
 
-        x, y : map frame. The map must have room for all in sight of it.
+        Row n belongs to field n; padding has the index of the square (x, y) itself.
+
+        samples : the squares that each field samples, relative to (x, y). x, y : map frame. The map must have room for
+        all in sight of it.
         """
         columns = self.state.shape[1]
         answer: Ints = (samples.rows + (y - self.south)) * columns + samples.columns + (x - self.west)
@@ -415,7 +436,9 @@ class OccupancyMap:
     def make_room(self, x: int, y: int) -> None:
         """Grow the arrays until all that can be seen from square (x, y) of the map frame fits in.
 
-        `west` and `south` change, and with them all indices, when rows or columns are added there.
+        That is 24 squares to each side; what is added is 40 squares more than needed. `west` and `south` change, and
+        with them all indices, when rows or columns are added there; flat indices also when columns are added in the
+        east. Nothing changes where there is room.
         """
         row, column = self.index(x, y)
         rows, columns = self.state.shape
@@ -425,7 +448,11 @@ class OccupancyMap:
             self._grow(*(n + GROWTH_MARGIN if n else 0 for n in (south, north, west, east)))
 
     def _grow(self, south: int, north: int, west: int, east: int) -> None:
-        """Add so many rows (south, north) and columns (west, east) of open, unseen squares on each side."""
+        """Add so many rows (south, north) and columns (west, east) of open, unseen squares on each side.
+
+        `west`, `south` and the flat indices of the fields are brought up to date; indices kept elsewhere are wrong
+        then.
+        """
         rows, columns = np.divmod(self._where, self.state.shape[1])
         widths = ((south, north), (west, east))
         self.state = np.pad(self.state, widths, constant_values=OPEN)

@@ -78,6 +78,9 @@ class Odds:
     def after(self, change: Fields | Forgotten | Grown) -> "Odds":
         """Return the log odds after one more change, to be computed when they are asked for; these stay as they are.
 
+        Asked for `logit` the result gives (rows, columns) float32 on the arrays of the map after the change, natural
+        logarithm: above 0 where a square is more likely occupied than free.
+
         change : fields to which open squares are fitted, squares of which all is forgotten, or rows and columns added.
         """
         if "logit" in self.__dict__:
@@ -128,7 +131,10 @@ def _fit(logits: Logits, fields: Fields) -> None:
 
 
 def _logit(p: Floats) -> Floats:
-    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`."""
+    """Return the log odds (natural logarithm) of probabilities, clipped to 0.002 and 0.998; an array like `p`.
+
+    p : 0 to 1. The result is about -6.2 to 6.2, and 0 for 0.5.
+    """
     p = np.clip(p, MIN_TARGET_SHARE, MAX_TARGET_SHARE)
     answer: Floats = np.log(p / (1 - p))
     return answer

@@ -33,13 +33,15 @@ class Patch(NamedTuple):
         return self.west + float(columns.mean()) + 0.5, self.south + float(rows.mean()) + 0.5
 
     def squares(self) -> set[Square]:
-        """Return its squares (x, y), that is (column, row) of the map frame; empty when its mask has none."""
+        """Return its squares (x, y), that is (column, row) of the map frame, as a new set; empty when it has none."""
         rows, columns = np.nonzero(self.mask)
         return {(self.west + c, self.south + r) for r, c in zip(rows.tolist(), columns.tolist(), strict=True)}
 
 
 def patch_of(mask: Bools, view: MapView) -> Patch:
     """Return the patch of a mask on the view's arrays, cut to its extent; the mask is copied.
+
+    It holds `west` and `south`, the square of the map frame at [0, 0], and the cut mask, row 0 in the south.
 
     Parameters
     ----------
@@ -56,7 +58,8 @@ def patch_of(mask: Bools, view: MapView) -> Patch:
 def patch_of_polygon(polygon: Any) -> Patch:
     """Return the patch of the squares whose open interior meets a polygon; its mask spans the bounding box.
 
-    A square that the polygon only touches does not belong to it.
+    It holds `west` and `south`, the square of the map frame at [0, 0], and the mask (rows, columns) bool, row 0 in the
+    south. A square that the polygon only touches does not belong to it.
 
     Parameters
     ----------
@@ -71,6 +74,9 @@ def patch_of_polygon(polygon: Any) -> Patch:
 
 def patch_of_squares(squares_: Iterable[Square]) -> Patch:
     """Return the patch of some squares (x, y) of the map frame, cut to their extent.
+
+    It holds `west` and `south`, the least column and row, map frame, and the mask (rows, columns) bool, row 0 in the
+    south. Repeated squares count once.
 
     squares_ : at least one; none raises ValueError.
     """

@@ -102,6 +102,9 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
 def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> HeldObject:
     """Return an object after a turn. The less it is turned in all, the less it is astray by a wrong origin.
 
+    It has the outline given, `turned` is greater by `degrees`, and `astray` (how far the open origin may put it
+    elsewhere, in squares) is scaled to the new rotation.
+
     Parameters
     ----------
     held : the object before the turn.
@@ -120,8 +123,11 @@ def _turned(held: HeldObject, polygon: Any, slack: float, degrees: float) -> Hel
 def _count_crowded(surprise: Surprise, held: HeldObject, others: Sequence[HeldObject], place: Position) -> int:
     """Return how many squares right beside an object are occupied by the newest observation alone.
 
+    That is a count of squares within 1 square of its outline that were not settled as occupied before, and are then.
+
     Parameters
     ----------
+    surprise : the newest observation, with the map before it.
     held : the object where it lies now, map frame.
     others : all other held objects.
     place : of Utak now, (x, y) in squares, map frame.

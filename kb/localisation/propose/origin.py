@@ -79,9 +79,9 @@ def blocked_walks_with_origin(
 def _corrected(walk: ReestimatedWalk, observations: Sequence[Observation]) -> list[Observation]:
     """Return all observations, oldest first, where they were made by a re-estimated walk, Utak's own frame.
 
-    Their places are (east, north) in squares; those before the walk are unchanged. walk : the shift of all since it.
+    Their places are (east, north) in squares; those before the walk are unchanged.
 
-    observations : at least one, oldest first, at their believed places.
+    walk : the shift of all since it. observations : at least one, oldest first, at their believed places.
     """
     *before, newest = walk.correction.observations(observations)
     return [*before, newest._replace(place=walk.newest)]
