@@ -147,7 +147,12 @@ def _blocked_push(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     before the observation. Empty for a turn, when the push can hardly have met anything, or when the observation agrees
     with none.
 
-    held : the object before the push, map frame. motion : as commanded, map frame.
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation after the push.
+    held : the object before the push, map frame.
+    motion : as commanded, map frame.
     """
     ended = []
     for end in possible_ends(surprise, held, motion):
@@ -186,6 +191,10 @@ def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> 
     It is of the kind and at the place (x, y in squares, map frame) of the outcome. Its residual is the number of fields
     that contradict that outcome, 0 when none does.
 
+    Parameters
+    ----------
+    state : what was believed before the observation.
+    surprise : the observation, whose counts are compared.
     outcome : where Utak and the object ended, map frame.
     """
     residual = residual_at(state, surprise.ranges, outcome.place, surprise.objects_after(outcome))
@@ -314,5 +323,7 @@ def _exact_origins(state: TrackerState) -> tuple[FrameHypothesis, ...]:
     """Return the hypotheses of the believed orientation that name an exact origin, in their order; empty for none.
 
     Each has the believed angle (degrees) and a box that is one point of the square of waking (squares, map frame).
+
+    state : what is believed; its frame and hypotheses are asked.
     """
     return tuple(h for h in state.hypotheses if h.angle == state.frame.angle and h.is_point)

@@ -196,6 +196,8 @@ class _WalkExplainer:
         One explanation for each end and side of a grid line, the whole way first, then contacts, the likeliest first.
         Each has its place (x, y) in squares, map frame, and its chance (0 to 1) before the observation. Empty when the
         walk can hardly have met anything, or when the observation agrees with none.
+
+        command : the walk, (east, north) in squares, Utak's own frame.
         """
         surprise = self._state.surprise(command, self._ranges)
         motion = Translate(*self._state.frame.to_map(command.east, command.north))

@@ -245,6 +245,8 @@ def is_simple(state: TrackerState, explanation: Explanation) -> bool:
     """Return whether an explanation is simple: no residual, no first slip, and the believed orientation of the frame.
 
     A slip is an end of a motion beside its predicted end; once one happened, further ones count as simple.
+
+    state : what was believed before the observation.
     """
     likely = explanation.how != "slipped" or state.slipped
     return likely and not explanation.residual and explanation.frame.angle == state.frame.angle
@@ -256,7 +258,8 @@ def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanati
     Its place is where the newest observation was made then, (x, y) in squares, map frame of its frame; its `distance`
     is how far the end of the earlier motion is shifted, in squares.
 
-    motion : the correction of the earlier motion, with the evaluation of the newest observation by it.
+    state : what was believed before the observation. motion : the correction of the earlier motion, with the evaluation
+    of the newest observation by it.
     """
     walk, one = motion
     distance = math.hypot(*walk.correction.shift)
@@ -267,9 +270,15 @@ def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanati
 def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
     """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known.
 
-    explanation : its `reestimated` is not None. It is returned unchanged when the motion is not remembered, when its
-    observation is the newest one, or when the frame is another one; `chance` is None when that end was no known
-    alternative. The chance is a probability, 0 to 1, before the newest observation; all else stays as it is.
+    The result is the explanation with `chance` set: the probability, 0 to 1, of the end that it gives the earlier
+    motion, by all observations before the newest one; None when that end was no known alternative. It is returned
+    unchanged when the motion is not remembered, when its observation is the newest one, or when the frame is another
+    one.
+
+    Parameters
+    ----------
+    state : what was believed; its remembered motions and their other ends are asked.
+    explanation : one that re-estimates a motion (supposes another end of it): its `reestimated` is not None.
     """
     assert explanation.reestimated is not None
     correction = explanation.reestimated.correction
@@ -285,7 +294,8 @@ def prior_cost(state: TrackerState, angle: int) -> float:
     The map prior is how simple the simplest map is that agrees with all counts; less is better. The believed
     orientation has 0, one that is no longer among the hypotheses UNTRIED_COST.
 
-    angle : the orientation in degrees, counter-clockwise positive, as of `Frame.angle`.
+    state : what is believed; its hypotheses are asked. angle : the orientation in degrees, counter-clockwise positive,
+    as of `Frame.angle`.
     """
     if angle == state.frame.angle:
         return 0.0

@@ -40,12 +40,13 @@ class Explanation(NamedTuple):
         object is smaller or larger than it seemed); or lost or anew after a new beginning.
     place : where the observation was made, (x, y) in squares, map frame of `frame`.
     frame : the frame by this explanation.
-    residual : number of fields that it leaves unexplained; 0 is best.
+    residual : number of fields that it leaves unexplained (they contradict the map or an object by it); 0 is best.
     distance : from the predicted end of the motion, in squares; for misled by how far ends are corrected in all, for
         larger how far the object goes on beyond what was seen.
     outcome : of the motion of the object in hand; None when nothing was to be moved.
     hypotheses : the frame hypotheses that are left, if the frame or the ends of motions are others; else empty.
-    reestimated : the motion, earlier or newest, that ended elsewhere than believed; None when none did.
+    reestimated : the motion, earlier or newest, that ended elsewhere than believed, with the shift of all observations
+        since, (east, north) in squares, Utak's own frame; None when none did.
     chance : the probability (0 to 1) of this end of the motion before the observation; None when it was not asked.
     prior_cost : by how much the simplest map costs more than by the best explanation, in log odds (natural logarithm).
     contact_squares : the open squares (not settled as free or occupied) one of which blocked the motion, map frame.

@@ -323,6 +323,8 @@ def origin_grid(frame: Frame, observations: Sequence[Observation]) -> tuple[Fram
     That box holds all origins for which every observation falls on the square on which it is believed to have fallen.
     The hypotheses, 121 with 11 points a side, have the angle of `frame`, a box that is one point (x, y, x, y) in
     squares, map frame, and a prior cost of 0; they come column by column from the west, each from south to north.
+
+    observations : at least one, with their places in Utak's own frame.
     """
     west, south, east, north = origin_box(frame, observations)
     steps = (np.arange(ORIGIN_GRID) + 0.5) / ORIGIN_GRID
@@ -386,6 +388,8 @@ def _split_interval(low: float, high: float, at: float) -> list[tuple[float, flo
     """Return an interval cut in two at a point inside it, the part that holds the middle of a square (0.5) first.
 
     The interval alone when the point does not lie inside it.
+
+    low, high : its ends, in squares.
     """
     if not low < at < high:
         return [(low, high)]

@@ -143,9 +143,12 @@ class FrameTrial:
         self._oblique = OBLIQUE_COST * (frame.angle != 0)
 
     def draw(self, effort: Effort = FULL_EFFORT) -> float:
-        """Draw more completions and return the price of the simplest one so far, in log odds.
+        """Draw more completions and return the price of the simplest one so far, in log odds (natural logarithm).
 
-        The orientation is not counted. effort : the number of completions of each scene, and of sweeps over each.
+        A completion is a map that agrees with all counts, with every square free or occupied; its price is the log odds
+        against it, the less the better. The orientation is not counted.
+
+        effort : the number of completions of each scene (an independent part of the map), and of sweeps over each.
         """
         return self.description.draw(effort)
 
@@ -161,7 +164,9 @@ class FrameTrial:
 def relative_costs(maps: Sequence[tuple[MapDescription, float]]) -> list[float]:
     """Return by how much each map costs more than the best one, in log odds (natural logarithm).
 
-    Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that may be best.
+    The cost of a map is that of its simplest completion drawn (a map that agrees with all counts): its corners and
+    wrong counts. Edges are not counted, for the maps may differ in size. More completions are drawn of the maps that
+    may be best.
 
     Parameters
     ----------
@@ -261,6 +266,8 @@ def _squares_key(hypothesis: FrameHypothesis, observations: Sequence[Observation
     """Return what hypotheses of the same map share: (angle in degrees, squares relative to the last one, as bytes).
 
     The squares are those of the map frame on which the observations were made.
+
+    hypothesis : its likeliest frame is asked.
     """
     squares = observation_squares(hypothesis.frame, observations)
     return hypothesis.angle, (squares - squares[-1]).tobytes()
@@ -362,7 +369,10 @@ class _Competition:
         return trials
 
     def _enter(self, angles: Iterable[int]) -> None:
-        """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped."""
+        """Try some orientations (degrees) roughly; those without a frame and those tried before are skipped.
+
+        angles : counter-clockwise positive, as of `Frame.angle`; tried in this order.
+        """
         for angle in angles:
             if angle in self._frames and angle not in self._trials:
                 self._trials[angle] = FrameTrial(self._frames[angle], self._observations)

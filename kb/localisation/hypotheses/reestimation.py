@@ -100,7 +100,10 @@ class WalkCorrection(NamedTuple):
         return pose._replace(middle=add(pose.middle, aside))
 
     def _corrected_object(self, held: HeldObject, frame: Frame) -> HeldObject:
-        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted."""
+        """Return an object where it lies as corrected, map frame of `frame`; the same object when it is not shifted.
+
+        held : as believed, map frame of `frame`.
+        """
         aside = Translate(*frame.to_map(*self._aside(held.name)))
         if not any(aside):
             return held
@@ -108,7 +111,10 @@ class WalkCorrection(NamedTuple):
         return replace(held.lying(aside.carry(held.polygon), held.slack), first=first)
 
     def _aside(self, name: str) -> Position:
-        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted."""
+        """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted.
+
+        name : of the object.
+        """
         return self.shift if name == self.in_hand else dict(self.seen).get(name, (0.0, 0.0))
 
 
@@ -165,7 +171,10 @@ def reestimate_walk(
 
 
 def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
-    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more."""
+    """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more.
+
+    hypotheses : each with its prior cost in log odds; the less the likelier.
+    """
     if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:
         return hypotheses
     numbers = sorted(range(len(hypotheses)), key=lambda number: hypotheses[number].prior_cost)
@@ -351,7 +360,7 @@ class WalkInFrame:
         self.ends = (*halts, WalkEnd((x + motion.shift[0], y + motion.shift[1]), len(met)))
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square] = frozenset()) -> int:
-        """Return the state of the square that blocked the motion at `end`: OCCUPIED, OPEN or FREE.
+        """Return the state of the square that blocked the motion at `end`: OCCUPIED, OPEN or FREE (1, -1 or 0).
 
         FREE if one before it was occupied, so that the motion cannot have come so far; OPEN at the commanded end.
 
@@ -373,6 +382,8 @@ def _square_state(occupancy: OccupancyMap, square: Square) -> int:
     """Return the state of a square (column, row) of the map frame: OCCUPIED, OPEN or FREE.
 
     The square must lie within the arrays of the map.
+
+    occupancy : the map.
     """
     row, column = occupancy.index(*square)
     return int(occupancy.state[row, column])

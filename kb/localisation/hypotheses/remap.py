@@ -251,7 +251,10 @@ class RemapCache:
         return under._replace(held_objects=held_objects)
 
     def _key(self, frame: Frame) -> tuple[int, bytes]:
-        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes)."""
+        """Return what frames of the same map share: (angle in degrees, the squares of all observations as bytes).
+
+        frame : the frame in question.
+        """
         return frame.angle, observation_squares(frame, self._observations).tobytes()
 
 
@@ -379,7 +382,8 @@ def _fitted_outline(patch: Patch, occupancy: OccupancyMap) -> Any:
 def _count_disagreements(polygon: Any, occupancy: OccupancyMap) -> int:
     """Return how many squares disagree with an outline: free ones under it, occupied ones right beside it.
 
-    polygon : shapely Polygon, map frame. Squares that share an edge with one of its squares are beside it.
+    occupancy : the map; squares beyond it count as open. polygon : shapely Polygon, map frame. Squares that share an
+    edge with one of its squares are beside it.
     """
     patch = patch_of_polygon(polygon)
     own = np.pad(patch.mask, 1)

@@ -51,7 +51,7 @@ class WhatIf(NamedTuple):
     frame : the frame.
     hypotheses : all frame hypotheses that are left then.
     place : of Utak now, (x, y) in squares, map frame of `frame`.
-    outcome : of the motion of the object in hand; None when none was moved.
+    outcome : of the motion of the object in hand, map frame of `frame`; None when none was moved, or not asked.
     residual : number of fields that contradict it, over all observations; 0 is best.
     searched : whether hypotheses were taken up again that had been given up.
     """
@@ -97,7 +97,10 @@ class Surprise:
 
     @property
     def carried(self) -> tuple[str, Push | Turn] | None:
-        """Return the name of the object that was to be moved, and the command (push or turn); None when none was."""
+        """Return the name of the object that was to be moved, and the command (push or turn); None when none was.
+
+        The command is in Utak's own frame, in squares or degrees. None as well for a walk with an object in hand.
+        """
         if self.in_hand is not None and isinstance(self.command, Push | Turn):
             return self.in_hand, self.command
         return None

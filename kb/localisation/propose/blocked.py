@@ -132,7 +132,7 @@ def _push_contacts(surprise: Surprise, held: HeldObject, motion: Translate) -> l
     the contact, and the open squares one of which it was with. On a grid line an end comes once for each side. [] when
     nothing can be met.
 
-    held : the object before the push. motion : as commanded, map frame.
+    surprise : the observation after the push. held : the object before the push. motion : as commanded, map frame.
     """
     place, polygon = surprise.place, held.polygon
     found = []

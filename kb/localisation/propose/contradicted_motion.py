@@ -45,8 +45,8 @@ def overlooked_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> 
 def is_contradicted(surprise: Surprise, outcome: CarryOutcome) -> bool:
     """Return whether what the observation settles, together with all earlier ones, contradicts the observation itself.
 
-    outcome : the supposed outcome of the motion of the object in hand, believed frame; nothing settled before
-    contradicts it.
+    surprise : the newest observation, with the frame, map and objects believed before it. outcome : the supposed
+    outcome of the motion of the object in hand, believed frame; nothing settled before contradicts it.
     """
     held_objects = surprise.objects_after(outcome)
     occupancy = surprise.map_after(held_objects, outcome.place)
@@ -60,7 +60,7 @@ def likeliest_contact(surprise: Surprise, held: HeldObject, motion: Motion) -> C
     rotation so far in degrees, and the open squares one of which blocked it. Neither the map before nor what the new
     observation itself settles contradicts it.
 
-    held : the object before the motion. motion : as commanded, map frame.
+    surprise : the observation after the motion. held : the object before the motion. motion : as commanded, map frame.
     """
     for end in surprise.obstructions.outcomes(surprise.place, held.polygon, motion):
         there = surprise.objects_after(end)
@@ -79,7 +79,7 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
     come to stand where the object lay before. Of ends that explain as much the one of the middle rotation is returned,
     and only where it leaves fewer than half of the newly occupied squares beside the object.
 
-    held : the object before the turn. motion : as commanded, map frame.
+    surprise : the observation after the turn. held : the object before the turn. motion : as commanded, map frame.
     """
     place, polygon = surprise.place, held.polygon
     others = [other for other in surprise.held_objects.values() if other.name != held.name]

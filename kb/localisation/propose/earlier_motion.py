@@ -95,8 +95,9 @@ class CarriedMotion:
         return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
-        """Return the state of what blocked the motion at `end`: OCCUPIED for something known, OPEN, or FREE.
+        """Return the state of what blocked the motion at `end`: OCCUPIED (1) for something known, OPEN (-1) or FREE (0).
 
+        OPEN: open squares, of which one may have blocked it.
         FREE if something known would have blocked it before, or if nothing can be met there; OPEN at the commanded end.
 
         Parameters
@@ -176,6 +177,8 @@ def _has_known_pose(motion: MotionHypothesis, surprise: Surprise) -> bool:
     """Return whether the pose of the object in hand before a motion is known; True for an empty hand.
 
     It is known when the observation before the motion was made after the object was first held.
+
+    surprise : the earlier observations are asked for the pose.
     """
     before = surprise.observations[motion.number - 1].moved
     return motion.in_hand is None or any(pose.name == motion.in_hand for pose in before)
@@ -187,6 +190,8 @@ def _other_ends(surprise: Surprise, motion: MotionHypothesis) -> Iterator[Reesti
     Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
     the newest observation. In the order of the way for an empty hand, else the likeliest contact first; nothing when
     the observations before the motion contradict each other.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     observations, frame = surprise.observations, surprise.frame
     believed, first = observations[motion.number].place, surprise.prefixes.first(motion.number)
@@ -222,6 +227,8 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
     Each is the shift of everything since the motion, (east, north) in squares, Utak's own frame, with the evaluation of
     the newest observation in that frame. The likeliest contact first, and for each end the likeliest frame first, of
     which 3 are tried at most.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     origins = any_origin((surprise.frame.angle,))
     for end in CarriedMotion(motion, surprise).ends:

@@ -64,6 +64,8 @@ def _other_orientation(surprise: Surprise) -> WhatIf | None:
     The result is its evaluation: the frame, the hypotheses left (all of other orientations), Utak's place (x, y) in
     squares, map frame of that frame, and a residual of 0. Of several the likeliest is returned. Its origin is taken to
     be the middle of the square of waking.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     angle = surprise.frame.angle
     others = [other for other in surprise.hypotheses if other.is_centred and other.angle != angle]
@@ -80,6 +82,8 @@ def _least_residual(surprise: Surprise, reconsider: bool) -> WhatIf | None:
     frame of that frame, and the outcome for the object in hand. The first frame without residual is returned at once,
     the likeliest tried first; of equal residuals the first tried. reconsider : whether frames that were given up may be
     tried.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     found: list[WhatIf] = []
     affordable = MAX_REMAPPED_OBSERVATIONS // (len(surprise.observations) + 1)
@@ -110,7 +114,8 @@ def _batches(surprise: Surprise, reconsider: bool) -> Iterator[tuple[tuple[Frame
     A hypothesis is an angle in degrees and a box of origins in squares, map frame. Another origin is tried before
     orientations of a worse map prior. A set may be empty.
 
-    reconsider : whether hypotheses that were given up are yielded at all.
+    surprise : the newest observation, with the frame, map and objects believed before it. reconsider : whether
+    hypotheses that were given up are yielded at all.
     """
     recent, unsettled = surprise.judging_observations, surprise.unsettled_discs
     left = consistent_hypotheses(recent, surprise.hypotheses, unsettled)
@@ -129,6 +134,8 @@ def _reconsidered(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
 
     Near is within SEARCHED_ANGLE_MARGIN (2) degrees; of the believed orientation alone when they differ widely. In the
     order of their angles, each an angle in degrees and a box of origins in squares, map frame; empty when none is left.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     angles = [surprise.frame.angle, *(h.angle for h in surprise.hypotheses)]
     if max(angles) - min(angles) > MAX_SEARCHED_SPAN:
@@ -144,6 +151,8 @@ def _blocked_motion(surprise: Surprise, few: int) -> WhatIf | None:
     frame, the outcome for the object, and a residual of 0. A contact with something known is preferred; among
     orientations that do as well, the middle one is returned. None when there is none, or when no object was to be
     moved. few : frames to evaluate, at most.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     if surprise.carried is None:
         return None
@@ -212,6 +221,8 @@ def _blocked_pushes(surprise: Surprise, frame: Frame) -> Iterator[tuple[WhatIf, 
     Each is an evaluation (Utak's place (x, y) in squares, map frame of `frame`, the outcome, residual 0) with the
     chance of its contact, 0 to 1, the likeliest first. Nothing is yielded when earlier observations contradict the
     frame. An end on a grid line comes once for each side, each time with the whole chance.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     under = surprise.remapped(frame, only_whether=True)
     if under.residual:

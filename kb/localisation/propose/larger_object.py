@@ -61,7 +61,7 @@ def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject
 
     Its outlines `polygon` and `first` are both the larger one, shapely Polygon, in squares, map frame.
 
-    side : one of SIDE_DIRECTIONS, a unit step (x, y) of the map frame.
+    held : the object as it seemed, map frame. side : one of SIDE_DIRECTIONS, a unit step (x, y) of the map frame.
     """
     steps = (Translate(step * side[0], step * side[1]) for step in range(depth + 1))
     polygon = shapely.union_all([step.carry(held.polygon) for step in steps])

@@ -93,7 +93,8 @@ def _description(walk: ReestimatedWalk, observations: Sequence[Observation], dra
     Asked to draw it gives the log odds (natural logarithm) against its simplest completion (a map that agrees with all
     counts, with every square free or occupied).
 
-    drawn : completions of scenes drawn so far; it is shared, and new ones are added later.
+    observations : all, oldest first, at their believed places in Utak's own frame. drawn : completions of scenes drawn
+    so far; it is shared, and new ones are added later.
     """
     frame = walk.hypothesis.frame
     return MapDescription(remap(frame, frame, _corrected(walk, observations), ()).occupancy, drawn)

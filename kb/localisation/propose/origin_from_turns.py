@@ -102,6 +102,8 @@ def _origins_left(surprise: Surprise) -> tuple[FrameHypothesis, ...]:
 
     An exact origin is a hypothesis of the believed angle (degrees) whose box is one point, in squares, map frame. In
     their order; a grid has 11 x 11 of them, column by column from the west, each from south to north.
+
+    surprise : the newest observation, with the frame, map and objects believed before it.
     """
     given = tuple(h for h in surprise.hypotheses if h.angle == surprise.frame.angle and h.is_point)
     return given if len(given) > 1 else origin_grid(surprise.frame, surprise.observations)
@@ -115,7 +117,8 @@ def _blocked_turns(surprise: Surprise, bounds: OriginBox) -> list[WhatIf]:
     Cells are cut as long as nothing contradicts them and they are not too many. Larger cells leave more room for where
     the object lies.
 
-    bounds : of the origins, (west, south, east, north) in squares, map frame.
+    surprise : the newest observation, with the frame, map and objects believed before it. bounds : of the origins,
+    (west, south, east, north) in squares, map frame.
     """
     if surprise.degrees == 0.0:
         return []
@@ -142,7 +145,8 @@ def _evaluate_cell(surprise: Surprise, cell: TurnOriginCell, length: float) -> W
     taken in its middle, with room for all others of the cell. The residual is 0 when nothing contradicts them; else it
     may be too small.
 
-    length : of the turn, in squares: the path of the outermost point of the object.
+    surprise : the newest observation, with the frame, map and objects believed before it. length : of the turn, in
+    squares: the path of the outermost point of the object.
     """
     frame = Frame(surprise.frame.angle, cell.origin)
     left = (exact_hypothesis(frame),)
@@ -162,6 +166,7 @@ def _at_contacts(surprise: Surprise, fitting: Sequence[tuple[TurnOriginCell, Wha
 
     Parameters
     ----------
+    surprise : the newest observation, with the frame, map and objects believed before it.
     fitting : the cells that nothing contradicts, with their evaluations.
     length : of the turn, in squares: the path of the outermost point of the object.
     """
@@ -216,7 +221,12 @@ def _middle(fitting: Sequence[WhatIf]) -> WhatIf:
 
 
 def _object_corners(one: WhatIf) -> list[Position]:
-    """Return the corners of the object in hand, (x, y) in squares, map frame; [] when there is none."""
+    """Return the corners of the object in hand, (x, y) in squares, map frame of its frame; [] when there is none.
+
+    They are those of its outline after the turn, the first repeated at the end.
+
+    one : the evaluation of a frame and an outcome.
+    """
     if one.outcome is None:
         return []
     return [(float(x), float(y)) for x, y in shapely.get_coordinates(one.outcome.polygon)]
