@@ -81,8 +81,7 @@ def explain_walk(state: TrackerState, ranges: FieldRanges, ends: DeadReckoning, 
         `explanation` is the choice: its kind, Utak's place (x, y) in squares, map frame of its frame, and the number of
         fields left unexplained (its residual). With it, what was learnt: where the walk may have ended (`blocked`), the
         hypotheses of the frame, weighed anew (None when they stay), and the number of slow searches spent. Where
-        nothing explains the observation without residual, the cheapest
-        explanation is chosen all the same.
+        nothing explains the observation without residual, the cheapest explanation is chosen all the same.
     """
     return _WalkExplainer(state, ranges, ends, command).judge()
 
@@ -288,8 +287,8 @@ class _WalkExplainer:
 
         It is of kind turned; [] when no frame is left, else one: the frame, the place (x, y) in squares, map frame of
         it, the number of fields unexplained (1 more when the origin has suspiciously little room), and the hypotheses
-        left. All frames are searched anew, at the cost of 1 slow search, when
-        those that are left explain too little and the budget allows it.
+        left. All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little
+        and the budget allows it.
 
         Parameters
         ----------

@@ -121,8 +121,8 @@ def summarise_completions(view: MapView, before: CompletionSummary = NO_COMPLETI
 def likeness(found: Blobs, shape: str) -> Floats:
     """Return how well the moments of each of n parts agree with a shape class, (n,) from 0 (not at all) to 1.
 
-    float64, in the order of `found`. For brick and rectangle slenderness counts against it, for square and disc that
-    it is longer than wide.
+    float64, in the order of `found`. For brick and rectangle slenderness counts against it, for square and disc that it
+    is longer than wide.
 
     found : the n edge-connected occupied parts of a completion, with `area` in squares, `spread` (sum of the principal
         moments by squared area) and `lengthy` (their difference by their sum).

@@ -135,9 +135,9 @@ def likeliest_contact_near(
 ) -> ContactHypothesis | None:
     """Return the likeliest contact near a fraction of a motion; None when there is none.
 
-    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object. The
-    result is one of `contacts`: the fraction (0 to 1) of the motion before it, its chance, and its open squares; of
-    equal chances the first given.
+    Near is within CONTACT_DISTANCE_ERROR (0.25) squares along the path of the outermost point of the object. The result
+    is one of `contacts`: the fraction (0 to 1) of the motion before it, its chance, and its open squares; of equal
+    chances the first given.
 
     Parameters
     ----------

@@ -147,11 +147,11 @@ def reestimate_walk(
 
     What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
     squares, Utak's own frame, whether something known blocked it, the number of fields that contradict it, and where
-    the newest observation was made. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost);
-    in each frame in the order of the way. Until it was blocked the motion entered no occupied square, and it was
-    blocked before no free one. Where a contact with something known is possible in a frame, contacts with open squares
-    are left out. Not yielded: what is believed already, and a contact of the newest motion with something unknown in
-    the believed frame. What is yielded may still have a residual against the map.
+    the newest observation was made. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost); in
+    each frame in the order of the way. Until it was blocked the motion entered no occupied square, and it was blocked
+    before no free one. Where a contact with something known is possible in a frame, contacts with open squares are left
+    out. Not yielded: what is believed already, and a contact of the newest motion with something unknown in the
+    believed frame. What is yielded may still have a residual against the map.
 
     Parameters
     ----------
@@ -233,8 +233,7 @@ def reestimate_two_walks(
 
     The correction is that of the earlier motion, a shift (east, north) in squares, Utak's own frame; `newest` is where
     the newest one ended, same frame. The residual is 0. In the order of the way of the earlier motion, then of the
-    newest. A motion that goes on against
-    what blocked the one before it does not move at all.
+    newest. A motion that goes on against what blocked the one before it does not move at all.
 
     Parameters
     ----------

@@ -293,8 +293,8 @@ class ReplayPrefixes:
 def shift_object(held: HeldObject, new: Frame, old: Frame) -> HeldObject:
     """Return a held object for another origin of the frame with which every observation falls on the same squares.
 
-    The object was first held where it was believed to lie, but every turn since was about another point. So its
-    outline (shapely Polygon, squares, map frame of `new`) lies a little aside; all else of it stays.
+    The object was first held where it was believed to lie, but every turn since was about another point. So its outline
+    (shapely Polygon, squares, map frame of `new`) lies a little aside; all else of it stays.
 
     held : map frame of `old`. new : the frame of the result.
     """

@@ -133,9 +133,8 @@ class Surprise:
     def hypotheses_before(self) -> tuple[FrameHypothesis, ...]:
         """Return what all observations before the command leave of the frame hypotheses, in their order; cached.
 
-        Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame.
-        Only the last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute
-        all.
+        Each is an angle in degrees and a box of origins within the square of waking, in squares, map frame. Only the
+        last MAX_JUDGING_OBSERVATIONS (24) are asked, and nowhere where an object lay. Empty when they refute all.
         """
         return consistent_hypotheses(
             self.observations[-MAX_JUDGING_OBSERVATIONS:], self.hypotheses, self.unsettled_discs
@@ -298,9 +297,8 @@ class Surprise:
     def motion_in(self, frame: Frame) -> tuple[Position, Any, Motion]:
         """Return Utak's place and the outline of the object before the motion, and the motion, all in a frame.
 
-        The motion is a shift in squares, or a turn in degrees about Utak's place, as commanded.
-        The place is (x, y) in squares, the outline a shapely Polygon; all in the map frame of `frame`. An object must
-        be moved.
+        The motion is a shift in squares, or a turn in degrees about Utak's place, as commanded. The place is (x, y) in
+        squares, the outline a shapely Polygon; all in the map frame of `frame`. An object must be moved.
         """
         assert self.carried is not None
         name, command = self.carried

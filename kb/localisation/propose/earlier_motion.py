@@ -95,10 +95,10 @@ class CarriedMotion:
         return self._place[0] + fraction * self._motion.dx, self._place[1] + fraction * self._motion.dy
 
     def state_ahead(self, end: WalkEnd, occupancy: OccupancyMap, things: Set[Square]) -> int:
-        """Return the state of what blocked the motion at `end`: OCCUPIED (1) for something known, OPEN (-1) or FREE (0).
+        """Return the state of what blocked the motion at `end`: OCCUPIED for something known, OPEN or FREE (1, -1, 0).
 
-        OPEN: open squares, of which one may have blocked it.
-        FREE if something known would have blocked it before, or if nothing can be met there; OPEN at the commanded end.
+        OPEN: open squares, of which one may have blocked it. FREE if something known would have blocked it before, or
+        if nothing can be met there; OPEN at the commanded end.
 
         Parameters
         ----------
@@ -255,8 +255,8 @@ def _ends_with_origin(surprise: Surprise, motion: MotionHypothesis) -> Iterator[
 def _corrected(surprise: Surprise, motion: MotionHypothesis, end: WalkEnd) -> tuple[Surprise, WalkCorrection]:
     """Return a surprise as it is if an earlier motion ended at `end`, and the correction of everything since.
 
-    The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion.
-    Places, observations and objects are corrected; the map of the surprise is not, and must be made anew.
+    The correction is a shift (east, north) in squares, Utak's own frame, of all observations since the motion. Places,
+    observations and objects are corrected; the map of the surprise is not, and must be made anew.
 
     motion : earlier than the newest observation. end : Utak's own frame.
     """

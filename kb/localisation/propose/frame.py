@@ -195,8 +195,8 @@ def blocked_pushes_with_origin(surprise: Surprise) -> list[BlockedPushWithOrigin
     list of BlockedPushWithOrigin
         Each an evaluation (the frame, Utak's place (x, y) in squares, map frame of that frame, the outcome, residual
         0), the chance of the contact, and the log odds against that origin. One for each square of Utak and each
-        contact, with the most central origin of those that give it. [] without a
-        push, and once an object was turned, for turned objects tell the origin.
+        contact, with the most central origin of those that give it. [] without a push, and once an object was turned,
+        for turned objects tell the origin.
     """
     alike: dict[tuple[int, int, frozenset[Square]], list[tuple[WhatIf, float]]] = {}
     asked = surprise.carried is not None and not surprise.any_turned

@@ -54,9 +54,9 @@ def lean_on_obstacle(
 ) -> HeldObject:
     """Return an object that a straight motion left blocked, at the nearest place where it touches a known obstacle.
 
-    Only its outline (shapely Polygon, in squares, map frame) and what depends on its place change.
-    It stays where it is after a turn, when it touches something there, when nothing is within MAX_LEANING_DISTANCE
-    (0.8) squares, or when every touching place contradicts more of what is seen.
+    Only its outline (shapely Polygon, in squares, map frame) and what depends on its place change. It stays where it is
+    after a turn, when it touches something there, when nothing is within MAX_LEANING_DISTANCE (0.8) squares, or when
+    every touching place contradicts more of what is seen.
 
     Parameters
     ----------

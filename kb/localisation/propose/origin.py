@@ -47,10 +47,9 @@ def blocked_walks_with_origin(
     """Return explanations that one of the last walks was blocked, with another origin, without any contradiction.
 
     Each has the frame, the place of the newest observation (x, y) in squares, map frame of it, the shift of all since
-    that walk, and a residual of 0; those of the oldest walk come first.
-    Those by which all observations are made on the same squares are one explanation. Its prior cost (log odds) is the
-    map prior plus the log odds against the part of the square in which the origin lies then. All are of kind misled; []
-    when there is none.
+    that walk, and a residual of 0; those of the oldest walk come first. Those by which all observations are made on the
+    same squares are one explanation. Its prior cost (log odds) is the map prior plus the log odds against the part of
+    the square in which the origin lies then. All are of kind misled; [] when there is none.
 
     Parameters
     ----------

@@ -80,8 +80,8 @@ def origin_from_turn(surprise: Surprise, simple: bool) -> WhatIf | None:
 
     The result holds the frame (believed angle, that origin), the hypotheses left, Utak's place (x, y) in squares, map
     frame of that frame, the outcome for the object (None without a turn), and a residual of 0. The orientation is the
-    believed one. The turn went to its end, or as far as known obstacles let it go; else it may
-    have ended anywhere. Of all origins that do, the middle one is returned; the hypotheses left are all of them.
+    believed one. The turn went to its end, or as far as known obstacles let it go; else it may have ended anywhere. Of
+    all origins that do, the middle one is returned; the hypotheses left are all of them.
 
     Parameters
     ----------
