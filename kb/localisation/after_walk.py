@@ -147,8 +147,8 @@ class _WalkExplainer:
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
         """Return a chosen explanation with what was learnt while choosing it.
 
-        That is the number of slow searches spent so far, and where the walk may have ended by its observation (empty
-        where it can have met nothing).
+        That is the number of slow searches spent so far, and where the walk may have ended by its observation: places
+        (x, y) in squares, map frame, each with its chance; empty where it can have met nothing.
 
         left : the frame hypotheses that are left, if they were weighed anew; None when they stay as they are.
         """

@@ -271,9 +271,8 @@ def with_chance(state: TrackerState, explanation: Explanation) -> Explanation:
     """Return a re-estimation of an earlier motion with its chance by the observation after that motion, if known.
 
     The result is the explanation with `chance` set: the probability, 0 to 1, of the end that it gives the earlier
-    motion, by all observations before the newest one; None when that end was no known alternative. It is returned
-    unchanged when the motion is not remembered, when its observation is the newest one, or when the frame is another
-    one.
+    motion, by the observation that followed it; None when that end was no known alternative. It is returned unchanged
+    when the motion is not remembered, when its observation is the newest one, or when the frame is another one.
 
     Parameters
     ----------
@@ -305,8 +304,9 @@ def prior_cost(state: TrackerState, angle: int) -> float:
 def choose(state: TrackerState, explanations: list[Explanation], facts: Iterable[str] = ()) -> Explanation:
     """Return the cheapest explanation by kb/asp/accommodation.lp; of those that cost the same the first.
 
-    It is one of `explanations`, unchanged. Costs grow with the fields left unexplained, with the distance from the
-    predicted end, with improbability, and by its kind.
+    It is one of `explanations`, unchanged: a place (x, y) in squares, map frame of its frame, with its kind and
+    residual. Costs grow with the fields left unexplained, with the distance from the predicted end, with improbability,
+    and by its kind.
 
     Parameters
     ----------

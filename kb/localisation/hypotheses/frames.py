@@ -48,7 +48,8 @@ class FrameHypothesis(NamedTuple):
     def frame(self) -> Frame:
         """Return the likeliest frame: with its origin in the middle of the square of waking if the box contains it.
 
-        Else the origin is the middle of the box.
+        Else the origin is the middle of the box. The angle is that of the hypothesis, in degrees; the origin (x, y) in
+        squares, map frame, 0 to 1.
         """
         west, south, east, north = self.box
         if west <= CENTRE[0] <= east and south <= CENTRE[1] <= north:

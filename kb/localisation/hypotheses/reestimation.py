@@ -173,6 +173,9 @@ def reestimate_walk(
 def _likeliest_hypotheses(hypotheses: tuple[FrameHypothesis, ...]) -> tuple[FrameHypothesis, ...]:
     """Return the MAX_REESTIMATED_HYPOTHESES of the least prior cost, in the order given; all when there are no more.
 
+    Each is an angle in degrees, a box of origins in squares, map frame, and a prior cost. Of equal costs the first
+    given are taken.
+
     hypotheses : each with its prior cost in log odds; the less the likelier.
     """
     if len(hypotheses) <= MAX_REESTIMATED_HYPOTHESES:

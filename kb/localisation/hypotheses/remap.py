@@ -91,6 +91,9 @@ class MapReplay:
     ) -> "MapReplay":
         """Integrate the observations before number `stop` that are not integrated yet, and return this replay itself.
 
+        Its map, in the new frame, then holds the first `number` observations; `contradicted` tells whether any of them
+        contradicts it.
+
         Parameters
         ----------
         observations : all, oldest first, with their places in Utak's own frame; those integrated already must be the

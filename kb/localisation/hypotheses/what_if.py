@@ -175,7 +175,8 @@ class Surprise:
     def prefixes(self) -> ReplayPrefixes:
         """Return the replays of the first observations (mapped one after the other) in the believed frame; cached.
 
-        Its method `first(n)` returns the map of the first n observations, with the held objects, as far as n came.
+        Its method `first(n)` returns the map of the first n observations alone (map frame of the believed frame), to be
+        copied and gone on with, and whether any of them contradicts it.
         """
         return ReplayPrefixes(self.frame, self.observations, self.held_objects)
 

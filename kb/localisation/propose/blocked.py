@@ -153,8 +153,8 @@ def consistent_explanations(surprise: Surprise, explanations: Iterable[Explanati
     Returns
     -------
     list of Explanation
-        In the same order, unchanged but for `prior_cost`: log odds (natural logarithm), relative to the best one, which
-        has 0. [] when it agrees with none.
+        In the same order, their places (x, y) in squares, map frame, and all else unchanged but for `prior_cost`: log
+        odds (natural logarithm), relative to the best one, which has 0. [] when it agrees with none.
     """
     found: list[tuple[MapDescription, Explanation]] = []
     drawn: DrawnScenes = {}
