@@ -14,7 +14,7 @@ class Tally:
 
     Parameters
     ----------
-    function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
+    function : `#count`, `#sum`, `#sum+` (negative weights count 0), `#min` or `#max`.
     """
 
     def __init__(self, function: str) -> None:
@@ -39,7 +39,8 @@ class Tally:
     def value(self) -> Value:
         """Return the value of the aggregate; an `Unknown`, with bounds for a number, when it is not certain.
 
-        It is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
+        The bounds hold all values that it can have with some, all or none of the tuples that may be absent. A certain
+        value is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
         Infimum for `#max`. Raises CalculationError for a value beyond 32 bits.
         """
         new_possible = [values for values in self._possible if values not in self._certain]
@@ -60,9 +61,12 @@ class Tally:
         return least if low == high == least else Unknown(low, high)
 
     def _sum(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the sum of the weights, an `Unknown` with bounds when it is not certain.
+        """Return the sum of the weights, an integer; an `Unknown` with bounds when it is not certain.
 
-        Weights that are no numbers count 0. new_possible : the tuples that may be absent.
+        Weights, the first values of the tuples, that are no numbers count 0. Raises CalculationError when the sum of
+        the certain weights is beyond 32 bits.
+
+        new_possible : the tuples that may be absent.
         """
 
         def weight(values: ValueTuple) -> int:
@@ -105,6 +109,8 @@ class Tally:
 def _is_beyond(value: Value, best: object, least: bool) -> bool:
     """Return whether a known value is less (for `least`), or greater, than the best one in clingo's order.
 
+    value : an integer or a clingo symbol; False when it equals the best one.
+    least : whether the least value is sought; else the greatest.
     best : a clingo symbol.
     """
     one = as_clingo(value)
@@ -114,7 +120,11 @@ def _is_beyond(value: Value, best: object, least: bool) -> bool:
 def _may_go_beyond(value: Value, best: object, least: bool) -> bool:
     """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one.
 
+    True for every value that is no number, or may be none.
+
+    value : an integer, a clingo symbol or an `Unknown`.
     best : a clingo symbol; the order is clingo's.
+    least : whether the least value is sought; else the greatest.
     """
     ends = bounds(value)
     if ends is None:

@@ -61,7 +61,9 @@ def number_of(term: ClauseTerm, given: Bindings) -> Value:
 def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
     """Return the values of a term: all numbers of an interval, a range; or one value, in a list.
 
-    An interval of which an end is not known gives one unknown number with bounds. given : the values of variables, by
+    A value is an integer, a clingo symbol or an `Unknown`. An interval of which an end is not known gives one unknown
+    number with bounds; one whose first end is greater than its last gives an empty range. Raises ClauseError for an
+    unbound variable and for arithmetic without a result. given : the values of variables, by
     name.
     """
     if isinstance(term, Operation) and is_interval(term):
@@ -91,7 +93,8 @@ def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterab
 
     Returns
     -------
-    Numbers, ascending, with which every comparison has the same truth value as with all numbers of the interval.
+    For an interval with numbers: a list of integers, ascending, with which every comparison has the same truth value as
+    with all numbers of the interval. Else `values` itself.
     """
     if not isinstance(values, range) or not values:
         return values

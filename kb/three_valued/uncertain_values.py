@@ -118,7 +118,8 @@ def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
 def narrow(value: Unknown, sign: str, other: Value) -> Value:
     """Return what an unknown value can still be where `value sign other` holds.
 
-    other : the value with which it is compared, known or not. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
+    value : a number within bounds, or a value of which nothing is known. other : the value with which it is compared,
+        an integer, a clingo symbol or an `Unknown`. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
 
     Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
     """
@@ -145,7 +146,8 @@ def calculate_uncertain(sign: str, *values: Value) -> Value:
 
     Returns
     -------
-    An integer, or an `Unknown` with bounds; the bounds are those of 32-bit integers for rare operators.
+    An integer when all operands are known, else an `Unknown` with bounds, both included. The bounds are cut to those of
+    32-bit integers, and are these for all operators but `+`, `-` and `*`.
 
     Raises
     ------
