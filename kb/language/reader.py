@@ -37,7 +37,8 @@ def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
 
     Returns
     -------
-    The source text, and the facts in the order of the file.
+    The source (the file's name and its text), and the facts in the order of the file: each a name with its arguments,
+    and its place.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def facts_from_text(text: str, file: str = "input") -> tuple[Fact, ...]:
 
     Returns
     -------
-    The facts in the order of the text.
+    The facts in the order of the text, each a name with its arguments and its place (line and columns from 1).
 
     Raises
     ------
@@ -81,7 +82,8 @@ def parse_facts(source: Source) -> tuple[Fact, ...]:
 
     Returns
     -------
-    The facts. Only the syntax is checked; `kb.language.vocabulary.check_facts` checks predicates and arguments.
+    The facts, each a name with its arguments (numbers, texts, names) and its place. Only the syntax is checked;
+    `kb.language.vocabulary.check_facts` checks predicates and arguments.
 
     Raises
     ------
@@ -151,12 +153,16 @@ class _Reader:
                 return
 
     def refuse(self, token: Token, what: str, hint: str = "") -> _RefusedError:
-        """Record a problem at a token, and return the exception to raise."""
+        """Record a problem at a token, and return the exception that the caller raises.
+
+        what : the message. hint : a remedy, or '' for none. The exception carries nothing: the problem is in
+            `problems`.
+        """
         self.problems.append(self.source.problem(token.span, what, hint))
         return _RefusedError()
 
     def fact(self) -> Fact:
-        """Read one fact with its full stop, and return it.
+        """Read one fact with its full stop, and return it: a name with its arguments and its place.
 
         Raises _RefusedError, after recording a problem, where something else stands.
         """
@@ -170,9 +176,10 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
-        """Read one term, and return it. depth : the number of terms around it.
+        """Read one term, and return it: a number, a text, or a name with its arguments.
 
-        Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
+        depth : the number of terms around it. Raises _RefusedError, after recording a problem, where something else
+            stands or the terms are nested too deep.
         """
         token = self.peek
         if depth > MAX_TERM_DEPTH:
@@ -240,7 +247,7 @@ class _Reader:
         return Number(value, span)
 
     def not_a_fact(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no fact begins; its problem is recorded."""
+        """Return, not raise, the error for a token with which no fact begins; its problem is recorded."""
         if token.kind == "directive":
             return self.refuse(token, f"{token.text} is a directive; a fact file holds facts alone")
         if token.kind == "variable":
@@ -256,7 +263,7 @@ class _Reader:
         return self.refuse(token, f"a fact was expected, {token.in_words} found")
 
     def not_the_end(self, fact: Fact, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where the full stop of `fact` belongs; its problem is recorded."""
+        """Return, not raise, the error for a token where the full stop of `fact` belongs; its problem is recorded."""
         if token.text == ":-":
             return self.refuse(token, "a rule; a fact file holds facts alone", "remove everything from :- on")
         if token.text in (",", ";", "|", ":"):
@@ -268,7 +275,7 @@ class _Reader:
         return self.refuse(token, f"a full stop was expected after the fact, {token.in_words} found")
 
     def not_a_term(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no term begins; its problem is recorded."""
+        """Return, not raise, the error for a token with which no term begins; its problem is recorded."""
         if token.kind == "variable":
             what = f"{token.text} is a variable; facts have none"
             return self.refuse(token, what, f'write {_lower_case_name(token.text)}, or "{token.text}" for a text')
@@ -277,7 +284,7 @@ class _Reader:
         return self.refuse(token, f"a term was expected, {token.in_words} found")
 
     def not_closed(self, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where ',' or ')' belongs; its problem is recorded."""
+        """Return, not raise, the error for a token where ',' or ')' belongs; its problem is recorded."""
         if token.text in ("..", ";", "+", "-", "*", "/", "**", "|", "&", "?", "^", "\\", "@"):
             return self.refuse(token, f"{token.in_words}: intervals, pools and sums are not facts", "write them out")
         return self.refuse(token, f"',' or ')' was expected, {token.in_words} found")

@@ -43,9 +43,10 @@ class Source:
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
-        """Return the problem `what` at `span`, with the source line and the hint ('' for none).
+        """Return the problem `what` at `span`, with the file's name, the source line and the hint ('' for none).
 
-        When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
+        It is returned, not raised. `span` is a line and its columns, from 1; beyond the last line no source line is
+        shown. When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
         """
         if self.hide_text:
             return Problem(
@@ -68,7 +69,7 @@ def read_source(path: Path | str) -> Source:
 
     Returns
     -------
-    The text with the file's name; it is hidden in messages when the file is a link out of its folder.
+    The whole text with the file's name; it is hidden in messages when the file is a link out of its folder.
 
     Raises
     ------

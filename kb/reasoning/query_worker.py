@@ -130,6 +130,8 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
 def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
     """Return the values of the variables, in their order; raise ClauseError when the query does not bind one of them.
 
+    A value is an integer, a clingo symbol, or an `Unknown` for a value not known.
+
     found : the values by name. variables : the names. clause : the query, for its place in messages.
     """
     missing = [name for name in variables if name not in found]
@@ -139,12 +141,19 @@ def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
 
 
 def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
-    """Return a key that sorts rows: integers before texts, column by column."""
+    """Return a key that sorts rows: integers before texts, column by column, both ascending.
+
+    It is a list of pairs (whether the value is a text, the value), one for each value of the row.
+    """
     return [(isinstance(value, str), value) for value in row]
 
 
 def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
-    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols."""
+    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols.
+
+    One pair (predicate, tuple of its arguments) for each entry [name, argument, ...], in their order. Raises
+    RuntimeError for a text that is no term.
+    """
     for name, *arguments in entries:
         yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
 

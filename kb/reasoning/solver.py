@@ -32,7 +32,9 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
     Returns
     -------
-    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time.
+    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time. The
+    best answer set is the one with the least cost, or the last one found in time; among equals the one that clingo
+    finds.
 
     Raises
     ------

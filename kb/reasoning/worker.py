@@ -37,7 +37,8 @@ class Worker:
 
         Parameters
         ----------
-        request : JSON values, as kb.reasoning.query_worker takes them.
+        request : JSON values by key, as kb.reasoning.query_worker takes them: {"read": text}, or the keys program,
+            rules, heads and conflicts, or the keys facts, query, rules and max_rows.
         seconds : the limit of wall-clock time.
 
         Returns
