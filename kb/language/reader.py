@@ -178,8 +178,9 @@ class _Reader:
     def term(self, depth: int) -> Term:
         """Read one term, and return it: a number, a text, or a name with its arguments.
 
-        depth : the number of terms around it. Raises _RefusedError, after recording a problem, where something else
-            stands or the terms are nested too deep.
+        depth : the number of terms around it.
+
+        Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
         """
         token = self.peek
         if depth > MAX_TERM_DEPTH:

@@ -137,7 +137,7 @@ class HeldObject:
         """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid.
 
         An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the
-        side.
+        side; the result holds the least and the greatest one of the west, east, south and north sides.
         """
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
@@ -147,7 +147,7 @@ class HeldObject:
         """The distance by which each side may lie further in than believed, in squares.
 
         The values are those of its west, east, south and north sides, as it lies now. Where no insets are known, all
-        are `play`.
+        are `play`: how far the true outline may lie from the believed one.
         """
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
@@ -200,8 +200,15 @@ class HeldObject:
         degrees : float
             By how much it was turned by this motion, counter-clockwise positive.
         commanded : bool
-            Whether the motion went all the way. An object that was stopped lies close beside a grid line as often as
-            on it.
+            Whether the motion went all the way; if not, the object counts as `stopped` from now on, and its bounds are
+            the outline grown or shrunk by `play` all round. An object that was stopped lies close beside a grid line as
+            often as on it.
+
+        Returns
+        -------
+        HeldObject
+            A new object there, map frame: turned by `degrees` more, seen to move, with no motion in a row that failed,
+            and without squares seen to be covered or not.
         """
         stopped, turned = self.stopped or not commanded, self.turned + degrees
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
@@ -217,6 +224,12 @@ class HeldObject:
         otherwise : float
             How far the true outline may lie from that, in squares. An outline with all corners on the grid is taken
             for exact, unless its place is known only roughly or its sides may lie further in or out.
+
+        Returns
+        -------
+        HeldObject
+            A new object with that outline, map frame, its tolerance as `slack` in squares, and no squares seen to be
+            covered or not; all else as before.
         """
         nothing: frozenset[Square] = frozenset()
         placed = snap_to_grid(polygon)
@@ -243,7 +256,8 @@ class HeldObject:
         Returns
         -------
         HeldObject
-            The object itself when no open square was seen alone in a field.
+            A new object, at the same place, with more squares in `full` and `empty`, map frame; the object itself when
+            no open square was seen alone in a field.
         """
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
@@ -269,8 +283,10 @@ class HeldObject:
         Returns
         -------
         HeldObject or None
-            None when the impression agrees with no outline of possible insets, or when insets say nothing of it: it
-            lies askew, its place is known only roughly, or its outline is of another frame.
+            A new object with narrower insets and its sides, now and where it first lay, moved to where they are then
+            believed to be; map frame. None when the impression agrees with no outline of possible insets, or when
+            insets say nothing of it: it lies askew, its place is known only roughly, or its outline is of another
+            frame.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
@@ -292,7 +308,9 @@ class HeldObject:
         Returns
         -------
         HeldObject or None
-            None when the result would be no outline, or when its sides are not parallel to the grid.
+            A new object whose outline, now and where it first lay (map frame), and tolerance fit the insets; with the
+            same outline when the believed insets do not change. None when the result would be no outline, or when its
+            sides are not parallel to the grid.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None:
@@ -383,8 +401,10 @@ def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> flo
 def initial_insets(polygon: Any) -> SubcellExtent | None:
     """Return the possible insets of the sides of an object that never moved; None when it is not on the grid.
 
-    `polygon` is its believed outline, a shapely Polygon, map frame, or None when there is none; then the result is
-    None. On the grid every side may lie from 0 to less than 1 square further in.
+    An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the side;
+    the result holds the least and the greatest one of the west, east, south and north sides. `polygon` is its believed
+    outline, a shapely Polygon, map frame, or None when there is none; then the result is None. On the grid every side
+    may lie from 0 to less than 1 square further in.
     """
     return SubcellExtent() if polygon is not None and is_grid_aligned(polygon) else None
 
@@ -418,7 +438,7 @@ def subtract_held_objects(
     x, y : int
         The square on which the impression was received, map frame.
     loads : iterable of HeldObject
-        The objects.
+        The objects that were held, where they are believed to lie, map frame.
 
     Returns
     -------

@@ -75,8 +75,8 @@ class SubcellExtent(NamedTuple):
     def after(self, quarters: int) -> "SubcellExtent":
         """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive.
 
-        The values are sorted anew: what was the inset of the east side is that of the north side after one quarter
-        turn.
+        The least and the greatest inset of each side, in squares, are sorted anew: what was the inset of the east side
+        is that of the north side after one quarter turn.
         """
         return SubcellExtent(turn_sides(self.least, quarters), turn_sides(self.most, quarters))
 
@@ -211,8 +211,10 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
     Returns
     -------
     SubcellExtent or None
-        What is possible after it, for the sides as they lie at the impression: never more than before.
-        None when the impression agrees with no possible outline.
+        The least and the greatest inset possible after it, in squares, of the west, east, south and north sides as they
+        lie at the impression: never more than before. Where several outlines agree, the narrowest bounds that hold all
+        of them; `insets` itself when the impression agrees and can show nothing. None when the impression agrees with
+        no possible outline.
     """
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = polygon.bounds

@@ -51,7 +51,8 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
     places : Places
         The rooms and corners of that model.
     accommodated : Accommodation
-        How the impression was explained, and the status of each of its fields.
+        How the impression was explained: the chosen explanation, with its kind as a word, and the status of each of the
+        160 fields.
     bound : mapping of str to str
         Name of a parameter of the task -> name of the node of the model that it means.
 
@@ -88,12 +89,13 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     model : WorldModel
         The world model.
     places : Places
-        Its rooms and corners.
+        Its rooms with their doors, and the corner of the known floor furthest towards each side.
 
     Yields
     ------
     str
-        One fact, such as `kind(o1,object,95)`.
+        One fact, such as `kind(o1,object,95)`: first those of the robot, the floor and the verge, then all outlines,
+        the objects by number, rooms, doors and corners.
     """
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
@@ -213,7 +215,11 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
     `rect(Node,West,South,East,North)`, then `segment(Node,Number,East,North,East,North,Confidence)` from a point to the
     next one, numbered from 0 for each node. Coordinates are hundredths of squares, robot frame; confidences percent.
 
-    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated.
+    Nodes come in the order of `shapes`: of each its rectangle, then its segments, one for each point of its rings in
+    order. A confidence is the mean of the percent by which the squares on both sides of the segment are settled.
+
+    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated. There is
+        at least one ring in all.
     """
     names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
     starts = np.concatenate(rings)

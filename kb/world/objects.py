@@ -69,6 +69,8 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     MapRegions
         `regions` itself where nothing but verge was felt. Else each thing has a label and a name `part<n>` beyond all
         others, and is an object with FELT_OBJECT_CONFIDENCE percent; regions of which no square is left are dropped.
+        The numbers of the other regions stay. The result holds the regions, old ones first, the number of each square's
+        region on the arrays of the map view, and what each region is taken for.
     """
     percept, labels, kinds = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
@@ -91,7 +93,9 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
     """Return the region `part<label>` of a thing that stands against the verge.
 
-    `thing` is its (rows, columns) mask on the view's arrays, with at least one square.
+    It holds the name, that it is occupied, the percent of its squares that are settled as occupied, that it touches
+    nothing unseen, its longer side in squares, and its mass (expected occupied squares) in tenths of squares. `thing`
+    is its (rows, columns) mask on the view's arrays, with at least one square.
     """
     rows, columns = np.nonzero(thing)
     settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
@@ -124,7 +128,9 @@ def seen_objects(
     Returns
     -------
     tuple of Node
-        By the number in their names; () when there are none.
+        By the number in their names; () when there are none. A node holds the region's name, its squares as a patch and
+        its believed outline (map frame, in squares; None when no shape fits), shape classes and the belief that it is
+        an object in percent, its colour or None, and how many squares are not determined.
 
     Raises
     ------
@@ -168,7 +174,8 @@ class _Window(NamedTuple):
 def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
     """Return the parts of the map about the regions with these labels, in their order.
 
-    A label n is that of the region `part<n>`.
+    A label n is that of the region `part<n>`. Each holds the view of the region's containing rectangle, one square
+    wider on each side where the map goes on, and the (rows, columns) mask of the region on the arrays of that view.
     """
     framing = bounding_boxes(model.labels, int(model.labels.max()))
     found = []
@@ -190,6 +197,10 @@ def _seen_node(
     touches: Touches,
 ) -> Node:
     """Return the node of a region of the map.
+
+    It holds the squares and the outline (map frame, in squares; None when no shape fits), the belief in percent that it
+    is an object, its shape classes and colour, the impressions that settled its squares, and by how much its sides may
+    lie further in, as of an object that never moved.
 
     name : that of the node, `o<n>`.
     window : the map about the region.
@@ -242,7 +253,8 @@ def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
 def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
     """Return an object that was held, classified anew if its shape is open, since it was found to be larger.
 
-    Its shape is then measured from where it lay when it was first held.
+    Its shape is then measured from where it lay when it was first held. The result is a new object that differs in
+    `shape` alone (shape class -> confidence in percent; {} when nothing fits), with its outline in the map frame.
 
     Parameters
     ----------
@@ -267,7 +279,9 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
 def grasped(node: Node) -> HeldObject:
     """Return an object as it is when it is held for the first time.
 
-    The outline of the node must be known. The object lies where the node's outline lies, map frame, and was not turned.
+    The outline of the node must be known. The object lies where the node's outline lies, map frame, in squares, and was
+    not turned, nor seen to move; name, shape, colour and the impressions that support it are the node's. Its outline is
+    exact where its corners are on the grid, and its sides may lie up to 1 square further in.
     """
     return HeldObject(
         name=node.name,
@@ -286,8 +300,9 @@ def within_reach(
 ) -> list[Node]:
     """Return the objects of which one may be on the adjacent square in a direction.
 
-    These are the objects that may cover that square. Without any: the objects near it, if the colour felt there may be
-    theirs, and if the squares that the direction may name are not all settled as occupied, as a wall is.
+    These are the objects that may cover that square; they are returned as their nodes. Without any: the objects near
+    it, if the colour felt there may be theirs, and if the squares that the direction may name are not all settled as
+    occupied, as a wall is.
 
     Parameters
     ----------
@@ -356,7 +371,9 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     Returns
     -------
     model : WorldModel
-        The model with one more region, the last one: its number is the greatest in `labels`.
+        A new model with one more region, the last one: its number is the greatest in `labels`, and it is an object with
+        100 percent. View (states, probabilities, seen squares), labels and kinds are changed; `percept` and `objects`
+        are not. Where the object may cover no square but settled walls, no square has the new number.
     patch : Patch
         The squares that the object covers, or may cover; map frame.
     """
@@ -393,12 +410,14 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held.
 
     It can be moved with 99 percent belief when it was seen to move, with 0 after MIN_STUCK_MOTIONS motions in a row
-    that did not move it, else with 50.
+    that did not move it, else with 50. The node holds the squares and the believed outline (map frame, in squares), the
+    region's name, shape and colour as before the grasp, the degrees by which it was turned (counter-clockwise
+    positive), and that it is an object with 100 percent.
 
     Parameters
     ----------
     load : HeldObject
-        The object.
+        The object that was held, where it is believed to lie now; map frame.
     patch : Patch
         The squares that it covers, or may cover; map frame.
     label : int
