@@ -281,7 +281,7 @@ def grasped(node: Node) -> HeldObject:
 
     The outline of the node must be known. The object lies where the node's outline lies, map frame, in squares, and was
     not turned, nor seen to move; name, shape, colour and the impressions that support it are the node's. Its outline is
-    exact where its corners are on the grid, and its sides may lie up to 1 square further in.
+    exact where its corners are on the grid; then its sides may lie less than 1 square further in.
     """
     return HeldObject(
         name=node.name,

@@ -280,9 +280,10 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
     """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place.
 
     `labels` is (rows, columns) int32 on the view's arrays: numbers of rooms, NO_ROOM on floor of no room, -1 where
-    there is no floor. The passage is in the view frame. Each square between its mouths gets the room of the nearer one.
-    Where nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room
-    counts as that of the other one; (0, 0) when neither has one.
+    there is no floor. The passage is in the view frame. The result is the room on its first side, then that on its
+    second. Each square between its mouths gets the room of the nearer one, of the first at equal distances. Where
+    nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room counts as
+    that of the other one; (0, 0) when neither has one.
     """
     columns, rows = np.array(passage.between, np.int64).reshape(-1, 2).T
     away = [_distances_to_line(mouth, columns, rows) for mouth in passage.mouths]
