@@ -191,7 +191,10 @@ class Knowledge:
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
-        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover."""
+        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover.
+
+        `impression` has these colours, clockwise from north in the robot frame. Changes the touches alone.
+        """
         memory = self.memory
         held = {square for load in memory.held_objects.values() for square in load.possible.squares()}
         self._touches.feel(impression.touch, memory.frame, memory.square, held)

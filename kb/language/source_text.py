@@ -158,7 +158,8 @@ def read_bytes(path: str, most: int) -> bytes:
 def _disallowed_characters(source: Source) -> list[Problem]:
     """Return one problem for each run of equal characters on a line that are not allowed in users' text files.
 
-    In the order of the text, MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
+    A problem holds the file, the place, the message, the source line and a hint. In the order of the text,
+    MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
     ends.
     """
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":

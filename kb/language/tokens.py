@@ -78,7 +78,10 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
 
 
 def _block_end(text: str, start: int) -> int:
-    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed."""
+    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed.
+
+    Indices are those of characters of the whole `text`, from 0.
+    """
     depth = 0
     for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1

@@ -160,14 +160,22 @@ class HeldObject:
 
     @cached_property
     def sure(self) -> Patch:
-        """The squares that it surely covers, map frame; a patch without squares when there are none."""
+        """The squares that it surely covers, map frame; a patch without squares when there are none.
+
+        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
+        south.
+        """
         inner = self._bound(1) if self.play else self.polygon
         patch = EMPTY_PATCH if inner.is_empty else patch_of_polygon(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
-        """The squares that it covers or may cover, those of `sure` included; map frame."""
+        """The squares that it covers or may cover, those of `sure` included; map frame.
+
+        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
+        south.
+        """
         if not self.play:
             return self.sure
         patch = patch_of_polygon(self._bound(-1))
@@ -177,7 +185,7 @@ class HeldObject:
         """Return the smallest possible outline (inwards 1), or the greatest (-1): a shapely polygon, map frame.
 
         What is known of each side is used where no motion ended early; else the believed outline shrinks or grows by
-        `play` all round. The smallest one may be empty.
+        `play` squares all round, its corners kept sharp. The smallest one may be empty, or several polygons.
         """
         insets = self.lying_insets
         if insets is not None and not self.stopped and self.play <= max(insets.play, COMMAND_ROUNDING):
@@ -327,7 +335,8 @@ class HeldObject:
     def woken(self, far: float) -> "HeldObject":
         """Return the object if the point where the robot woke is known within a distance: it bounds the turns' centre.
 
-        Only `astray` changes: to the length, in squares, by which its rotation moves a point that is so far off.
+        A new object of which only `astray` differs: it becomes the length, in squares, by which its rotation moves a
+        point that is so far off.
 
         Parameters
         ----------
@@ -337,7 +346,10 @@ class HeldObject:
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":
-        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one."""
+        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one.
+
+        A new object at the same place; `stuck` counts the last motions in a row that did not move it.
+        """
         return replace(self, stuck=self.stuck + 1)
 
 
@@ -378,7 +390,8 @@ def snap_to_grid(polygon: Any) -> Any:
 def is_grid_aligned(polygon: Any) -> bool:
     """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid.
 
-    Corners of the grid have whole coordinates, in squares; they may be missed by less than GRID_CORNER_TOLERANCE.
+    `polygon` is not empty. Corners of the grid have whole coordinates, in squares; they may be missed by less than
+    GRID_CORNER_TOLERANCE.
     """
     points = shapely.get_coordinates(polygon)
     return bool(np.abs(points - np.rint(points)).max() < GRID_CORNER_TOLERANCE)

@@ -110,7 +110,9 @@ def turn_sides(sides: SideValues, quarters: int) -> SideValues:
 def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
     """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares.
 
-    The values are those of west, east, south and north, negative for further out.
+    The values are those of west, east, south and north, negative for further out. Both arguments hold the least and the
+    greatest inset of the sides (distance inwards from the outer line of the squares in which the object was seen) as
+    the object lies in one and the same orientation.
     """
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north

@@ -117,7 +117,8 @@ def answer_query(
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
     """Return the clauses of rules; the line of each clause is the number of its rule, from 1.
 
-    A rule with a choice of values (a pool) has several clauses. Raises RuleError for a construct that is not supported.
+    A clause holds a head atom and the literals of its body. Clauses come in the order of the rules; a rule with a
+    choice of values (a pool) has several. Raises RuleError for a construct that is not supported.
     """
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
@@ -160,14 +161,15 @@ def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRo
 
 @lru_cache(maxsize=65536)
 def _parse_term(term: str) -> clingo.Symbol:
-    """Return the clingo symbol that a text denotes; RuntimeError when it denotes none."""
+    """Return the clingo symbol that a text denotes, such as `corner(northeast)`; RuntimeError when it denotes none."""
     return clingo.parse_term(term)
 
 
 def _query_as_rule(query: str) -> AST:
     """Return the syntax tree of a rule with the query as its body.
 
-    Raises QueryError unless the text is exactly one body, and RuntimeError where clingo cannot parse it.
+    The rule's head is an atom of no meaning. Raises QueryError unless the text is exactly one body, and RuntimeError
+    where clingo cannot parse it.
     """
     parts: list[AST] = []
     parse_string(f"{QUERY_HEAD}{query}\n.", parts.append, logger=_record_message, message_limit=20)

@@ -181,14 +181,17 @@ class Rulebook:
 
     @property
     def self_contained(self) -> tuple[Statement, ...]:
-        """The rules that depend on no predicate but those that they define themselves, in the order of the files."""
+        """The rules that depend on no predicate but those that they define themselves, in the order of the files.
+
+        () when there are none. They state only predicates of the user's own.
+        """
         return self._applicable(frozenset())
 
     @property
     def query_rules(self) -> tuple[Statement, ...]:
         """The rules over the world model with one atom as the head, a predicate of the user's own.
 
-        Queries can use the predicates that they define. In the order of the files.
+        Queries can use the predicates that they define. In the order of the files; () when there are none.
         """
         return tuple(
             one
@@ -197,7 +200,11 @@ class Rulebook:
         )
 
     def _invalid_parts(self, one: Statement) -> Iterator[Problem]:
-        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants."""
+        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants.
+
+        A problem is the file, the place, the message, the source line and a hint. Unreachable predicates come first,
+        then unknown ones in the body, then the problems of its heads.
+        """
         for atom in (*one.heads, *one.body):
             if (
                 atom.signature in INTERNAL_PREDICATES
@@ -224,6 +231,9 @@ class Rulebook:
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants in a head atom that no encoding accepts at their place.
+
+        One for each such constant, at its place, in the order of the arguments. A number of a neck or a corner is
+        always one: they are numbered anew each time.
 
         one : the statement. atom : one of its head atoms.
         """

@@ -151,7 +151,8 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
 def _not_allowed(source: Source) -> Iterator[Problem]:
     """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
 
-    Nothing is yielded after the first bracket that is nested more than MAX_TERM_DEPTH deep.
+    One for each `#include` in the order of the text; nothing after the first bracket that is nested more than
+    MAX_TERM_DEPTH deep.
     """
     depth = 0
     for token in tokenize(source, []):
@@ -243,7 +244,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
 
 
 def _as_fact(text: str) -> Fact | None:
-    """Return the fact that the text of a derived atom denotes; None when fact files could not express it."""
+    """Return the fact (name and arguments) that the text of a derived atom denotes; None when it is no valid fact."""
     try:
         (fact,) = facts_from_text(f"{text}.")
     except (BadInputError, ValueError):

@@ -100,9 +100,10 @@ def _task_facts(task: Task) -> Iterable[str]:
 def _node_facts(node: Node) -> Iterable[str]:
     """Yield what is believed about an object as facts for kb/asp/reconciliation.lp, without full stops.
 
-    These are `candidate(Node,Percent)` and `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where
-    no impression can change it; `fixed(Node)` and `moved(Node)`; and
-    `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size is known.
+    Percents are confidences: that it is an object, or that it has the value. These are `candidate(Node,Percent)` and
+    `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where no impression can change it;
+    `fixed(Node)` and `moved(Node)`; and `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size
+    is known.
     """
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):

@@ -206,7 +206,10 @@ def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list
 
 
 def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
-    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time."""
+    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time.
+
+    One for each repetition, at its place in `source`, in the order of `facts`; [] when there are none.
+    """
     seen: dict[Fact, int] = {}
     problems = []
     for fact in facts:
@@ -316,6 +319,9 @@ def _compatible(one: Fact, other: Fact) -> bool:
 
 def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[str, Parameter]) -> Iterator[Problem]:
     """Yield the problems of goals: their order, their arguments, and an empty goal.
+
+    A problem holds the file, the place, the message, the source line and a hint. They come in the order of the goals;
+    an empty goal is the last one.
 
     source : goal.lp. goals : its facts, in order. parameters : those of start.lp, by name.
     """

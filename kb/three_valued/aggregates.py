@@ -53,7 +53,8 @@ class Tally:
     def _between(self, least: int, up: int, down: int) -> Value:
         """Return a number from `least` - `down` to `least` + `up`: an integer when both are 0, else an `Unknown`.
 
-        There is no upper bound where a tuple has unknown values. Raises CalculationError for a `least` beyond 32 bits.
+        The bounds of the `Unknown` are both included, and cut to 32 bits. There is no upper bound where a tuple has
+        unknown values. Raises CalculationError for a `least` beyond 32 bits.
         """
         require_int32(least)
         high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
@@ -70,7 +71,7 @@ class Tally:
         """
 
         def weight(values: ValueTuple) -> int:
-            """Return the number with which a tuple counts."""
+            """Return the number with which a tuple counts: its first value, 0 when that is no number."""
             value = values[0] if values else 0
             number = value if isinstance(value, int) else 0
             return max(0, number) if self._function == "#sum+" else number
@@ -85,7 +86,11 @@ class Tally:
     def _least_or_greatest(self, new_possible: list[ValueTuple]) -> Value:
         """Return the least (for `#min`) or the greatest first value; for no tuples, the value beyond all others.
 
-        new_possible : the tuples that may be absent. An `Unknown` when one of them, or an unknown value, may change it.
+        The result is an integer or a clingo symbol, without certain tuples clingo's Supremum (least) or Infimum. An
+        `Unknown`, with bounds where all values are numbers, when a tuple that may be absent, or an unknown value, may
+        change it.
+
+        new_possible : the tuples that may be absent, their values known.
         """
         least = self._function == "#min"
         best = clingo.Supremum if least else clingo.Infimum

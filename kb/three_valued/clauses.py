@@ -256,7 +256,7 @@ def translate_rule(rule: AST) -> list[Clause]:
 
 
 def place_of(node: AST) -> tuple[int, int]:
-    """Return the line and the column, both from 1, at which a part of a syntax tree begins."""
+    """Return the line and the column, both from 1, at which a part of clingo's syntax tree begins."""
     begin = node.location.begin
     return begin.line, begin.column
 
@@ -294,7 +294,11 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
-        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments."""
+        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments.
+
+        One literal for each of the nodes, in their order; () for none. An interval in an argument stands as a variable
+        of its own there, and its comparison is `variable = low..high`.
+        """
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals

@@ -74,6 +74,8 @@ def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
 def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
     """Return all predicates on which a predicate depends, directly or not; itself only if it depends on itself.
 
+    A predicate is (name, number of arguments).
+
     uses : predicate -> the predicates in the bodies of its clauses, as far as clauses define them.
     """
     found: set[Signature] = set()
@@ -98,7 +100,10 @@ def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
 
 
 def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
-    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals."""
+    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals.
+
+    In the order of the text, each as often as it appears. `body` are the literals of a rule.
+    """
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal

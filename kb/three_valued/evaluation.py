@@ -138,7 +138,11 @@ class _Search:
             yield given
 
     def passes(self, truth: TruthValue) -> bool:
-        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode."""
+        """Return whether a truth value suffices in this mode: True always, None (not known) in the possible mode.
+
+        False never suffices. The possible mode looks for what may hold once more is known, the certain mode for what
+        holds by the facts as they are believed now.
+        """
         return truth is True or (self.possible and truth is None)
 
     # ---- atoms ----
@@ -161,7 +165,11 @@ class _Search:
     ) -> Bindings | None:
         """Return the bindings, `given` included, with which all terms have the values of a row.
 
-        None when there are none. terms, row : of equal length. possible : whether values that may be equal count as
+        None when there are none. Bindings are the values of variables by name.
+
+        terms, row : the terms, and the value that each must have; of equal length.
+        given : the bindings before; they are not changed.
+        possible : whether values that may be equal count as
             equal.
         """
         found: Bindings | None = given
@@ -182,7 +190,9 @@ class _Search:
     def truth_of_negated(self, atom: Atom, given: Bindings) -> TruthValue:
         """Return the truth of an atom with `not`, or `not not`, before it; None when it is not known.
 
-        A variable `_` in it matches anything.
+        True when it certainly holds, False when it cannot. A variable `_` in it matches anything.
+
+        given : the values of the variables that are bound, by name.
         """
         held = self.truth_of_atom(atom, given)
         return held if held is None or atom.negations == 2 else not held
@@ -191,6 +201,8 @@ class _Search:
         """Return whether an atom, its negations left out, holds for some values of its unbound variables.
 
         True when it certainly does, False when it cannot; None when that is not known.
+
+        given : the values of the variables that are bound, by name.
         """
         if next(self.matches(atom, given, False), None) is not None:
             return True
@@ -199,7 +211,9 @@ class _Search:
     def settled_value(self, term: ClauseTerm, given: Bindings) -> Value:
         """Return the value of an argument; None when a variable in it is unbound, or its value is not known.
 
-        The value is an integer or a clingo symbol.
+        The value is an integer or a clingo symbol. ClauseError for arithmetic without a result.
+
+        term : the argument. given : the values of the variables that are bound, by name.
         """
         if set(variables_of(term)) <= given.keys():
             value = value_of(term, given)
@@ -230,14 +244,20 @@ class _Search:
         return given if self.may_equal(value_of(term, given), value, possible) else None
 
     def may_equal(self, a: Value, b: Value, possible: bool) -> bool:
-        """Return whether two values are certainly equal; with `possible`, whether they may be equal."""
+        """Return whether two values are certainly equal; with `possible`, whether they may be equal.
+
+        a, b : integers, clingo symbols or `Unknown` (a value not known).
+        """
         truth = compare("=", a, b, self.beliefs.known_names)
         return truth is True or (possible and truth is None)
 
     def unify_compound(self, term: Compound, value: Value, given: Bindings, possible: bool) -> Bindings | None:
         """Return the bindings, `given` included, with which a term with arguments has a value.
 
-        None when there are none. possible : whether an unknown value, that is no number and no new name, matches.
+        None when there are none. Bindings are the values of variables by name.
+
+        value : an integer, a clingo symbol or an `Unknown`.
+        possible : whether an unknown value, that is no number and no new name, matches.
         """
         if isinstance(value, Unknown):
             return given if possible and value.low is None and not value.new else None
@@ -302,6 +322,9 @@ class _Search:
         """Return whether all comparisons of a chain hold; when the chain is negated, whether one does not.
 
         None when that is not known.
+
+        literal : the chain `first sign term sign term ...`. given : the values of the variables that are bound, by
+            name.
         """
         truth: TruthValue = True
         left = literal.first
@@ -314,7 +337,11 @@ class _Search:
     def truth_of_pair(self, sign: str, left: ClauseTerm, right: ClauseTerm, given: Bindings) -> TruthValue:
         """Return the truth of one comparison; between intervals, whether it holds for some of their numbers.
 
-        None when it is not known. sign : the operator between left and right, in ASP syntax.
+        None when it is not known.
+
+        sign : the operator between left and right, in ASP syntax.
+        left, right : the terms, all of whose variables are bound.
+        given : the values of the variables that are bound, by name.
         """
         names = self.beliefs.known_names
         firsts, seconds = values_of(left, given), values_of(right, given)
@@ -362,7 +389,8 @@ class _Search:
     def satisfy_aggregate(self, literal: Aggregate, given: Bindings) -> Iterator[Bindings]:
         """Yield the bindings, `given` included, with which an aggregate holds or may hold; a guard `X = ...` binds X.
 
-        At most one is yielded. Raises ClauseError for a value beyond 32 bits.
+        At most one is yielded; in the certain mode none where the value that X would get is not certain. Bindings are
+        the values of variables by name. Raises ClauseError for a value beyond 32 bits.
         """
         outer = set(given)
         tally = Tally(literal.function)

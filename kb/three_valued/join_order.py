@@ -122,6 +122,8 @@ def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
 def _invertible(term: Operation, bound: set[str]) -> bool:
     """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result.
 
+    That operand is a variable, or again such arithmetic. False for all other operators.
+
     bound : the names of the bound variables.
     """
     open_ = [part for part in term.parts if not set(variables_of(part)) <= bound]

@@ -99,7 +99,8 @@ def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -
 def as_fact_term(value: Value) -> Term:
     """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check.
 
-    Its place is NO_PLACE. A value that no fact file can express becomes a name with its text.
+    It is a number, a text, or a name with its arguments. Its place is NO_PLACE, since it stands in no file. A value
+    that no fact file can express becomes a name with its text.
     """
     if isinstance(value, int):
         return Number(value, NO_PLACE)
@@ -130,7 +131,8 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
     """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out.
 
-    Nothing for a predicate that is not of the world model.
+    One pair for each such argument, in order. Nothing for a predicate that is not of the world model. An argument type
+    tells which terms fit, and its name for messages.
     """
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     for slot, part in zip(slots, atom.parts, strict=False):

@@ -50,7 +50,8 @@ def value_of(term: ClauseTerm, given: Bindings) -> Value:
 def number_of(term: ClauseTerm, given: Bindings) -> Value:
     """Return the value of a term that must be a number: an integer, or an `Unknown`.
 
-    Raises ClauseError for other values, and for an unbound variable. given : the values of variables, by name.
+    An `Unknown` stands for a number that is not known, and may have bounds. Raises ClauseError for other values, and
+    for an unbound variable. given : the values of variables, by name.
     """
     value = value_of(term, given)
     if isinstance(value, int | Unknown):
@@ -111,7 +112,7 @@ def from_clingo(value: clingo.Symbol) -> Value:
 
 
 def _ends(value: Value) -> list[int]:
-    """Return a number, or the bounds of a number that is not known, in a list; [] for all else."""
+    """Return a number, or the bounds (least, greatest) of a number that is not known, in a list; [] for all else."""
     if isinstance(value, Unknown):
         return [end for end in (value.low, value.high) if end is not None]
     return [value] if isinstance(value, int) else []

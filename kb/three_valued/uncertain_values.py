@@ -93,7 +93,7 @@ def bounds(value: Value) -> tuple[int, int] | None:
 def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
     """Return whether `a sign b` holds for numbers of which only bounds (least, greatest) are known.
 
-    None when that is not known.
+    True when it does for all numbers within these bounds, False when for none, else None. The bounds are included.
     """
     if sign in (">", ">="):
         return _within(MIRRORED_SIGNS[sign], b, a)
@@ -107,7 +107,9 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
 def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
     """Return whether two values certainly differ: a known name from a new thing, a number from anything else.
 
-    known : the names of all things seen.
+    False when they may be equal.
+
+    a, b : integers, clingo symbols or `Unknown`, at least one of them `Unknown`. known : the names of all things seen.
     """
     if (bounds(a) is None) != (bounds(b) is None):
         return True

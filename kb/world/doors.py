@@ -74,7 +74,7 @@ class DoorwayNecks(NamedTuple):
         """Return the squares where the narrowest line of a neck may be, wherever in their squares its walls end.
 
         These are squares about the neck where the floor is wider than the neck by at most WIDTH_UNCERTAINTY. The mask
-        is (rows, columns) bool on the view's arrays, row 0 in the south.
+        is (rows, columns) bool on the view's arrays, row 0 in the south. `neck` is one of `necks`, view frame.
         """
         mask = np.zeros(self.screen.shape, np.bool_)
         for column, row in self.screen.narrows(

@@ -112,7 +112,9 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 def _root_facts(model: WorldModel) -> Iterator[str]:
     """Yield the facts of the robot, the floor and the verge, without full stops.
 
-    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand.
+    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand. Offsets are hundredths of
+    squares, east and north in the robot frame: the robot's from where it woke, those of floor and verge from their
+    parent node. Confidences are percent.
     """
     east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ROOT_NODE})"
@@ -131,7 +133,8 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
 def _share_settled(model: WorldModel, kind: str) -> int:
     """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none.
 
-    `kind` is floor; any other word stands for verge.
+    It is rounded down; a square that the counts leave open counts as 0. `kind` is floor; any other word stands for
+    verge.
     """
     mask = model.floor if kind == "floor" else model.verge
     return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
@@ -149,6 +152,8 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of one object, its outline apart, without full stops.
 
     These are node/1, child/2, kind/3, offset/3, shape/3, colour/3, movable/2, and in/2 and adjacent/2 where they hold.
+    The offset is that of the middle of its squares from where the robot woke, in hundredths of squares, robot frame;
+    confidences are percent. `rooms` tells in which room the object's middle lies.
     """
     name = node.name
     yield f"node({name})"
@@ -172,7 +177,10 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
-    """Return whether an object may cover the robot's square or one of the 8 squares about it."""
+    """Return whether an object may cover the robot's square or one of the 8 squares about it.
+
+    The squares are those of the node's patch and of the robot's place in `model`, both in the map frame.
+    """
     row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
     return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
 
@@ -243,7 +251,7 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
 def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
     """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame.
 
-    The results are hundredths of squares, rounded.
+    The results are hundredths of squares from where the robot woke, rounded; `model` has the frame.
     """
     placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
     answer: Longs = np.rint(FACT_UNITS_PER_SQUARE * placed).astype(np.int64)

@@ -152,7 +152,10 @@ def seen_objects(
 
 
 def _may_be_object(region: Region, kinds: Kinds) -> bool:
-    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
+    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent.
+
+    Short enough is an extent of at most LONGEST_OBJECT squares. `kinds` has the confidences in what each region is.
+    """
     return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
 
 
@@ -338,8 +341,13 @@ def _felt_objects(
 
     Near are those that may cover one of the squares that the direction may name, or one of the 8 squares about these.
     An object whose colour is not known may have any. [] when floor is felt, or when the squares that the direction may
-    name are all settled as occupied. For the parameters see `within_reach`: `square` is the robot's own, map frame,
-    `direction` one of the eight DIRECTIONS of the robot frame.
+    name are all settled as occupied. The nodes come in the order of `objects`.
+
+    touches : what is felt now in each direction.
+    frame : the believed frame, which tells the squares that a direction may name.
+    occupancy : the map, with what the counts settle of each square.
+    square : the robot's own square (x, y), map frame.
+    direction : one of the eight DIRECTIONS of the robot frame.
     """
     colour = touches.felt_in(direction)
     x, y = square
@@ -392,7 +400,10 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return (rows, columns) probabilities of squares to be occupied, changed for the object."""
+        """Return (rows, columns) probabilities, 0 to 1, of squares to be occupied, changed for the object.
+
+        `chance` are those without it, on the view's arrays; a new array is returned.
+        """
         may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
         return np.where(sure, np.float32(1), np.where(open_, may, chance))
 

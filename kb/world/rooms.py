@@ -298,7 +298,10 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
 
 
 def _within(labels: Labels, columns: Longs, rows: Longs) -> Bools:
-    """Return which of some squares, given by index, lie within an array: (n,) bool."""
+    """Return which of some squares, given by index, lie within an array: (n,) bool.
+
+    columns, rows : (n,) indices, perhaps negative or too great. labels : the array, of which only the shape counts.
+    """
     inside: Bools = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
     return inside
 
