@@ -121,7 +121,8 @@ class _Reader:
     def facts(self) -> tuple[Fact, ...]:
         """Return all valid facts in order; problems are collected in `self.problems`.
 
-        It stops after `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
+        A fact is a name with its arguments, and its place; facts with errors are left out. It stops after
+        `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
         """
         found = []
         while self.peek.kind != "end" and len(self.problems) < MAX_PROBLEMS_PER_FILE:
@@ -135,7 +136,10 @@ class _Reader:
         return tuple(found)
 
     def take(self) -> Token:
-        """Return the next token and move on to the one after it; the token `end` is returned again and again."""
+        """Return the next token and move on to the one after it; the token `end` is returned again and again.
+
+        A token holds its kind (such as name, number or mark), its characters, and its place (line and columns from 1).
+        """
         token = self.peek
         self.peek = next(self._coming, token)
         return token
@@ -198,8 +202,9 @@ class _Reader:
     def symbol(self, depth: int) -> Symbol:
         """Read a name with its arguments, if there are any, and return it.
 
-        Raises _RefusedError, after recording a problem, for a syntax error. depth : the number of terms around it, 0
-        for a fact.
+        The result holds the name, the arguments as terms, and its place, which ends at the name where the bracket is
+        closed on another line. Raises _RefusedError, after recording a problem, for a syntax error. depth : the number
+        of terms around it, 0 for a fact.
         """
         name = self.take()
         if name.text in ASP_KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):

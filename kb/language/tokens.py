@@ -51,6 +51,8 @@ class Token(NamedTuple):
 def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
     """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
 
+    A token holds its kind, its characters, and its place: one line, columns from 1.
+
     source : the text.
     problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
     """

@@ -52,7 +52,10 @@ class SubcellExtent(NamedTuple):
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares.
+
+        Each side lies less than this further in; 1 for a side of which nothing is known.
+        """
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 

@@ -288,7 +288,7 @@ def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputEr
 
 @cache
 def _worker() -> Worker:
-    """Return the process that all users' rules of this process share; it is ended at exit."""
+    """Return the handle of the separate process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)
     return worker

@@ -77,7 +77,8 @@ class Worker:
 def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
     """Return a new process that is ready, and the queue of the lines that it writes.
 
-    Raises RuntimeError when it is not ready within MAX_START_SECONDS.
+    The queue has one entry of bytes a line, with its line end, and b"" when the process writes no more. Raises
+    RuntimeError when it is not ready within MAX_START_SECONDS.
     """
     worker = subprocess.Popen(
         isolated_command("kb.reasoning.query_worker"),

@@ -225,8 +225,8 @@ class _Search:
 
         The bindings include `given`; an unknown value of a bound variable is replaced by a known one that matches.
 
-        possible : whether values that may be equal count as equal. Else an unknown value matches nothing but an unbound
-            variable, which takes it.
+        possible : whether values that may be equal count as equal. Else an unknown value matches nothing but itself and
+            an unbound variable, which takes it.
         """
         if isinstance(term, Variable):
             before = given.get(term.name)

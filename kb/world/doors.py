@@ -165,8 +165,8 @@ def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> l
 def _sample_positions(line: Segment) -> Floats:
     """Return the positions on a line at which squares are looked up, as fractions of its length.
 
-    (n,) float64, ascending, two for each square of length, and two at least, each in the middle of its part of the
-    line.
+    (n,) float64 between 0 (its first end) and 1, ascending, two for each square of length, and two at least, each in
+    the middle of its part of the line. `line` is two points (x, y), in squares.
     """
     count = max(2, round(2 * math.dist(*line)))
     parts: Floats = (np.arange(count) + 0.5) / count

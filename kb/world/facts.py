@@ -282,7 +282,8 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of rooms and doors, without full stops.
 
     These are room/1, unseen/2 (the number of squares of the room that no count settles), in/2 for the robot, and for
-    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round.
+    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round. Rooms r1, r2,
+    ... come first, in order, then the doors in the order of `rooms`.
     """
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
