@@ -169,8 +169,7 @@ class _Search:
 
         terms, row : the terms, and the value that each must have; of equal length.
         given : the bindings before; they are not changed.
-        possible : whether values that may be equal count as
-            equal.
+        possible : whether values that may be equal count as equal.
         """
         found: Bindings | None = given
         for term, value in zip(terms, row, strict=True):
