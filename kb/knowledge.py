@@ -66,7 +66,11 @@ class Knowledge:
 
     @property
     def memory(self) -> TrackerState:
-        """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects."""
+        """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects.
+
+        Angles are degrees, places (x, y) in squares; the track is all observations, oldest first; held objects are all
+        that were ever held, by name, and `in_hand` is the name of the one in hand or None.
+        """
         return self.tracker.state
 
     def wake(self, impression: Impression) -> tuple[WorldModel, Accommodation]:
@@ -80,7 +84,9 @@ class Knowledge:
         Returns
         -------
         model : WorldModel
-            What is believed after it: an empty floor about the robot by default, changed as the impression says.
+            What is believed after it: the frame, the robot's place (x, y) in squares, map frame, the map view, its
+            regions, and the objects as nodes. An empty floor about the robot by default, changed as the impression
+            says.
         accommodated : Accommodation
             How the impression was explained: the chosen explanation, and the status (predicted, explained or noise) of
             each of its 160 fields.
@@ -105,7 +111,9 @@ class Knowledge:
         Returns
         -------
         model : WorldModel
-            The new world model. When localisation failed with empty hands, the map is forgotten and a new one begun.
+            The new world model: the frame, the robot's place (x, y) in squares, map frame, the map view, its regions,
+            and the objects as nodes. When localisation failed with empty hands, the map is forgotten and a new one
+            begun.
         accommodated : Accommodation
             The chosen explanation of what happened (such as predicted, blocked or slipped), and the status (predicted,
             explained or noise) of each of the 160 fields. Its kind is `lost` when the map was forgotten.
@@ -138,7 +146,8 @@ class Knowledge:
         Returns
         -------
         model : WorldModel
-            The new world model.
+            The new world model, of the new map: the frame, the robot's place (x, y) in squares, map frame, the map
+            view, its regions, and the objects as nodes.
         accommodated : Accommodation
             How the impression was explained, and the status of each of its 160 fields.
 
@@ -168,8 +177,9 @@ class Knowledge:
     def _update(self, impression: Impression, accommodated: Accommodation) -> tuple[WorldModel, Accommodation]:
         """Return the world model after an impression that localisation has taken in already.
 
-        `accommodated`, how localisation explained it, is returned as given. Changes the touches, the names of objects,
-        the completions, the tracker's held objects and `objects`.
+        `accommodated`, how localisation explained it and the status of each of the 160 fields, is returned as given.
+        The model holds the objects, those with the lower number in their names first. Changes the touches, the names of
+        objects, the completions, the tracker's held objects and `objects`.
         """
         if accommodated.explanation.remaps:  # all squares are those of another frame now
             self._touches.forget_squares()
@@ -181,7 +191,10 @@ class Knowledge:
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
-        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover."""
+        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover.
+
+        `impression` has these colours, clockwise from north in the robot frame. Changes the touches alone.
+        """
         memory = self.memory
         held = {square for load in memory.held_objects.values() for square in load.possible.squares()}
         self._touches.feel(impression.touch, memory.frame, memory.square, held)
@@ -189,7 +202,9 @@ class Knowledge:
     def _map(self) -> MapView:
         """Return the map view: counts solved, and probabilities of open squares from completions drawn anew.
 
-        A completion is a sampled map that agrees with all counts of the impressions. The new ones are kept for the next
+        The view holds (rows, columns) arrays, row 0 in the south, and the square of the map frame at [0, 0]: the
+        probability of each square to be occupied, its state as the counts settle it, and which squares were seen. A
+        completion is a sampled map that agrees with all counts of the impressions. The new ones are kept for the next
         call, and by the tracker.
         """
         memory = self.memory
@@ -206,7 +221,9 @@ class Knowledge:
         """Return the regions of the map and what each of them is, as seen and as felt.
 
         Squares that are occupied with a probability above MAX_FREE_PROBABILITY form occupied regions, all other seen
-        squares free ones.
+        squares free ones. The result holds the regions `part<n>`, the number n of each square's region on the arrays of
+        the map view (0 where nothing was seen), and the confidences in percent in what each region is. Things felt to
+        stand against the verge are regions of their own, with the greatest numbers.
         """
         occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
         percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
@@ -218,7 +235,11 @@ class Knowledge:
     def _world(
         self, impression: Impression, accommodated: Accommodation, view: MapView, regions: MapRegions
     ) -> WorldModel:
-        """Return the world model without objects, from the tracker, the touches, the map view and its regions."""
+        """Return the world model without objects, from the tracker, the touches, the map view and its regions.
+
+        It holds the frame, the robot's place (map frame, in squares), the view, the regions and what they are taken
+        for, and the colours felt. `accommodated` tells whether fields of the impression contradict what is believed.
+        """
         memory = self.memory
         return WorldModel(
             memory.frame,
@@ -246,7 +267,8 @@ class Knowledge:
     def _with_objects(self, model: WorldModel) -> WorldModel:
         """Return a world model with its objects: those seen on the map, and those that were held.
 
-        Those that were held are laid upon the map as regions of their own. Also keeps all objects in `objects`, by
+        Those that were held are laid upon the map as regions of their own, each with the greatest number so far. The
+        objects are nodes, sorted by the number in their names. Also keeps all objects in `objects`, by
         number, and gives the tracker those of held objects whose shape had to be measured anew.
         """
         held = self.memory.held_objects

@@ -47,6 +47,8 @@ def abbreviated(term: Term) -> str:
 def integer_argument(name: str, low: int, high: int) -> ArgumentType:
     """Return the type of integers from `low` to `high`, both included.
 
+    It holds the name, a check that returns the complaint about a term (None when the term fits), and the limits.
+
     name : what the argument is called in messages, with its article, such as `a count`.
     """
 
@@ -64,6 +66,8 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
 def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
     """Return the type of the names in `known`: no other name fits.
 
+    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
+
     name : what the argument is called in messages, without an article, such as `shape`.
     """
     words = tuple(known)
@@ -79,7 +83,7 @@ def word_argument(name: str, known: Iterable[str]) -> ArgumentType:
 
 
 def _check_name(term: Term) -> Complaint | None:
-    """Return a complaint unless the term is a name without arguments; None when it is one."""
+    """Return a complaint (place, message, hint) unless the term is a name without arguments; None when it is one."""
     if isinstance(term, Symbol) and not term.args:
         return None
     hint = f"write {term.value.lower()} without quotes" if isinstance(term, Text) and term.value.isidentifier() else ""
@@ -87,7 +91,7 @@ def _check_name(term: Term) -> Complaint | None:
 
 
 def _check_colour(term: Term) -> Complaint | None:
-    """Return a complaint unless the term is one lower-case letter; None when it is one."""
+    """Return a complaint (place, message, hint) unless the term is one lower-case letter; None when it is one."""
     if isinstance(term, Symbol) and not term.args and len(term.name) == 1 and term.name.isalpha():
         return None
     return Complaint(term.span, f"a colour is a single lower-case letter, not {abbreviated(term)}")
@@ -95,6 +99,8 @@ def _check_colour(term: Term) -> Complaint | None:
 
 def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
     """Return the type of the names that match a regular expression as a whole, such as o1 for `o[0-9]+`.
+
+    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
 
     name : the name of the argument in messages, without an article.
     pattern : the expression.
@@ -113,6 +119,9 @@ def pattern_argument(name: str, pattern: str, such_as: str) -> ArgumentType:
 
 def wkt_argument(name: str, *kinds: str) -> ArgumentType:
     """Return the type of quoted shapes in well-known text, coordinates in squares.
+
+    It holds the name and a check that returns the complaint about a term, at the character where its text goes wrong;
+    None when the term fits.
 
     name : what the argument is called in messages, with its article.
     kinds : the kinds of shapes that fit, at least one of POINT, LINESTRING, POLYGON and MULTIPOLYGON.

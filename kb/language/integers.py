@@ -29,7 +29,8 @@ def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
 
     Yields
     ------
-    One problem an integer, in the order of the text.
+    One problem an integer, in the order of the text: the file, the place of the integer, the message, the source line
+    and a hint.
     """
     ahead, before = "(", "("
     for token in tokenize(source, []):

@@ -37,7 +37,8 @@ def read_facts(path: Path | str) -> tuple[Source, tuple[Fact, ...]]:
 
     Returns
     -------
-    The source text, and the facts in the order of the file.
+    The source (the file's name and its text), and the facts in the order of the file: each a name with its arguments,
+    and its place.
 
     Raises
     ------
@@ -58,7 +59,7 @@ def facts_from_text(text: str, file: str = "input") -> tuple[Fact, ...]:
 
     Returns
     -------
-    The facts in the order of the text.
+    The facts in the order of the text, each a name with its arguments and its place (line and columns from 1).
 
     Raises
     ------
@@ -81,7 +82,8 @@ def parse_facts(source: Source) -> tuple[Fact, ...]:
 
     Returns
     -------
-    The facts. Only the syntax is checked; `kb.language.vocabulary.check_facts` checks predicates and arguments.
+    The facts, each a name with its arguments (numbers, texts, names) and its place. Only the syntax is checked;
+    `kb.language.vocabulary.check_facts` checks predicates and arguments.
 
     Raises
     ------
@@ -119,7 +121,8 @@ class _Reader:
     def facts(self) -> tuple[Fact, ...]:
         """Return all valid facts in order; problems are collected in `self.problems`.
 
-        It stops after `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
+        A fact is a name with its arguments, and its place; facts with errors are left out. It stops after
+        `MAX_PROBLEMS_PER_FILE` problems, and beyond `MAX_FACTS` facts, which is a problem itself.
         """
         found = []
         while self.peek.kind != "end" and len(self.problems) < MAX_PROBLEMS_PER_FILE:
@@ -133,7 +136,10 @@ class _Reader:
         return tuple(found)
 
     def take(self) -> Token:
-        """Return the next token and move on to the one after it; the token `end` is returned again and again."""
+        """Return the next token and move on to the one after it; the token `end` is returned again and again.
+
+        A token holds its kind (such as name, number or mark), its characters, and its place (line and columns from 1).
+        """
         token = self.peek
         self.peek = next(self._coming, token)
         return token
@@ -151,12 +157,16 @@ class _Reader:
                 return
 
     def refuse(self, token: Token, what: str, hint: str = "") -> _RefusedError:
-        """Record a problem at a token, and return the exception to raise."""
+        """Record a problem at a token, and return the exception that the caller raises.
+
+        what : the message. hint : a remedy, or '' for none. The exception carries nothing: the problem is in
+            `problems`.
+        """
         self.problems.append(self.source.problem(token.span, what, hint))
         return _RefusedError()
 
     def fact(self) -> Fact:
-        """Read one fact with its full stop, and return it.
+        """Read one fact with its full stop, and return it: a name with its arguments and its place.
 
         Raises _RefusedError, after recording a problem, where something else stands.
         """
@@ -170,7 +180,9 @@ class _Reader:
         return fact
 
     def term(self, depth: int) -> Term:
-        """Read one term, and return it. depth : the number of terms around it.
+        """Read one term, and return it: a number, a text, or a name with its arguments.
+
+        depth : the number of terms around it.
 
         Raises _RefusedError, after recording a problem, where something else stands or the terms are nested too deep.
         """
@@ -190,8 +202,9 @@ class _Reader:
     def symbol(self, depth: int) -> Symbol:
         """Read a name with its arguments, if there are any, and return it.
 
-        Raises _RefusedError, after recording a problem, for a syntax error. depth : the number of terms around it, 0
-        for a fact.
+        The result holds the name, the arguments as terms, and its place, which ends at the name where the bracket is
+        closed on another line. Raises _RefusedError, after recording a problem, for a syntax error. depth : the number
+        of terms around it, 0 for a fact.
         """
         name = self.take()
         if name.text in ASP_KEYWORDS and (depth or self.peek.kind not in ("name", "variable")):
@@ -240,7 +253,7 @@ class _Reader:
         return Number(value, span)
 
     def not_a_fact(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no fact begins; its problem is recorded."""
+        """Return, not raise, the error for a token with which no fact begins; its problem is recorded."""
         if token.kind == "directive":
             return self.refuse(token, f"{token.text} is a directive; a fact file holds facts alone")
         if token.kind == "variable":
@@ -256,7 +269,7 @@ class _Reader:
         return self.refuse(token, f"a fact was expected, {token.in_words} found")
 
     def not_the_end(self, fact: Fact, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where the full stop of `fact` belongs; its problem is recorded."""
+        """Return, not raise, the error for a token where the full stop of `fact` belongs; its problem is recorded."""
         if token.text == ":-":
             return self.refuse(token, "a rule; a fact file holds facts alone", "remove everything from :- on")
         if token.text in (",", ";", "|", ":"):
@@ -268,7 +281,7 @@ class _Reader:
         return self.refuse(token, f"a full stop was expected after the fact, {token.in_words} found")
 
     def not_a_term(self, token: Token) -> _RefusedError:
-        """Return the error for a token with which no term begins; its problem is recorded."""
+        """Return, not raise, the error for a token with which no term begins; its problem is recorded."""
         if token.kind == "variable":
             what = f"{token.text} is a variable; facts have none"
             return self.refuse(token, what, f'write {_lower_case_name(token.text)}, or "{token.text}" for a text')
@@ -277,7 +290,7 @@ class _Reader:
         return self.refuse(token, f"a term was expected, {token.in_words} found")
 
     def not_closed(self, token: Token) -> _RefusedError:
-        """Return the error for a token that stands where ',' or ')' belongs; its problem is recorded."""
+        """Return, not raise, the error for a token where ',' or ')' belongs; its problem is recorded."""
         if token.text in ("..", ";", "+", "-", "*", "/", "**", "|", "&", "?", "^", "\\", "@"):
             return self.refuse(token, f"{token.in_words}: intervals, pools and sums are not facts", "write them out")
         return self.refuse(token, f"',' or ')' was expected, {token.in_words} found")

@@ -43,9 +43,10 @@ class Source:
         return [line.removesuffix("\r") for line in self.text.split("\n")]
 
     def problem(self, span: SourceSpan, what: str, hint: str = "") -> Problem:
-        """Return the problem `what` at `span`, with the source line and the hint ('' for none).
+        """Return the problem `what` at `span`, with the file's name, the source line and the hint ('' for none).
 
-        When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
+        It is returned, not raised. `span` is a line and its columns, from 1; beyond the last line no source line is
+        shown. When the text is hidden, the message is HIDDEN_TEXT_MESSAGE instead, and no source line is shown.
         """
         if self.hide_text:
             return Problem(
@@ -68,7 +69,7 @@ def read_source(path: Path | str) -> Source:
 
     Returns
     -------
-    The text with the file's name; it is hidden in messages when the file is a link out of its folder.
+    The whole text with the file's name; it is hidden in messages when the file is a link out of its folder.
 
     Raises
     ------
@@ -157,7 +158,8 @@ def read_bytes(path: str, most: int) -> bytes:
 def _disallowed_characters(source: Source) -> list[Problem]:
     """Return one problem for each run of equal characters on a line that are not allowed in users' text files.
 
-    In the order of the text, MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
+    A problem holds the file, the place, the message, the source line and a hint. In the order of the text,
+    MAX_PROBLEMS_PER_FILE at most; [] when all are allowed: printable ASCII, tabs and line
     ends.
     """
     if source.text.isascii() and source.text.translate(_ALLOWED) == "":

@@ -51,6 +51,8 @@ class Token(NamedTuple):
 def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
     """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
 
+    A token holds its kind, its characters, and its place: one line, columns from 1.
+
     source : the text.
     problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
     """
@@ -78,7 +80,10 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
 
 
 def _block_end(text: str, start: int) -> int:
-    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed."""
+    """Return the index after the block comment that begins at `start` (comments nest); -1 when it is never closed.
+
+    Indices are those of characters of the whole `text`, from 0.
+    """
     depth = 0
     for edge in BLOCK_COMMENT_MARK.finditer(text, start):
         depth += 1 if edge.group() == "%*" else -1

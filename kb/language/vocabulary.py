@@ -58,6 +58,8 @@ EXPECTATION_VOCABULARY: Vocabulary = {
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
     """Return the type of a name or of `name(argument)`, such as corner(northeast).
 
+    It holds a name for messages, and a check that returns the complaint about a term, or None when the term fits.
+
     name : the name that takes an argument.
     argument : the type of its one argument.
     otherwise : an example of the inner argument, for hints.
@@ -82,7 +84,9 @@ def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType
 def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
     """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G).
 
-    name : what the argument is called in messages. The first complaint about the fact is that about the argument.
+    The type holds the name and a check: it returns the first complaint about the fact, or None when it is valid.
+
+    name : what the argument is called in messages. vocabulary : the types of the arguments by predicate.
     """
 
     def check(term: Term) -> Complaint | None:
@@ -225,7 +229,8 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 
     Returns
     -------
-    The problems in the order of the facts; [] when all facts are valid.
+    The problems (file, place, message, source line, hint) in the order of the facts: one for an unknown predicate or a
+    wrong number of arguments, else one for each argument that does not fit; [] when all facts are valid.
     """
     return [source.problem(*complaint) for fact in facts for complaint in _complaints(fact, vocabulary)]
 
@@ -233,7 +238,10 @@ def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -
 def _complaints(fact: Fact, vocabulary: Vocabulary) -> list[Complaint]:
     """Return the complaints about one fact; [] when it is valid.
 
-    One for an unknown predicate or a wrong number of arguments; else one for each argument that does not fit, in order.
+    A complaint is a place (line and columns from 1), a message and a hint. One for an unknown predicate or a wrong
+    number of arguments; else one for each argument that does not fit, in order.
+
+    vocabulary : the types of the arguments by the name of the predicate.
     """
     types = vocabulary.get(fact.name)
     if types is None:

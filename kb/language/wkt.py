@@ -121,7 +121,10 @@ class _Reader:
         self.next = 0
 
     def take(self) -> _Token:
-        """Return the next word and move on; the word after the last one is ''."""
+        """Return the next word and move on; the word after the last one is '', and returned again and again.
+
+        It holds the word, a mark or characters between marks and blanks, and the index of its first character, from 0.
+        """
         token = self.tokens[self.next]
         self.next += bool(token.text)
         return token

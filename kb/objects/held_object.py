@@ -137,7 +137,7 @@ class HeldObject:
         """The possible insets of its sides as it lies now; None when its sides are not parallel to the grid.
 
         An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the
-        side.
+        side; the result holds the least and the greatest one of the west, east, south and north sides.
         """
         quarters = self._quarters
         return None if self.insets is None or quarters is None else self.insets.after(quarters)
@@ -147,7 +147,7 @@ class HeldObject:
         """The distance by which each side may lie further in than believed, in squares.
 
         The values are those of its west, east, south and north sides, as it lies now. Where no insets are known, all
-        are `play`.
+        are `play`: how far the true outline may lie from the believed one.
         """
         insets = self.lying_insets
         return (self.play, self.play, self.play, self.play) if insets is None else insets.short
@@ -160,14 +160,22 @@ class HeldObject:
 
     @cached_property
     def sure(self) -> Patch:
-        """The squares that it surely covers, map frame; a patch without squares when there are none."""
+        """The squares that it surely covers, map frame; a patch without squares when there are none.
+
+        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
+        south.
+        """
         inner = self._bound(1) if self.play else self.polygon
         patch = EMPTY_PATCH if inner.is_empty else patch_of_polygon(inner)
         return patch if not self.full else patch_of_squares(patch.squares() | self.full)
 
     @cached_property
     def possible(self) -> Patch:
-        """The squares that it covers or may cover, those of `sure` included; map frame."""
+        """The squares that it covers or may cover, those of `sure` included; map frame.
+
+        The patch holds the square (west, south) at [0, 0] of its mask, and the (rows, columns) mask, row 0 in the
+        south.
+        """
         if not self.play:
             return self.sure
         patch = patch_of_polygon(self._bound(-1))
@@ -177,7 +185,7 @@ class HeldObject:
         """Return the smallest possible outline (inwards 1), or the greatest (-1): a shapely polygon, map frame.
 
         What is known of each side is used where no motion ended early; else the believed outline shrinks or grows by
-        `play` all round. The smallest one may be empty.
+        `play` squares all round, its corners kept sharp. The smallest one may be empty, or several polygons.
         """
         insets = self.lying_insets
         if insets is not None and not self.stopped and self.play <= max(insets.play, COMMAND_ROUNDING):
@@ -200,8 +208,15 @@ class HeldObject:
         degrees : float
             By how much it was turned by this motion, counter-clockwise positive.
         commanded : bool
-            Whether the motion went all the way. An object that was stopped lies close beside a grid line as often as
-            on it.
+            Whether the motion went all the way; if not, the object counts as `stopped` from now on, and its bounds are
+            the outline grown or shrunk by `play` all round. An object that was stopped lies close beside a grid line as
+            often as on it.
+
+        Returns
+        -------
+        HeldObject
+            A new object there, map frame: turned by `degrees` more, seen to move, with no motion in a row that failed,
+            and without squares seen to be covered or not.
         """
         stopped, turned = self.stopped or not commanded, self.turned + degrees
         return replace(self.lying(polygon, slack), turned=turned, proven=True, stuck=0, stopped=stopped)
@@ -217,6 +232,12 @@ class HeldObject:
         otherwise : float
             How far the true outline may lie from that, in squares. An outline with all corners on the grid is taken
             for exact, unless its place is known only roughly or its sides may lie further in or out.
+
+        Returns
+        -------
+        HeldObject
+            A new object with that outline, map frame, its tolerance as `slack` in squares, and no squares seen to be
+            covered or not; all else as before.
         """
         nothing: frozenset[Square] = frozenset()
         placed = snap_to_grid(polygon)
@@ -243,7 +264,8 @@ class HeldObject:
         Returns
         -------
         HeldObject
-            The object itself when no open square was seen alone in a field.
+            A new object, at the same place, with more squares in `full` and `empty`, map frame; the object itself when
+            no open square was seen alone in a field.
         """
         single = (samples.weight.sum(1) == 1) & (samples.slack == 0)
         open_ = self.possible.squares() - self.sure.squares()
@@ -269,8 +291,10 @@ class HeldObject:
         Returns
         -------
         HeldObject or None
-            None when the impression agrees with no outline of possible insets, or when insets say nothing of it: it
-            lies askew, its place is known only roughly, or its outline is of another frame.
+            A new object with narrower insets and its sides, now and where it first lay, moved to where they are then
+            believed to be; map frame. None when the impression agrees with no outline of possible insets, or when
+            insets say nothing of it: it lies askew, its place is known only roughly, or its outline is of another
+            frame.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None or self.inexact or self.skewed or self.astray > COMMAND_ROUNDING:
@@ -292,7 +316,9 @@ class HeldObject:
         Returns
         -------
         HeldObject or None
-            None when the result would be no outline, or when its sides are not parallel to the grid.
+            A new object whose outline, now and where it first lay (map frame), and tolerance fit the insets; with the
+            same outline when the believed insets do not change. None when the result would be no outline, or when its
+            sides are not parallel to the grid.
         """
         quarters = self._quarters
         if self.insets is None or quarters is None:
@@ -309,7 +335,8 @@ class HeldObject:
     def woken(self, far: float) -> "HeldObject":
         """Return the object if the point where the robot woke is known within a distance: it bounds the turns' centre.
 
-        Only `astray` changes: to the length, in squares, by which its rotation moves a point that is so far off.
+        A new object of which only `astray` differs: it becomes the length, in squares, by which its rotation moves a
+        point that is so far off.
 
         Parameters
         ----------
@@ -319,7 +346,10 @@ class HeldObject:
         return replace(self, astray=2 * far * abs(math.sin(math.radians(self.turned / 2))))
 
     def resisted(self) -> "HeldObject":
-        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one."""
+        """Return the object after a motion that it was expected to make and did not: `stuck` is greater by one.
+
+        A new object at the same place; `stuck` counts the last motions in a row that did not move it.
+        """
         return replace(self, stuck=self.stuck + 1)
 
 
@@ -360,7 +390,8 @@ def snap_to_grid(polygon: Any) -> Any:
 def is_grid_aligned(polygon: Any) -> bool:
     """Return whether all corners of a shapely geometry of the map frame lie on corners of the grid.
 
-    Corners of the grid have whole coordinates, in squares; they may be missed by less than GRID_CORNER_TOLERANCE.
+    `polygon` is not empty. Corners of the grid have whole coordinates, in squares; they may be missed by less than
+    GRID_CORNER_TOLERANCE.
     """
     points = shapely.get_coordinates(polygon)
     return bool(np.abs(points - np.rint(points)).max() < GRID_CORNER_TOLERANCE)
@@ -383,8 +414,10 @@ def outline_tolerance(polygon: Any, otherwise: float = OUTLINE_TOLERANCE) -> flo
 def initial_insets(polygon: Any) -> SubcellExtent | None:
     """Return the possible insets of the sides of an object that never moved; None when it is not on the grid.
 
-    `polygon` is its believed outline, a shapely Polygon, map frame, or None when there is none; then the result is
-    None. On the grid every side may lie from 0 to less than 1 square further in.
+    An inset is the distance, in squares, from the outer line of the squares in which it was seen, inwards to the side;
+    the result holds the least and the greatest one of the west, east, south and north sides. `polygon` is its believed
+    outline, a shapely Polygon, map frame, or None when there is none; then the result is None. On the grid every side
+    may lie from 0 to less than 1 square further in.
     """
     return SubcellExtent() if polygon is not None and is_grid_aligned(polygon) else None
 
@@ -418,7 +451,7 @@ def subtract_held_objects(
     x, y : int
         The square on which the impression was received, map frame.
     loads : iterable of HeldObject
-        The objects.
+        The objects that were held, where they are believed to lie, map frame.
 
     Returns
     -------

@@ -46,7 +46,8 @@ def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInte
     Returns
     -------
     (SideInterval, SideInterval) or None
-        The side from west to east, then that from south to north. None for all that is no rectangle parallel to the
+        The side from west to east, then that from south to north: of each its length as the outline has it, and the
+        least and the greatest length possible. None for all that is no rectangle parallel to the
         grid, and when an argument is None.
     """
     if polygon is None or insets is None:
@@ -61,7 +62,9 @@ def side_intervals(polygon: Any, insets: SubcellExtent | None) -> tuple[SideInte
 def _side_interval(length: float, insets: SubcellExtent, axis: int) -> SideInterval:
     """Return the interval of a side believed to be `length` squares long; axis 0 is west-east, axis 2 south-north.
 
-    The axis is the index of the first of the side's two ends in the order west, east, south, north.
+    It holds the believed, the least and the greatest length, in squares. `insets` tells how far the four sides may lie
+    within the squares in which the object was seen. The axis is the index of the first of the side's two ends in the
+    order west, east, south, north.
     """
     here, least, most = (sum(sides[axis : axis + 2]) for sides in (insets.believed, insets.least, insets.most))
     return SideInterval(length, length + here - most, length + here - least)

@@ -57,8 +57,10 @@ class ShapeMeasurer:
         Returns
         -------
         ShapeMeasurement
-            Without fits and polygon when no square counts as covered, or more than MAX_OPEN_RATIO others for each that
-            does. `open` and `full` count the squares of the patch by the map alone.
+            Which shape classes fit and the number of squares that each leaves wrong, the likeliest first; the outline
+            of the first one (shapely Polygon, map frame, in squares); and how many squares of the patch the counts
+            leave open, and settle as covered, probabilities left out. () and None for the first two when no square
+            counts as covered, or more than MAX_OPEN_RATIO others for each that does.
         """
         row, column = patch.south - view.south, patch.west - view.west
         part = (slice(row, row + patch.mask.shape[0]), slice(column, column + patch.mask.shape[1]))
@@ -71,11 +73,19 @@ class ShapeMeasurer:
         return self._measured(patch, full, possible)._replace(open=int(open_.sum()), full=int(settled.sum()))
 
     def measure_whole(self, patch: Patch) -> ShapeMeasurement:
-        """Measure a patch all of whose squares are known to be covered; map frame. `open` of the result is 0."""
+        """Measure a patch, map frame, all of whose squares are known to be covered; at least one.
+
+        The result holds the shape classes that fit with the number of squares that each leaves wrong, the likeliest
+        first, the outline of the first one (shapely Polygon, map frame, in squares), 0 open squares, and the number of
+        squares of the patch.
+        """
         return self._measured(patch, patch.mask, np.zeros_like(patch.mask))
 
     def _measured(self, patch: Patch, full: Bools, possible: Bools) -> ShapeMeasurement:
         """Return the fits of a patch, the outline of the first of them in the map frame, and the counts of both masks.
+
+        Fits are pairs (shape class, number of squares that it leaves wrong), the likeliest class first; the outline is
+        a shapely Polygon in squares; `open` is the number of squares of `possible`, `full` that of `full`.
 
         `full` and `possible` are (rows, columns) masks, on the patch's own array, of its squares that are covered, and
         of those that may be.

@@ -52,7 +52,10 @@ class SubcellExtent(NamedTuple):
 
     @property
     def short(self) -> SideValues:
-        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares."""
+        """The distance by which each side (west, east, south, north) may lie further in than believed, in squares.
+
+        Each side lies less than this further in; 1 for a side of which nothing is known.
+        """
         west, east, south, north = (most - here for most, here in zip(self.most, self.believed, strict=True))
         return west, east, south, north
 
@@ -75,8 +78,8 @@ class SubcellExtent(NamedTuple):
     def after(self, quarters: int) -> "SubcellExtent":
         """Return the insets of the sides as they lie after a number of quarter turns, counter-clockwise positive.
 
-        The values are sorted anew: what was the inset of the east side is that of the north side after one quarter
-        turn.
+        The least and the greatest inset of each side, in squares, are sorted anew: what was the inset of the east side
+        is that of the north side after one quarter turn.
         """
         return SubcellExtent(turn_sides(self.least, quarters), turn_sides(self.most, quarters))
 
@@ -110,7 +113,9 @@ def turn_sides(sides: SideValues, quarters: int) -> SideValues:
 def inset_change(to: SubcellExtent, since: SubcellExtent) -> SideValues:
     """Return by how much further in the sides are believed to lie in `to` than in `since`, in squares.
 
-    The values are those of west, east, south and north, negative for further out.
+    The values are those of west, east, south and north, negative for further out. Both arguments hold the least and the
+    greatest inset of the sides (distance inwards from the outer line of the squares in which the object was seen) as
+    the object lies in one and the same orientation.
     """
     west, east, south, north = (new - old for new, old in zip(to.believed, since.believed, strict=True))
     return west, east, south, north
@@ -211,8 +216,10 @@ def narrowed(insets: SubcellExtent, polygon: Any, agrees: Callable[[Any], bool])
     Returns
     -------
     SubcellExtent or None
-        What is possible after it, for the sides as they lie at the impression: never more than before.
-        None when the impression agrees with no possible outline.
+        The least and the greatest inset possible after it, in squares, of the west, east, south and north sides as they
+        lie at the impression: never more than before. Where several outlines agree, the narrowest bounds that hold all
+        of them; `insets` itself when the impression agrees and can show nothing. None when the impression agrees with
+        no possible outline.
     """
     west, east, south, north = insets.believed
     x0, y0, x1, y1 = polygon.bounds

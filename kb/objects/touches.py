@@ -63,7 +63,8 @@ class Touches:
     def felt_in(self, direction: str) -> str | None:
         """Return the colour felt now in one of the eight DIRECTIONS of the robot frame.
 
-        None for floor, and before the first impression. Another direction raises ValueError.
+        The colour is one lower-case letter; None for floor, and before the first impression. Another direction raises
+        ValueError.
         """
         return self.current[DIRECTIONS.index(direction)] if self.current else None
 

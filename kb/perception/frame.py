@@ -151,7 +151,12 @@ class Frame:
         return {square: direction for square, direction in named if square is not None}
 
     def samples(self) -> Samples:
-        """Return the squares that each field of the retina samples: offsets from the robot's own square, map frame."""
+        """Return the squares that each field of the retina samples: offsets from the robot's own square, map frame.
+
+        The result holds (160, 16) arrays of columns and rows (squares to the east and to the north), the weight of each
+        (how often it is sampled, 0 for padding), and for each field how many samples fall between two squares. Row n is
+        field n, in the order of an impression. It is cached: nobody may change the arrays.
+        """
         return _samples(self.angle)
 
 
@@ -190,8 +195,9 @@ def turned(x: Coordinate, y: Coordinate, degrees: float) -> tuple[Coordinate, Co
 def _samples(angle: int) -> Samples:
     """Return the squares that each field samples when the robot frame is turned by `angle` degrees.
 
-    The angle is that against the map frame, counter-clockwise positive. The result is cached: nobody may change its
-    arrays.
+    The angle is that against the map frame, counter-clockwise positive. The result holds (160, 16) columns and rows,
+    offsets in squares from the robot's own square, map frame, their weights, and (160,) samples that fall between two
+    squares; the squares of a field come by column, then by row. It is cached: nobody may change its arrays.
     """
     owner, east, north = _field_offsets()
     c, s = turned(1.0, 0.0, angle)
@@ -213,8 +219,9 @@ def _samples(angle: int) -> Samples:
 def _field_offsets() -> Ints:
     """Return the offsets under the retina, but the robot's own square: (3, 1023) int32.
 
-    The rows are the number of the field that covers the offset, and squares to the east and to the north of the robot's
-    own square, robot frame. Cached: nobody may change it.
+    Each column is one square, by the number of its field, then by east, then by north. The rows are the number of the
+    field that covers the offset, and squares to the east and to the north of the robot's own square, robot frame.
+    Cached: nobody may change it.
     """
     offsets = [
         (number, east, north)

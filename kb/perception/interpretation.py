@@ -85,8 +85,9 @@ def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (),
     Returns
     -------
     Kinds
-        The confidences in percent; empty when the encodings have no answer. Where one kind is derived several times,
-        the greatest confidence counts.
+        For each region, by name, the confidence in percent in each kind that is derived for it, and the pairs of free
+        regions that must be connected by unseen floor; both empty when the encodings have no answer. Where one kind is
+        derived several times, the greatest confidence counts.
 
     Raises
     ------

@@ -74,7 +74,10 @@ def impression_regions(levels: tuple[int, ...]) -> tuple[Percept, dict[str, froz
     Returns
     -------
     percept : Percept
-        The regions: `own` first, then `cells1`, `cells2`, ... by the least number of their fields.
+        The regions: `own` first, then `cells1`, `cells2`, ... by the least number of their fields; each with its name,
+        whether it is occupied, the percent of its squares that are surely so, whether it touches the retina's edge, its
+        longer side in squares, and its mass in tenths of squares. Then the pairs of names of regions that share an
+        edge, and the pairs (outer, inner) of those that surround each other.
     cells : dict of str to frozenset of int
         Name of a region -> the numbers of its fields (0 to 159, in the order of an impression), in the same order.
 
@@ -115,7 +118,10 @@ def map_regions(
     Returns
     -------
     percept : Percept
-        The regions in the order of their numbers, named `part<n>`: free regions first, from 1, then occupied ones.
+        The regions in the order of their numbers, named `part<n>`: free regions first, from 1, then occupied ones. Each
+        with whether it is occupied, the percent of its squares that are settled, whether it touches what was not seen,
+        its longer side in squares, and its mass in tenths of squares. Then the pairs of names of regions that share an
+        edge, and the pairs (outer, inner) of those that surround each other.
     labels : (rows, columns) int32
         The number n of each square's region; 0 where nothing was seen.
     """
@@ -160,8 +166,11 @@ def _grow(first: int, among: set[int], levels: tuple[int, ...]) -> set[int]:
 def _cell_region(name: str, members: Iterable[int], levels: tuple[int, ...], ranges: NDArray[np.int16]) -> Region:
     """Return the region formed by some cells of an impression.
 
-    `members` are the numbers of its fields, at least one, all free or all occupied; `levels` the 160 gray levels;
-    `ranges` the (160, 2) least and greatest counts of occupied squares, as of `count_ranges`.
+    It holds the name, whether it is occupied, the percent of its squares that are surely so, whether it touches the
+    edge of the retina, its longer side in squares, and its mass (expected occupied squares) in tenths of squares. The
+    robot's own cell counts as surely occupied. `members` are the numbers of its fields, at least one, all free or all
+    occupied; `levels` the 160 gray levels; `ranges` the (160, 2) least and greatest counts of occupied squares, as of
+    `count_ranges`.
     """
     cells = sorted(members)
     occupied = levels[cells[0]] > 0
@@ -207,7 +216,9 @@ def _touching(labels: Labels, count: int) -> tuple[set[tuple[str, str]], set[int
 def _percept(regions: tuple[Region, ...], touching: set[tuple[str, str]]) -> Percept:
     """Return regions together with the pairs that touch and those that surround each other.
 
-    `touching` has pairs of names of regions that share an edge, both ways round.
+    The regions keep their order. `touching` has pairs of names of regions that share an edge, both ways round; the
+    result holds them as they are, and the pairs of names (outer, inner) such that no way leads from inner to what was
+    not seen, except across outer.
     """
     beside: dict[str, set[str]] = {region.name: set() for region in regions}
     for a, b in touching:

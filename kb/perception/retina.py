@@ -37,7 +37,11 @@ class Field(NamedTuple):
 
 
 def _fields() -> tuple[Field, ...]:
-    """Return the 160 fields in the order of an impression: zones from the fovea, north row first, west to east."""
+    """Return the 160 fields in the order of an impression: zones from the fovea, north row first, west to east.
+
+    Each is (east, north, side): the offset of its south-west square from the robot's own square, and its side, in
+    squares, robot frame.
+    """
     fields, inner = [], 0
     for reach, side in RETINA_ZONES:
         for north in range(reach - side, -reach - 1, -side):

@@ -31,12 +31,18 @@ NUMBER_ARGUMENT = integer_argument("a number", 0, MAX_AMOUNT)  # the number of a
 
 
 def _name_argument(name: str) -> ArgumentType:
-    """Return the type of plain names (no arguments, no quotes), with its own name for messages."""
+    """Return the type of plain names (no arguments, no quotes), with its own name for messages.
+
+    The type holds that name, and a check that returns the complaint about a term, or None when the term fits.
+    """
     return ArgumentType(name, NAME_ARGUMENT.check)
 
 
 def _number_argument(name: str) -> ArgumentType:
-    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages."""
+    """Return the type of numbers from 0 to `MAX_AMOUNT`, with its own name for messages.
+
+    The type holds that name, a check that returns the complaint about a term, or None when it fits, and the limits.
+    """
     return ArgumentType(name, NUMBER_ARGUMENT.check, NUMBER_ARGUMENT.limits)
 
 

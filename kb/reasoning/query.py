@@ -108,7 +108,9 @@ class QueryEngine:
 
         Returns
         -------
-        The answer: yes, no, don't know, or the rows of values for which the query certainly holds.
+        The answer: its kind ("yes", "no", "don't know", or "bindings" for rows), the names of the query's variables in
+        the order in which they appear, the sorted rows of values (integers, or terms as text) for which the query
+        certainly holds, and whether rows were left out.
 
         Raises
         ------
@@ -141,6 +143,8 @@ def _request_entry(fact: Fact) -> list[int | str]:
 
 def _query_error(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
     """Return the error with the message `what` at a character of the query, from 1; at the whole query for 0.
+
+    The error is returned, not raised; it carries one problem, in a file named "query", line 1.
 
     text : the query. hint : a remedy, or '' for none.
     """

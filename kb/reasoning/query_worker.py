@@ -117,7 +117,8 @@ def answer_query(
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
     """Return the clauses of rules; the line of each clause is the number of its rule, from 1.
 
-    A rule with a choice of values (a pool) has several clauses. Raises RuleError for a construct that is not supported.
+    A clause holds a head atom and the literals of its body. Clauses come in the order of the rules; a rule with a
+    choice of values (a pool) has several. Raises RuleError for a construct that is not supported.
     """
     parts: list[AST] = []
     parse_string("\n".join(rules), parts.append, logger=_record_message, message_limit=20)
@@ -130,6 +131,8 @@ def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
 def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
     """Return the values of the variables, in their order; raise ClauseError when the query does not bind one of them.
 
+    A value is an integer, a clingo symbol, or an `Unknown` for a value not known.
+
     found : the values by name. variables : the names. clause : the query, for its place in messages.
     """
     missing = [name for name in variables if name not in found]
@@ -139,26 +142,34 @@ def _row(found: Bindings, variables: list[str], clause: Clause) -> FactRow:
 
 
 def _sort_key(row: list[Any]) -> list[tuple[bool, Any]]:
-    """Return a key that sorts rows: integers before texts, column by column."""
+    """Return a key that sorts rows: integers before texts, column by column, both ascending.
+
+    It is a list of pairs (whether the value is a text, the value), one for each value of the row.
+    """
     return [(isinstance(value, str), value) for value in row]
 
 
 def _facts(entries: Iterable[Sequence[int | str]]) -> Iterator[tuple[str, FactRow]]:
-    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols."""
+    """Yield the name and the values of each fact of a request: integers stay, texts become clingo symbols.
+
+    One pair (predicate, tuple of its arguments) for each entry [name, argument, ...], in their order. Raises
+    RuntimeError for a text that is no term.
+    """
     for name, *arguments in entries:
         yield str(name), tuple(term if isinstance(term, int) else _parse_term(term) for term in arguments)
 
 
 @lru_cache(maxsize=65536)
 def _parse_term(term: str) -> clingo.Symbol:
-    """Return the clingo symbol that a text denotes; RuntimeError when it denotes none."""
+    """Return the clingo symbol that a text denotes, such as `corner(northeast)`; RuntimeError when it denotes none."""
     return clingo.parse_term(term)
 
 
 def _query_as_rule(query: str) -> AST:
     """Return the syntax tree of a rule with the query as its body.
 
-    Raises QueryError unless the text is exactly one body, and RuntimeError where clingo cannot parse it.
+    The rule's head is an atom of no meaning. Raises QueryError unless the text is exactly one body, and RuntimeError
+    where clingo cannot parse it.
     """
     parts: list[AST] = []
     parse_string(f"{QUERY_HEAD}{query}\n.", parts.append, logger=_record_message, message_limit=20)

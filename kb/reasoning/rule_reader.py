@@ -50,9 +50,11 @@ def read_statements(text: str) -> list[dict[str, Any]]:
 
     Returns
     -------
-    One dictionary of JSON values a statement: "at" (line, column), "heads" and "body" (lists of atoms), "text" (with
-    checked arithmetic), "written" (as the user wrote it, constants replaced), "plain" (whether the head is one atom)
-    and "declares" ([name, number of arguments] of a #defined, else None).
+    One dictionary of JSON values for each rule, `#minimize`, weak constraint and `#defined`: "at" (line and column,
+    from 1), "heads" (the atoms stated or chosen) and "body" (those on which they depend), lists of dictionaries with
+    the keys name, arity, at, constants, places and negative; "text" (the statement with checked arithmetic), "written"
+    (as the user wrote it, constants replaced), "plain" (whether it is a rule with one atom, not negated, as its head)
+    and "declares" ([name, number of arguments] of a `#defined`, else None). Other statements are left out.
 
     Raises
     ------
@@ -80,7 +82,12 @@ def _kept(node: AST) -> bool:
 
 
 def _entry(node: AST) -> dict[str, Any]:
-    """Return a statement as a dictionary of JSON values, with the keys that `read_statements` describes."""
+    """Return a statement as a dictionary of JSON values.
+
+    The keys are at, heads, body, text, written, plain and declares (see `read_statements`): its place, the atoms that
+    it states, those on which they depend, the statement with checked arithmetic and as written, whether its head is one
+    atom, and the predicate of a `#defined` or None.
+    """
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
         return entry | {"declares": [node.name, node.arity]}
@@ -108,7 +115,8 @@ def _is_plain(node: AST) -> bool:
 def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
     """Return the literals that a head states or chooses, and the literals (conditions) on which they depend.
 
-    Raises ClauseError for a theory atom.
+    Two lists of parts of clingo's syntax tree, each in the order of the text; the second is [] for a plain head. Raises
+    ClauseError for a theory atom.
     """
     if head.ast_type == ASTType.Literal:
         return [head], []
@@ -123,9 +131,11 @@ def _split_head(head: AST) -> tuple[list[AST], list[AST]]:
 
 
 def _atoms(node: AST) -> Iterator[dict[str, Any]]:
-    """Yield the atoms in a part of a statement, each as a dictionary of JSON values.
+    """Yield the atoms in a part of a statement, each as a dictionary of JSON values, in the order of the text.
 
-    The keys are those of `kb.reasoning.rulebook.RuleAtom`, and "arity": the number of arguments.
+    The keys are "name" (the predicate), "arity" (the number of arguments), "at" (line and column, from 1), "constants"
+    (the text of each argument that is a constant, None for any other), "places" (line and column of each argument) and
+    "negative" (whether it is negated, or stands in an aggregate or a condition).
     """
     reader = _AtomCollector()
     reader.visit(node)
@@ -193,7 +203,10 @@ class _AtomCollector(Transformer):
 
 
 def _constants(nodes: list[AST]) -> dict[str, clingo.Symbol]:
-    """Return the values of `#const` definitions, numbers and names, by name; raise ClauseError for any other value."""
+    """Return the values of `#const` definitions, numbers and names, by name; raise ClauseError for any other value.
+
+    `nodes` are all statements of a file; the last definition of a name counts. {} when there is none.
+    """
     found = {}
     for node in nodes:
         if node.ast_type == ASTType.Definition:
@@ -216,7 +229,7 @@ class _ConstantSubstitution(Transformer):
         return node.update(**self.visit_children(node))
 
     def visit_SymbolicTerm(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the value of a constant as a term; any other term as it is."""
+        """Return the value of a constant, which stands in its place, as a term; any other term as it is."""
         value = self._values.get(str(node))
         return node if value is None else SymbolicTerm(node.location, value)
 
@@ -228,11 +241,14 @@ class _ArithmeticRewriter(Transformer):
     """
 
     def visit_BinaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the call that computes an operation on two terms."""
+        """Return the call that computes an operation on two terms: a term `@calculated(sign, place, left, right)`."""
         return self._call(node, BINARY_SIGNS[node.operator_type], [self.visit(node.left), self.visit(node.right)])
 
     def visit_UnaryOperation(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return the call that computes an operation on one term; a negative number stays as it is."""
+        """Return the call that computes an operation on one term, `@calculated(sign, place, operand)`.
+
+        A negative number stays as it is.
+        """
         if node.argument.ast_type == ASTType.SymbolicTerm:
             number = node.argument.symbol
             if UNARY_SIGNS[node.operator_type] == "-" and number.type == clingo.SymbolType.Number:
@@ -240,7 +256,7 @@ class _ArithmeticRewriter(Transformer):
         return self._call(node, UNARY_SIGNS[node.operator_type], [self.visit(node.argument)])
 
     def visit_Function(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return a term with the arithmetic in its arguments replaced.
+        """Return a term whose arguments have calls of the calculator in the places of their arithmetic.
 
         Raises ClauseError for a function of Python (@name).
         """
@@ -249,7 +265,11 @@ class _ArithmeticRewriter(Transformer):
         return node.update(**self.visit_children(node))
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Return an aggregate with its arithmetic replaced; raise ClauseError for a sum that is given to a variable."""
+        """Return an aggregate whose arithmetic is replaced by calls of the calculator, in the same places.
+
+        Each operation in its guards, tuples and conditions becomes a term `@calculated(sign, place, operands)`. Raises
+        ClauseError for a sum that is given to a variable, `X = #sum{...}`.
+        """
         summed = node.function in (AggregateFunction.Sum, AggregateFunction.SumPlus)
         guards = [guard for guard in (node.left_guard, node.right_guard) if guard is not None]
         given = [guard.term for guard in guards if guard.comparison == ComparisonOperator.Equal]
@@ -260,6 +280,9 @@ class _ArithmeticRewriter(Transformer):
 
     def _call(self, node: AST, sign: str, parts: list[AST]) -> AST:
         """Return the call that computes an operation; it carries the place of the operation.
+
+        It is the term `@calculated(sign, (line, column), operands)`, which clingo evaluates by `Calculator.calculated`
+        while it grounds the rule.
 
         node : the operation. sign : its operator in ASP syntax. parts : its one or two operands, rewritten already.
         """

@@ -15,6 +15,8 @@ MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those
 def read_rule_text(text: str) -> Response:
     """Return the statements of a rule file: {"statements": [...]}, dictionaries as of `read_statements`.
 
+    One dictionary for each statement that has an effect, in the order of the text.
+
     text : the whole file. An error is returned as {"message": clingo's message}, or as {"error": message, "at": (line,
     column), "hint"}.
     """
@@ -43,7 +45,7 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
     -------
     One of these dictionaries; atoms are texts, rules are numbered from 0:
 
-    - {"atoms": shown atoms, "derived": atoms of `heads`}
+    - {"atoms": shown atoms of the best answer set, "derived": all atoms of `heads` that some answer set may hold}
     - {} when nothing was searched and no error occurred
     - {"message": clingo's message}, with line numbers from 1 that count the rules
     - {"error": message, "at": (line, column), "rule": number} for an error of arithmetic
@@ -75,7 +77,14 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
 
 
 def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Response | None]:
-    """Return the grounded program, and the response to an error (see `solve_with_rules`) or None."""
+    """Return the grounded program, and the response to an error or None when there is none.
+
+    The program is clingo's control object, ready to be solved when the second value is None. The response is
+    {"message": clingo's message}, or {"error": message, "at": (line, column), "rule": number from 0} for arithmetic
+    without a result.
+
+    program : the text of the encoding and its facts. rules : the text of each rule, one line each.
+    """
     messages: list[str] = []
     calculator = Calculator()
     control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
@@ -96,8 +105,9 @@ def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Respo
 def _conflicting_rules(program: str, rules: Sequence[str]) -> list[int]:
     """Return the numbers, from 0, of rules that together leave no answer; without any one of them there is an answer.
 
-    Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all returned. [0] when the program
-    has no answer without any rule either.
+    The numbers are ascending. Of several such sets the one that is left when rules are left out in turn, from the last
+    one tested to the first. Only the first `MAX_RULES_TRIED` rules are tested; the numbers of later rules are all
+    returned. [0] when the program has no answer without any rule either.
     """
     left = list(range(len(rules)))
     for number in range(min(len(rules), MAX_RULES_TRIED) - 1, -1, -1):

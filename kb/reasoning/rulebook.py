@@ -93,7 +93,9 @@ class Statement:
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
         """Return the problem `what` at the statement's place, or at another line and column (from 1).
 
-        hint : a remedy, or '' for none. The problem carries the file's name and the source line.
+        The problem carries the file's name, a place of one column, the message and the source line; it is not raised.
+
+        hint : a remedy, or '' for none.
         """
         line, column = at or self.at
         return self.source.problem(SourceSpan(line, column, column), what, hint)
@@ -102,7 +104,11 @@ class Statement:
 def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
     """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements).
 
-    source : the text of the file. entry : one of the dictionaries.
+    It holds the source, the place (line, column, from 1), the atoms that it states and those on which they depend, its
+    text with checked arithmetic and as written, whether its head is one atom, and what it declares.
+
+    source : the text of the file. entry : one of the dictionaries, with the keys at, heads, body, text, written, plain
+        and declares.
     """
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
@@ -119,7 +125,11 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
 
 
 def _atom(entry: Mapping[str, Any]) -> RuleAtom:
-    """Return an atom from the JSON values of the worker: name, constants, at, places, negative."""
+    """Return an atom from the JSON values of the worker: name, constants, at, places, negative.
+
+    It holds the predicate, the text of each argument that is a constant (else None), its place and those of its
+    arguments (line, column, from 1), and whether it is negated.
+    """
     line, column = entry["at"]
     places = tuple((place[0], place[1]) for place in entry["places"])
     return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, entry["negative"])
@@ -162,20 +172,26 @@ class Rulebook:
     def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
         """Return the rules that take part in an encoding, in the order of the files; () for none.
 
+        A rule takes part where all its predicates are known: those of the encoding, and those of the user's own that
+        rules define there. () also for a name that is no encoding.
+
         encoding : the name of the encoding without `.lp`, or "belief" for the facts that queries read.
         """
         return self._counting.get(encoding, ())
 
     @property
     def self_contained(self) -> tuple[Statement, ...]:
-        """The rules that depend on no predicate but those that they define themselves, in the order of the files."""
+        """The rules that depend on no predicate but those that they define themselves, in the order of the files.
+
+        () when there are none. They state only predicates of the user's own.
+        """
         return self._applicable(frozenset())
 
     @property
     def query_rules(self) -> tuple[Statement, ...]:
         """The rules over the world model with one atom as the head, a predicate of the user's own.
 
-        Queries can use the predicates that they define. In the order of the files.
+        Queries can use the predicates that they define. In the order of the files; () when there are none.
         """
         return tuple(
             one
@@ -184,7 +200,11 @@ class Rulebook:
         )
 
     def _invalid_parts(self, one: Statement) -> Iterator[Problem]:
-        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants."""
+        """Yield the problems of one statement: unknown, unreachable and read-only predicates, impossible constants.
+
+        A problem is the file, the place, the message, the source line and a hint. Unreachable predicates come first,
+        then unknown ones in the body, then the problems of its heads.
+        """
         for atom in (*one.heads, *one.body):
             if (
                 atom.signature in INTERNAL_PREDICATES
@@ -212,6 +232,9 @@ class Rulebook:
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants in a head atom that no encoding accepts at their place.
 
+        One for each such constant, at its place, in the order of the arguments. A number of a neck or a corner is
+        always one: they are numbered anew each time.
+
         one : the statement. atom : one of its head atoms.
         """
         options = [
@@ -230,7 +253,9 @@ class Rulebook:
     def _applicable(self, known: frozenset[Signature]) -> tuple[Statement, ...]:
         """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself.
 
-        In the order of the files. Predicates of `#defined` count as defined.
+        In the order of the files; () when none remains. Predicates of `#defined` count as defined.
+
+        known : the predicates (name, number of arguments) that exist without these statements.
         """
         found = self.statements
         while True:
@@ -244,12 +269,18 @@ class Rulebook:
         """Return whether all predicates of a statement count.
 
         Those of its heads must be in `known` or the user's own, those of its body in `known` or in `defined`.
+
+        known : the predicates (name, number of arguments) of an encoding.
+        defined : the user's own predicates that the statements under consideration define.
         """
         stated = all(atom.signature in known or atom.signature in self.own_predicates for atom in one.heads)
         return stated and all(atom.signature in known | defined for atom in one.body)
 
     def _without_effect(self, one: Statement) -> Iterator[Problem]:
-        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one."""
+        """Yield one problem, why a statement has no effect in any encoding and in no query; nothing when it has one.
+
+        A problem is the file, the place, the message, the source line and a hint.
+        """
         where = [name for name in PREDICATES_BY_ENCODING if one in self._counting[name]]
         if not where:
             names = sorted(

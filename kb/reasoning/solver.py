@@ -32,7 +32,9 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
     Returns
     -------
-    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time.
+    The atoms, clingo symbols sorted by their text; None when there is no answer set, or none was found in time. The
+    best answer set is the one with the least cost, or the last one found in time; among equals the one that clingo
+    finds.
 
     Raises
     ------
@@ -46,7 +48,11 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
 
 @lru_cache(maxsize=256)
 def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
-    """Return the answer of `solve`, the shown atoms sorted by their text or None, as a tuple; cached."""
+    """Return the answer of `solve`, the shown atoms sorted by their text or None, as a tuple; cached.
+
+    files : paths of encodings and of files with users' rules. facts : atoms as text, without full stops. seconds : the
+        limit of wall-clock time of the search; not used with users' rules.
+    """
     users = [path for path in files if path.resolve().parent not in ENCODING_FOLDERS]
     if users:
         from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time

@@ -54,11 +54,12 @@ def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) ->
     Parameters
     ----------
     paths : the paths of the files, in order.
-    limits : of time and search.
+    limits : the wall-clock time, in seconds, for each file; the limit of conflicts is not used.
 
     Returns
     -------
-    The rules of all files together.
+    The rules of all files together: their statements in order, the predicates of the user's own, and which rules take
+    part in which encoding and in queries.
 
     Raises
     ------
@@ -76,11 +77,13 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
     Parameters
     ----------
     paths : the paths of the files, in order.
-    limits : of time and search.
+    limits : the wall-clock time, in seconds, for each file and each test; and the conflicts of clingo's search when the
+        rules are solved by themselves.
 
     Returns
     -------
-    The rules of all files together.
+    The rules of all files together: their statements in order, the predicates of the user's own, and which rules take
+    part in which encoding and in queries.
 
     Raises
     ------
@@ -106,7 +109,9 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
 def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
     """Return the checked rules of some sources together; raise BadInputError with the problems of all of them.
 
-    seconds : the limit of wall-clock time for each.
+    The result is cached: the same sources give the same object.
+
+    sources : the texts of the files, in order. seconds : the limit of wall-clock time for each.
     """
     problems: list[Problem] = []
     statements: list[Statement] = []
@@ -121,9 +126,10 @@ def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
 
 
 def _statements(source: Source, seconds: float) -> list[Statement]:
-    """Return the statements of one source, in order.
+    """Return the statements of one source, in order; at least one.
 
-    Raises BadInputError when it is no file of rules, has no rule, or takes too much time or memory.
+    Each holds its place, the atoms that it states and those on which they depend, and its text. Raises BadInputError
+    when it is no file of rules, has no rule, or takes too much time or memory.
 
     seconds : the limit of wall-clock time.
     """
@@ -145,7 +151,8 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
 def _not_allowed(source: Source) -> Iterator[Problem]:
     """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
 
-    Nothing is yielded after the first bracket that is nested more than MAX_TERM_DEPTH deep.
+    One for each `#include` in the order of the text; nothing after the first bracket that is nested more than
+    MAX_TERM_DEPTH deep.
     """
     depth = 0
     for token in tokenize(source, []):
@@ -167,11 +174,12 @@ def solve_with_user_rules(
     ours : the path of the encoding; exactly one.
     users : the paths of the users' rules.
     facts : the facts of the encoding, without full stops.
-    limits : of time and search.
+    limits : the wall-clock time, in seconds, and the conflicts of clingo's search.
 
     Returns
     -------
-    The atoms, clingo symbols; None when none of the rules reaches this encoding.
+    The atoms, clingo symbols in the order of clingo; None when none of the rules reaches this encoding, so that it must
+    be solved without them. The best answer set is the cheapest one; of several, the one that clingo finds last.
 
     Raises
     ------
@@ -205,7 +213,8 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
     name : the name of the program in messages; '' for the rules alone.
     program : the text of the encoding and its facts; '' for the rules alone.
     reaching : the rules, at least one.
-    limits : of time and search; with 0 conflicts the program is only grounded.
+    limits : the wall-clock time, in seconds, and the conflicts of clingo's search; with 0 conflicts the program is only
+        grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
@@ -235,7 +244,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
 
 
 def _as_fact(text: str) -> Fact | None:
-    """Return the fact that the text of a derived atom denotes; None when fact files could not express it."""
+    """Return the fact (name and arguments) that the text of a derived atom denotes; None when it is no valid fact."""
     try:
         (fact,) = facts_from_text(f"{text}.")
     except (BadInputError, ValueError):
@@ -245,6 +254,8 @@ def _as_fact(text: str) -> Fact | None:
 
 def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact | None, what: str) -> BadInputError:
     """Return the error at the first rule that may have derived an atom; at the first rule when none may.
+
+    The error is returned, not raised; it carries one problem, at the head of that rule.
 
     reaching : the rules, at least one.
     text : the atom as text.
@@ -260,20 +271,24 @@ def _error_at_source_rule(reaching: Sequence[Statement], text: str, atom: Fact |
 
 
 def _may_have_derived(constants: Sequence[str | None], atom: Fact) -> bool:
-    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything."""
+    """Return whether the constants of a head agree with an atom; None, for a variable, agrees with everything.
+
+    constants : of each argument of the head its text when it is a constant, else None. atom : a derived fact; a
+        different number of arguments does not agree.
+    """
     return len(constants) == len(atom.args) and all(
         constant is None or constant == str(term) for constant, term in zip(constants, atom.args, strict=True)
     )
 
 
 def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputError:
-    """Return the error with the message `what` at the first of the rules, which are at least one."""
+    """Return, not raise, the error with the message `what` at the first of the rules, which are at least one."""
     return BadInputError([reaching[0].problem(what)])
 
 
 @cache
 def _worker() -> Worker:
-    """Return the process that all users' rules of this process share; it is ended at exit."""
+    """Return the handle of the separate process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)
     return worker
@@ -282,7 +297,10 @@ def _worker() -> Worker:
 def _error_at_place(source: Source, message: str) -> BadInputError:
     """Return the error for a message of clingo's, at its place in the user's file.
 
-    It stands at the start of the file when the message has no place.
+    The error is returned, not raised; it carries one problem, which stands at the start of the file when the message
+    has no place.
+
+    source : the text of the file. message : clingo's message, which begins with its place.
     """
     place = CLINGO_MESSAGE.search(message)
     if place is None:

@@ -37,7 +37,8 @@ class Worker:
 
         Parameters
         ----------
-        request : JSON values, as kb.reasoning.query_worker takes them.
+        request : JSON values by key, as kb.reasoning.query_worker takes them: {"read": text}, or the keys program,
+            rules, heads and conflicts, or the keys facts, query, rules and max_rows.
         seconds : the limit of wall-clock time.
 
         Returns
@@ -76,7 +77,8 @@ class Worker:
 def _start() -> "tuple[subprocess.Popen[bytes], LineQueue]":
     """Return a new process that is ready, and the queue of the lines that it writes.
 
-    Raises RuntimeError when it is not ready within MAX_START_SECONDS.
+    The queue has one entry of bytes a line, with its line end, and b"" when the process writes no more. Raises
+    RuntimeError when it is not ready within MAX_START_SECONDS.
     """
     worker = subprocess.Popen(
         isolated_command("kb.reasoning.query_worker"),

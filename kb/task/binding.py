@@ -46,8 +46,8 @@ def reconcile(
 
     Parameters
     ----------
-    task : the task.
-    model : the world model.
+    task : the task, with its parameters, the claims about them and the goals.
+    model : the world model, whose objects may be meant.
     distances : the length of the way to each node, in squares, by its name; nodes without a known way may be missing.
     before : parameter -> node, the binding up to now; it is kept unless another one is clearly better.
     rules : files with users' rules, solved together with kb/asp/reconciliation.lp.
@@ -55,7 +55,9 @@ def reconcile(
 
     Returns
     -------
-    The binding, and what is open about it; nothing is bound when the encodings have no answer.
+    The binding, parameter -> node, and what is open about it, all by name: parameters of goals that match nothing seen
+    so far, and pairs (parameter, node) that need another observation, contradict a claim, cannot be moved, or that a
+    better estimate of the node's size decides. All are empty when the encodings have no answer.
 
     Raises
     ------
@@ -98,9 +100,10 @@ def _task_facts(task: Task) -> Iterable[str]:
 def _node_facts(node: Node) -> Iterable[str]:
     """Yield what is believed about an object as facts for kb/asp/reconciliation.lp, without full stops.
 
-    These are `candidate(Node,Percent)` and `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where
-    no impression can change it; `fixed(Node)` and `moved(Node)`; and
-    `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size is known.
+    Percents are confidences: that it is an object, or that it has the value. These are `candidate(Node,Percent)` and
+    `has(Node,shape|colour,Value,Percent)`; `settled(Node,shape|colour)` where no impression can change it;
+    `fixed(Node)` and `moved(Node)`; and `may_be(Node,shape,square|brick)`, what a rectangle may be as far as its size
+    is known.
     """
     yield f"candidate({node.name},{node.confidence})"
     for shape, confidence in sorted(node.shape.items()):

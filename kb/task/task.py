@@ -79,7 +79,10 @@ class Task:
         return frozenset(words & set(self.parameters))
 
     def claims_of(self, name: str) -> tuple[Claim, ...]:
-        """Return the claims about one parameter, in the order of start.lp; () when there are none."""
+        """Return the claims about one parameter, in the order of start.lp; () when there are none.
+
+        Each holds the fact that is claimed, such as `shape(x, square)`, and the confidence in it in percent.
+        """
         return tuple(claim for claim in self.claims if claim.fact.args[0] == Symbol(name, (), SourceSpan(0, 0, 0)))
 
 
@@ -92,7 +95,8 @@ def read_task(start: Path | str, goal: Path | str) -> Task:
 
     Returns
     -------
-    The task: parameters, claims and goals, checked.
+    The task, checked: the parameters (name, kind and place) by name, the claims with their confidences in percent, and
+    the goals as facts, each in the order of its file.
 
     Raises
     ------
@@ -153,7 +157,8 @@ def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_fac
 
     Returns
     -------
-    The task.
+    The task: the parameters (name, kind and place) by name, the claims with their confidences in percent, and the goals
+    as they were given, each in the order of the facts.
 
     Raises
     ------
@@ -170,7 +175,11 @@ def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_fac
 def _start_problems(
     source: Source, start_facts: tuple[Fact, ...]
 ) -> tuple[dict[str, Parameter], list[Claim], list[Problem]]:
-    """Return the parameters of start.lp by name, its claims in order, and the problems in it; [] for none."""
+    """Return the parameters of start.lp by name, its claims in order, and the problems in it; [] for none.
+
+    Parameters hold their kind (object, door or room) and place, claims a fact and its confidence in percent. Problems
+    are those of duplicates first, then of parameters, claims and contradictions.
+    """
     problems = _duplicates(source, start_facts)
     parameters = _parameters(source, start_facts, problems)
     claims = _claims(source, start_facts, parameters, problems)
@@ -182,6 +191,8 @@ def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list
     """Return the facts of a source, in order; append its problems to `problems`.
 
     () for None and for a text with syntax errors. Facts that the vocabulary does not know are returned, too.
+
+    source : the text, or None for one that could not be read. vocabulary : the types of the arguments by predicate.
     """
     if source is None:
         return ()
@@ -195,7 +206,10 @@ def _checked_facts(source: Source | None, vocabulary: Vocabulary, problems: list
 
 
 def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
-    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time."""
+    """Return a problem for each fact that is stated twice, except `then(G)`, which is another step each time.
+
+    One for each repetition, at its place in `source`, in the order of `facts`; [] when there are none.
+    """
     seen: dict[Fact, int] = {}
     problems = []
     for fact in facts:
@@ -210,7 +224,8 @@ def _duplicates(source: Source, facts: tuple[Fact, ...]) -> list[Problem]:
 def _parameters(source: Source, facts: tuple[Fact, ...], problems: list[Problem]) -> dict[str, Parameter]:
     """Return the parameters that start.lp introduces, by name in the order of the facts; append problems to `problems`.
 
-    A reserved word is left out; a name that is introduced as two kinds keeps the first one.
+    A parameter holds its name, its kind (object, door or room) and its place. A reserved word is left out; a name that
+    is introduced as two kinds keeps the first one.
     """
     found: dict[str, Parameter] = {}
     for fact in facts:
@@ -232,7 +247,8 @@ def _claims(
 ) -> list[Claim]:
     """Return the claims of start.lp in order; append problems to `problems`.
 
-    Claims about an unknown parameter, or about one that is no object, are returned, too.
+    A claim holds a fact and the confidence in it in percent. Claims about an unknown parameter, or about one that is no
+    object, are returned, too. `parameters` are those of start.lp, by name.
     """
     claims: list[Claim] = []
     confidences: dict[Fact, int] = {}
@@ -255,7 +271,10 @@ def _claims(
 
 
 def _claim(fact: Fact) -> Claim:
-    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain."""
+    """Return the claim that a fact states: `confidence(Fact, Percent)`, or a bare fact, which is certain.
+
+    It holds the inner fact, such as `shape(x, square)`, and the confidence in percent, 100 for a bare fact.
+    """
     if fact.name != "confidence":
         return Claim(fact)
     inner, degree = fact.args
@@ -300,6 +319,9 @@ def _compatible(one: Fact, other: Fact) -> bool:
 
 def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[str, Parameter]) -> Iterator[Problem]:
     """Yield the problems of goals: their order, their arguments, and an empty goal.
+
+    A problem holds the file, the place, the message, the source line and a hint. They come in the order of the goals;
+    an empty goal is the last one.
 
     source : goal.lp. goals : its facts, in order. parameters : those of start.lp, by name.
     """

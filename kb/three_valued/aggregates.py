@@ -14,7 +14,7 @@ class Tally:
 
     Parameters
     ----------
-    function : `#count`, `#sum`, `#sum+`, `#min` or `#max`.
+    function : `#count`, `#sum`, `#sum+` (negative weights count 0), `#min` or `#max`.
     """
 
     def __init__(self, function: str) -> None:
@@ -39,7 +39,8 @@ class Tally:
     def value(self) -> Value:
         """Return the value of the aggregate; an `Unknown`, with bounds for a number, when it is not certain.
 
-        It is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
+        The bounds hold all values that it can have with some, all or none of the tuples that may be absent. A certain
+        value is an integer, or for `#min` and `#max` any value; without tuples 0, clingo's Supremum for `#min` or its
         Infimum for `#max`. Raises CalculationError for a value beyond 32 bits.
         """
         new_possible = [values for values in self._possible if values not in self._certain]
@@ -52,7 +53,8 @@ class Tally:
     def _between(self, least: int, up: int, down: int) -> Value:
         """Return a number from `least` - `down` to `least` + `up`: an integer when both are 0, else an `Unknown`.
 
-        There is no upper bound where a tuple has unknown values. Raises CalculationError for a `least` beyond 32 bits.
+        The bounds of the `Unknown` are both included, and cut to 32 bits. There is no upper bound where a tuple has
+        unknown values. Raises CalculationError for a `least` beyond 32 bits.
         """
         require_int32(least)
         high = MAX_INT32 if self._vague else min(MAX_INT32, least + up)
@@ -60,13 +62,16 @@ class Tally:
         return least if low == high == least else Unknown(low, high)
 
     def _sum(self, new_possible: list[ValueTuple]) -> Value:
-        """Return the sum of the weights, an `Unknown` with bounds when it is not certain.
+        """Return the sum of the weights, an integer; an `Unknown` with bounds when it is not certain.
 
-        Weights that are no numbers count 0. new_possible : the tuples that may be absent.
+        Weights, the first values of the tuples, that are no numbers count 0. Raises CalculationError when the sum of
+        the certain weights is beyond 32 bits.
+
+        new_possible : the tuples that may be absent.
         """
 
         def weight(values: ValueTuple) -> int:
-            """Return the number with which a tuple counts."""
+            """Return the number with which a tuple counts: its first value, 0 when that is no number."""
             value = values[0] if values else 0
             number = value if isinstance(value, int) else 0
             return max(0, number) if self._function == "#sum+" else number
@@ -81,7 +86,11 @@ class Tally:
     def _least_or_greatest(self, new_possible: list[ValueTuple]) -> Value:
         """Return the least (for `#min`) or the greatest first value; for no tuples, the value beyond all others.
 
-        new_possible : the tuples that may be absent. An `Unknown` when one of them, or an unknown value, may change it.
+        The result is an integer or a clingo symbol, without certain tuples clingo's Supremum (least) or Infimum. An
+        `Unknown`, with bounds where all values are numbers, when a tuple that may be absent, or an unknown value, may
+        change it.
+
+        new_possible : the tuples that may be absent, their values known.
         """
         least = self._function == "#min"
         best = clingo.Supremum if least else clingo.Infimum
@@ -105,6 +114,8 @@ class Tally:
 def _is_beyond(value: Value, best: object, least: bool) -> bool:
     """Return whether a known value is less (for `least`), or greater, than the best one in clingo's order.
 
+    value : an integer or a clingo symbol; False when it equals the best one.
+    least : whether the least value is sought; else the greatest.
     best : a clingo symbol.
     """
     one = as_clingo(value)
@@ -114,7 +125,11 @@ def _is_beyond(value: Value, best: object, least: bool) -> bool:
 def _may_go_beyond(value: Value, best: object, least: bool) -> bool:
     """Return whether a value, unknown or not, can be less (for `least`), or greater, than the best one.
 
+    True for every value that is no number, or may be none.
+
+    value : an integer, a clingo symbol or an `Unknown`.
     best : a clingo symbol; the order is clingo's.
+    least : whether the least value is sought; else the greatest.
     """
     ends = bounds(value)
     if ends is None:

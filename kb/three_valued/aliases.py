@@ -15,7 +15,9 @@ UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
 def rename_utak_to_org(clause: Clause) -> Clause:
     """Return a clause with the constant `org` in the place of `utak`, except where `utak` stands for a kind.
 
-    It stands for a kind as such an argument of kind/3, and in comparisons with a variable that is one.
+    It stands for a kind as such an argument of kind/3, and in comparisons with a variable that is one. Only the body is
+    changed, inside aggregates and conditions as well; the head stays. `utak` is the robot's name in queries, `org` that
+    in facts.
     """
     kinds = {
         part.name
@@ -35,7 +37,9 @@ def _kind_arguments(atom: Atom) -> list[int]:
 def _renamed(part: Any, kinds: Set[str]) -> Any:
     """Return a part of a clause (term, literal, element or tuple of them) with `org` in the place of `utak`.
 
-    kinds : names of variables that stand for kinds; a comparison with one of them is kept.
+    The result is of the same type as `part`.
+
+    kinds : names of variables that stand for kinds; a comparison with one of them is kept as it is.
     """
     if isinstance(part, Constant):
         return replace(part, value=ORG_TERM) if part.value == UTAK_TERM else part

@@ -244,7 +244,9 @@ def translate_rule(rule: AST) -> list[Clause]:
 
     Returns
     -------
-    The clauses, at least one; `at` of each part counts lines and columns from 1.
+    The clauses, at least one, in the order of the choices. Each holds the head atom (None for a constraint), the
+    literals of the body in the order of the text, followed by comparisons for intervals in arguments, and its place.
+    `at` of each part counts lines and columns from 1.
 
     Raises
     ------
@@ -254,7 +256,7 @@ def translate_rule(rule: AST) -> list[Clause]:
 
 
 def place_of(node: AST) -> tuple[int, int]:
-    """Return the line and the column, both from 1, at which a part of a syntax tree begins."""
+    """Return the line and the column, both from 1, at which a part of clingo's syntax tree begins."""
     begin = node.location.begin
     return begin.line, begin.column
 
@@ -270,13 +272,20 @@ class _Translator:
         self._intervals: list[Literal] = []
 
     def clause(self, rule: AST) -> Clause:
-        """Return a rule without pools as a clause; raise ClauseError for what is not supported."""
+        """Return a rule without pools as a clause; raise ClauseError for what is not supported.
+
+        The clause holds the head atom (None for a constraint), the literals of the body in order, then a comparison for
+        each interval in an argument of the head, and the place of the rule.
+        """
         head = self._head(rule.head)
         waiting, self._intervals = self._intervals, []
         return Clause(head, (*self._conjunction(rule.body), *waiting), place_of(rule))
 
     def _head(self, node: AST) -> Atom | None:
-        """Return the head atom, or None for a constraint; raise ClauseError for any other head."""
+        """Return the head atom, or None for a constraint; raise ClauseError for any other head.
+
+        The comparisons for intervals in its arguments are appended to `_intervals`.
+        """
         if node.ast_type == ASTType.Literal and node.sign == Sign.NoSign:
             if node.atom.ast_type == ASTType.BooleanConstant and not node.atom.value:
                 return None
@@ -285,7 +294,11 @@ class _Translator:
         raise ClauseError("a rule has one plain atom as its head here", place_of(node))
 
     def _conjunction(self, nodes: Iterable[AST]) -> tuple[Literal, ...]:
-        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments."""
+        """Return the literals of a conjunction, followed by the comparisons for the intervals in their arguments.
+
+        One literal for each of the nodes, in their order; () for none. An interval in an argument stands as a variable
+        of its own there, and its comparison is `variable = low..high`.
+        """
         outer, self._intervals = self._intervals, []
         found = [self._literal(node) for node in nodes]
         found += self._intervals
@@ -293,7 +306,11 @@ class _Translator:
         return tuple(found)
 
     def _literal(self, node: AST) -> Literal:
-        """Return one literal; raise ClauseError for a theory atom."""
+        """Return one literal; raise ClauseError for a theory atom.
+
+        It is an Atom, a Comparison, an Aggregate, a ConditionalLiteral or a BooleanLiteral, with its negation and its
+        place (line, column) from 1. Comparisons for intervals in an atom's arguments are appended to `_intervals`.
+        """
         if node.ast_type == ASTType.ConditionalLiteral:
             condition = self._conjunction(node.condition)
             (literal, *intervals) = self._conjunction([node.literal])
@@ -313,7 +330,10 @@ class _Translator:
         raise ClauseError("theory atoms are not known here", at)
 
     def _atom(self, node: AST) -> Atom:
-        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`."""
+        """Return an atom with its negations; raise ClauseError for classical negation, `-atom`.
+
+        It holds the predicate's name, the arguments as terms, the number of `not` before it (0 to 2), and its place.
+        """
         found, at = node.atom.symbol, place_of(node.atom.symbol)
         if found.ast_type == ASTType.UnaryOperation:
             raise ClauseError("classical negation is not known here", at, "write not, for what is not believed")
@@ -324,6 +344,7 @@ class _Translator:
     def _aggregate(self, node: AST, negated: bool, at: tuple[int, int]) -> Aggregate:
         """Return an aggregate; signs of right guards are mirrored, so that `term sign value` holds for every guard.
 
+        Guards are the comparisons of its value with a term: the left one first, 0 to 2. The elements keep their order.
         `{ literal : condition }` becomes a `#count`. negated : whether `not` stands before it. at : its line and
             column, from 1.
         """
@@ -343,7 +364,10 @@ class _Translator:
         return Aggregate(AGGREGATE_FUNCTIONS[node.function], tuple(elements), tuple(guards), negated, at)
 
     def _element(self, terms: Iterable[AST], condition: Iterable[AST]) -> AggregateElement:
-        """Return an element of an aggregate: its tuple of terms, and its condition."""
+        """Return an element of an aggregate: its tuple of terms, and its condition.
+
+        The condition is the literals in order, followed by the comparisons for intervals in them and in the terms.
+        """
         outer, self._intervals = self._intervals, []
         found = tuple(map(self._term, terms))
         waiting, self._intervals = self._intervals, outer
@@ -351,6 +375,9 @@ class _Translator:
 
     def _choice(self, number: int, node: AST) -> AggregateElement:
         """Return an element of `{ literal : condition }`; the tuple holds the literal's name and arguments.
+
+        The name is a string such as "room/1"; arguments follow for an atom without negation only. The element's
+        condition is the literal, then its condition.
 
         number : the index of the element, which identifies it when it is no atom.
         """
@@ -364,6 +391,8 @@ class _Translator:
     def _term(self, node: AST, whole: bool = False) -> ClauseTerm:
         """Return a term; raise ClauseError for a function of Python (@name).
 
+        It is a Constant (an integer or a clingo symbol), a Variable, an Operation (arithmetic or an interval) or a
+        Compound (a name with arguments, or a tuple), with its place.
         An interval that is not wanted as such is replaced by a variable; the comparison of this variable with the
         interval is appended to `_intervals`.
 
@@ -436,7 +465,10 @@ def global_variables(body: Sequence[Literal]) -> dict[str, None]:
 
 
 def atoms_of(part: Any) -> Iterator[Atom]:
-    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order."""
+    """Yield the atoms in a literal or a tuple of them, those in aggregates and conditions included, in order.
+
+    The order is that of the text; an atom is yielded as often as it appears, negated or not.
+    """
     if isinstance(part, Atom):
         yield part
     elif isinstance(part, tuple):

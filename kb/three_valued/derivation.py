@@ -18,7 +18,8 @@ def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
     Parameters
     ----------
     clauses : rules with heads, in any order.
-    beliefs : the facts; changed: derived atoms are added, each as certain or as one that may hold.
+    beliefs : the facts; changed: derived atoms are added until no more are new, each as certain or as one that may
+        hold once more is known.
 
     Raises
     ------
@@ -31,8 +32,9 @@ def derive(clauses: Sequence[Clause], beliefs: Beliefs) -> None:
 
 
 def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
-    """Add to `beliefs` the atoms that a clause derives, and return how many of them are new.
+    """Add to `beliefs` the atoms that a clause derives, and return how many of them are new: a count, 0 for none.
 
+    clause : a rule with a head.
     possible : whether to add those that may hold, rather than those that are certain.
     """
     assert clause.head is not None
@@ -44,6 +46,9 @@ def _apply(clause: Clause, beliefs: Beliefs, possible: bool) -> int:
 
 def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
     """Return the clauses in groups that define each other, each group after those on which it depends.
+
+    Every clause, all of which have heads, is in exactly one group. Within a group the clauses keep their order; groups
+    that do not depend on each other are sorted by the number of predicates on which they depend, then by name.
 
     Raises ClauseError when a group depends on its own negation.
     """
@@ -69,6 +74,8 @@ def _dependency_groups(clauses: Sequence[Clause]) -> list[list[Clause]]:
 def _reachable(head: Signature, uses: dict[Signature, set[Signature]]) -> set[Signature]:
     """Return all predicates on which a predicate depends, directly or not; itself only if it depends on itself.
 
+    A predicate is (name, number of arguments).
+
     uses : predicate -> the predicates in the bodies of its clauses, as far as clauses define them.
     """
     found: set[Signature] = set()
@@ -93,7 +100,10 @@ def _check_stratified(group: Iterable[Clause], mutual: set[Signature]) -> None:
 
 
 def _negated_atoms(body: Iterable[Literal]) -> Iterable[Atom]:
-    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals."""
+    """Yield the atoms of a body that are negated, once or twice, or stand in aggregates or conditional literals.
+
+    In the order of the text, each as often as it appears. `body` are the literals of a rule.
+    """
     for literal in body:
         if isinstance(literal, Atom) and literal.negations:
             yield literal

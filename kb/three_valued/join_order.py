@@ -30,11 +30,12 @@ def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Liter
     Parameters
     ----------
     body : the literals.
-    given : the names of variables that are bound before.
+    given : the names of variables that are bound, which means that they have a value, before the first literal.
 
     Returns
     -------
-    The literals in the order of evaluation, with the comparisons for such intervals.
+    All literals, each once, in the order of evaluation, with the comparisons for such intervals. Of several that can
+    come next, that with the most bound variables comes first; among equals, the first one in the body.
 
     Raises
     ------
@@ -62,6 +63,8 @@ def order_literals(body: Sequence[Literal], given: Iterable[str]) -> tuple[Liter
 
 def unsafe_variable_error(name: str, at: tuple[int, int]) -> ClauseError:
     """Return the error that no literal binds a variable.
+
+    The error is returned, not raised.
 
     name : the variable; one that stands for `_` or an interval is shown as `_`. at : line and column, from 1.
     """
@@ -119,6 +122,8 @@ def _matchable(term: ClauseTerm, bound: set[str]) -> bool:
 def _invertible(term: Operation, bound: set[str]) -> bool:
     """Return whether exactly one operand of `+`, `-` or `*` is unbound and can be computed from the result.
 
+    That operand is a variable, or again such arithmetic. False for all other operators.
+
     bound : the names of the bound variables.
     """
     open_ = [part for part in term.parts if not set(variables_of(part)) <= bound]
@@ -131,8 +136,10 @@ def _invertible(term: Operation, bound: set[str]) -> bool:
 def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, ClauseTerm] | None:
     """Return the pattern and the term that gives its value, for a comparison that binds variables; else None.
 
-    It is the first `pattern = term`, either way round, of which the term is bound and the pattern is not but can be
-    matched.
+    The result is (pattern, term) of the first `pattern = term` in the chain, either way round, of which the term is
+    bound and the pattern is not but can be matched. None also for a negated comparison. A pattern is a term with
+    unbound variables, which get their values from the other term.
+
     bound : the names of the bound variables.
     """
     if literal.negated:
@@ -151,7 +158,8 @@ def assignment(literal: Comparison, bound: set[str]) -> tuple[ClauseTerm, Clause
 def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str]) -> Variable | None:
     """Return the variable to which an aggregate gives its value: that of the first guard `X = ...`, or None.
 
-    guards : pairs (sign, term). bound : the names of the variables that are bound already, which do not count.
+    guards : pairs (sign, term) such that `term sign value of the aggregate` must hold.
+    bound : the names of the variables that are bound already, which do not count.
     """
     for sign, term in guards:
         if sign == "=" and isinstance(term, Variable) and term.name not in bound:
@@ -161,6 +169,9 @@ def assigned_variable(guards: Iterable[tuple[str, ClauseTerm]], bound: set[str])
 
 def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparison | None:
     """Return `X = low..high` for a variable X that only comparisons with numbers bound; None when there is none.
+
+    Of several such variables, that of which a lower bound stands first in the text; the interval is the narrowest that
+    all these comparisons leave, within 32 bits.
 
     literals : those that are left. bound : the names of the bound variables. clingo binds such variables in the same
         way.
@@ -187,7 +198,11 @@ def _bounding_interval(literals: Iterable[Literal], bound: set[str]) -> Comparis
 
 
 def _bound_by(literal: Literal, bound: set[str]) -> set[str]:
-    """Return the names of the variables that a literal binds; those of `bound` are bound before."""
+    """Return the names of the variables to which a literal gives values; those of `bound` have one before.
+
+    Those of an atom without negation, all of them; those of the pattern of an assignment `X = ...`; the variable to
+    which an aggregate gives its value. The empty set for all else.
+    """
     if isinstance(literal, Atom):
         return set() if literal.negations else set(variables_of(literal))
     if isinstance(literal, Comparison):

@@ -31,7 +31,7 @@ def names_in_facts(rows: Mapping[Signature, Iterable[Sequence[Value]]]) -> Const
 
     Parameters
     ----------
-    rows : the arguments of the facts, by predicate (name, number of arguments).
+    rows : by predicate (name, number of arguments), the arguments of each of its facts: integers or clingo symbols.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def check_body(body: Sequence[Literal], known: Collection[Signature], names: Con
     ----------
     body : the literals of a query or a rule.
     known : all predicates that exist.
-    names : the constants in facts, from `names_in_facts`.
+    names : the constants in facts as text, by the name of the argument type; they are accepted in queries, too.
     """
     for atom in atoms_of(tuple(body)):
         check_predicate(atom, known)
@@ -99,7 +99,8 @@ def check_constant(slot: ArgumentType, term: ClauseTerm, names: ConstantNames) -
 def as_fact_term(value: Value) -> Term:
     """Return a known value, an integer or a clingo symbol, as a term of a fact file, which argument types can check.
 
-    Its place is NO_PLACE. A value that no fact file can express becomes a name with its text.
+    It is a number, a text, or a name with its arguments. Its place is NO_PLACE, since it stands in no file. A value
+    that no fact file can express becomes a name with its text.
     """
     if isinstance(value, int):
         return Number(value, NO_PLACE)
@@ -114,9 +115,10 @@ def as_fact_term(value: Value) -> Term:
 
 
 def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
-    """Yield a body, and each conjunction inside it together with the atoms around it.
+    """Yield a body, and each conjunction inside it together with the atoms around it; the body itself first.
 
-    Those inside are the conditions of elements, and a conditional literal with its condition.
+    Each is a tuple of literals: its own first, then the atoms of the body around it. Those inside are the conditions of
+    elements, and a conditional literal with its condition.
     """
     yield tuple(body)
     for literal in body:
@@ -129,7 +131,8 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
     """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out.
 
-    Nothing for a predicate that is not of the world model.
+    One pair for each such argument, in order. Nothing for a predicate that is not of the world model. An argument type
+    tells which terms fit, and its name for messages.
     """
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     for slot, part in zip(slots, atom.parts, strict=False):
@@ -138,7 +141,10 @@ def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
 
 
 def _equated(literals: Iterable[Literal]) -> Iterator[tuple[str, Constant]]:
-    """Yield the name of each variable that is compared with a constant by `=` or `!=`, and the constant."""
+    """Yield the name of each variable that is compared with a constant by `=` or `!=`, and the constant.
+
+    One pair for each such comparison, in the order of the text, whether it is negated or not.
+    """
     for literal in literals:
         if not isinstance(literal, Comparison):
             continue

@@ -13,9 +13,11 @@ OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
 class Beliefs:
     """The facts of a world model, with the atoms that rules derive.
 
+    A row is the tuple of the arguments of one fact of a predicate.
+
     Parameters
     ----------
-    facts : predicate name and arguments of each fact; arguments are integers or clingo symbols.
+    facts : pairs (predicate name, row); the arguments in a row are integers or clingo symbols.
 
     Attributes
     ----------
@@ -45,7 +47,8 @@ class Beliefs:
     def signatures(self) -> dict[Signature, list[FactRow]]:
         """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows.
 
-        These are those of facts, `object/1` where an object is believed in, and those that rules derived.
+        These are those of facts, `object/1` where an object is believed in, and those that rules derived. A row is the
+        tuple of the arguments, integers or clingo symbols; rows come in the order in which they were added.
         """
         return {signature: list(rows) for signature, rows in self._rows.items()}
 
@@ -69,7 +72,10 @@ class Beliefs:
         return True
 
     def _already_possible(self, signature: Signature, row: FactRow) -> bool:
-        """Return whether a row that may hold is covered by one, perhaps with unknown values, that may hold already."""
+        """Return whether a row that may hold is covered by one, perhaps with unknown values, that may hold already.
+
+        signature : the predicate, (name, number of arguments). row : its arguments. Only derived rows are compared.
+        """
         return any(
             all(_includes(a, b) for a, b in zip(other, row, strict=True)) for other in self._possible.get(signature, ())
         )
@@ -85,11 +91,15 @@ class Beliefs:
         fixed : for each argument its value when it is known, else None. Rows that differ in one of them may be left
             out.
         possible : whether to yield rows that only may hold.
-        confidence_fixed : whether confidences are read as they are believed now, and not as they may turn out.
+        confidence_fixed : True to read confidences as they are believed now. False to count also that they may change:
+            with `possible`, each fact with a confidence between 0 and 100 percent, both left out, is then yielded once
+            more, with an `Unknown` from 0 to 100 in the place of the confidence.
 
         Yields
         ------
-        The values of all arguments; an `Unknown` where a value is not known.
+        One row at a time, the values of all arguments in order: integers, clingo symbols, or an `Unknown` (a value not
+        known, with bounds when it is a number). First the certain rows, each once; with `possible` then those that
+        rules derived as possible, those with an open confidence, and those of things not seen or not told of yet.
         """
         stated = list(self._stated(signature, fixed))
         yield from stated
@@ -108,6 +118,10 @@ class Beliefs:
     def _stated(self, signature: Signature, fixed: Sequence[Value]) -> Iterable[FactRow]:
         """Return the certain rows that agree with the first known argument; all of them when none is known.
 
+        In the order in which they were added; [] when there are none. Known arguments after the first one are not
+        compared.
+
+        signature : the predicate, (name, number of arguments).
         fixed : for each argument its value when it is known, else None.
         """
         rows = self._rows.get(signature, {})
@@ -124,7 +138,12 @@ class Beliefs:
     def _open_rows(self, signature: Signature, declared: BeliefPredicate, subject: Value) -> Iterator[FactRow]:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
 
-        declared : what the vocabulary says of the predicate.
+        At most one row for all things not seen yet, with a new name as its subject; then one for each such known thing,
+        sorted in clingo's order. All other arguments are `Unknown`. Nothing for a predicate of which all facts are
+        known.
+
+        signature : the predicate, (name, number of arguments).
+        declared : what the vocabulary says of the predicate: types of arguments, and how far it is open.
         subject : the value of the argument that the fact is about; None when it is open.
         """
         if declared.open is Openness.NEVER:
@@ -140,7 +159,10 @@ class Beliefs:
     def _row(self, declared: BeliefPredicate, subject: Value) -> FactRow:
         """Return a row of which only the subject is known; all other values are `Unknown`.
 
-        They have the limits of their argument's type, if it has any.
+        They have the limits of their argument's type, if it has any, as bounds.
+
+        declared : what the vocabulary says of the predicate: types of arguments, index of the subject.
+        subject : the value of the argument that the fact is about, perhaps an `Unknown`.
         """
         values: list[Value] = [Unknown(*(slot.limits or ())) for slot in declared.arguments]
         values[declared.subject] = subject
@@ -148,7 +170,10 @@ class Beliefs:
 
 
 def _includes(a: Value, b: Value) -> bool:
-    """Return whether the value `a` may be all that `b` may be; equal values include each other."""
+    """Return whether the value `a` may be all that `b` may be; equal values include each other.
+
+    Both are integers, clingo symbols or `Unknown`; a known value includes nothing but itself.
+    """
     if not isinstance(a, Unknown):
         return not isinstance(b, Unknown) and a == b
     if a.anything:

@@ -50,7 +50,8 @@ def value_of(term: ClauseTerm, given: Bindings) -> Value:
 def number_of(term: ClauseTerm, given: Bindings) -> Value:
     """Return the value of a term that must be a number: an integer, or an `Unknown`.
 
-    Raises ClauseError for other values, and for an unbound variable. given : the values of variables, by name.
+    An `Unknown` stands for a number that is not known, and may have bounds. Raises ClauseError for other values, and
+    for an unbound variable. given : the values of variables, by name.
     """
     value = value_of(term, given)
     if isinstance(value, int | Unknown):
@@ -61,7 +62,9 @@ def number_of(term: ClauseTerm, given: Bindings) -> Value:
 def values_of(term: ClauseTerm, given: Bindings) -> Iterable[Value]:
     """Return the values of a term: all numbers of an interval, a range; or one value, in a list.
 
-    An interval of which an end is not known gives one unknown number with bounds. given : the values of variables, by
+    A value is an integer, a clingo symbol or an `Unknown`. An interval of which an end is not known gives one unknown
+    number with bounds; one whose first end is greater than its last gives an empty range. Raises ClauseError for an
+    unbound variable and for arithmetic without a result. given : the values of variables, by
     name.
     """
     if isinstance(term, Operation) and is_interval(term):
@@ -91,7 +94,8 @@ def deciding_numbers(values: Iterable[Value], others: Iterable[Value]) -> Iterab
 
     Returns
     -------
-    Numbers, ascending, with which every comparison has the same truth value as with all numbers of the interval.
+    For an interval with numbers: a list of integers, ascending, with which every comparison has the same truth value as
+    with all numbers of the interval. Else `values` itself.
     """
     if not isinstance(values, range) or not values:
         return values
@@ -108,7 +112,7 @@ def from_clingo(value: clingo.Symbol) -> Value:
 
 
 def _ends(value: Value) -> list[int]:
-    """Return a number, or the bounds of a number that is not known, in a list; [] for all else."""
+    """Return a number, or the bounds (least, greatest) of a number that is not known, in a list; [] for all else."""
     if isinstance(value, Unknown):
         return [end for end in (value.low, value.high) if end is not None]
     return [value] if isinstance(value, int) else []

@@ -93,7 +93,7 @@ def bounds(value: Value) -> tuple[int, int] | None:
 def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
     """Return whether `a sign b` holds for numbers of which only bounds (least, greatest) are known.
 
-    None when that is not known.
+    True when it does for all numbers within these bounds, False when for none, else None. The bounds are included.
     """
     if sign in (">", ">="):
         return _within(MIRRORED_SIGNS[sign], b, a)
@@ -107,7 +107,9 @@ def _within(sign: str, a: tuple[int, int], b: tuple[int, int]) -> TruthValue:
 def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
     """Return whether two values certainly differ: a known name from a new thing, a number from anything else.
 
-    known : the names of all things seen.
+    False when they may be equal.
+
+    a, b : integers, clingo symbols or `Unknown`, at least one of them `Unknown`. known : the names of all things seen.
     """
     if (bounds(a) is None) != (bounds(b) is None):
         return True
@@ -118,7 +120,8 @@ def _differ(a: Value, b: Value, known: frozenset[str]) -> bool:
 def narrow(value: Unknown, sign: str, other: Value) -> Value:
     """Return what an unknown value can still be where `value sign other` holds.
 
-    other : the value with which it is compared, known or not. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
+    value : a number within bounds, or a value of which nothing is known. other : the value with which it is compared,
+        an integer, a clingo symbol or an `Unknown`. sign : `<`, `<=`, `>`, `>=`, `=` or `!=`.
 
     Returns `value` itself when the comparison does not narrow it, and a known value when only one is left.
     """
@@ -145,7 +148,8 @@ def calculate_uncertain(sign: str, *values: Value) -> Value:
 
     Returns
     -------
-    An integer, or an `Unknown` with bounds; the bounds are those of 32-bit integers for rare operators.
+    An integer when all operands are known, else an `Unknown` with bounds, both included. The bounds are cut to those of
+    32-bit integers, and are these for all operators but `+`, `-` and `*`.
 
     Raises
     ------

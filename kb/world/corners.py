@@ -78,7 +78,10 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
     -------
     mapping of str to Corner
         By side of the robot frame: northeast, northwest, southeast, southwest. The corner furthest northeast is the one
-        with the greatest east + north, and so on. Empty when no floor is known or the encodings have no answer.
+        with the greatest east + north, and so on. A corner holds its point (x, y) in squares and its square of floor
+        (column, row), both on the arrays of the map view (row 0 in the south), and the outward unit normals of its two
+        walls where one of these lies askew to the grid, else None. One corner may stand for several sides. Empty when
+        no floor is known or the encodings have no answer.
 
     Raises
     ------
@@ -97,8 +100,9 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
 def _convex_corners(floor: Bools) -> list[Corner]:
     """Return the corners of the convex hull of a mask, sorted by (x, y), each with the square that has it.
 
-    `floor` is (rows, columns) bool with at least one square. Points are in the frame of the mask: squares, origin at
-    the south-west corner of its square [0, 0].
+    Each holds its point, that square as (column, row), and the outward unit normals of its walls where one of these
+    lies askew to the grid, else None. `floor` is (rows, columns) bool with at least one square. Points are in the frame
+    of the mask: squares, origin at the south-west corner of its square [0, 0].
     """
     rows = np.flatnonzero(floor.any(axis=1))
     first = floor[rows].argmax(axis=1)

@@ -74,7 +74,7 @@ class DoorwayNecks(NamedTuple):
         """Return the squares where the narrowest line of a neck may be, wherever in their squares its walls end.
 
         These are squares about the neck where the floor is wider than the neck by at most WIDTH_UNCERTAINTY. The mask
-        is (rows, columns) bool on the view's arrays, row 0 in the south.
+        is (rows, columns) bool on the view's arrays, row 0 in the south. `neck` is one of `necks`, view frame.
         """
         mask = np.zeros(self.screen.shape, np.bool_)
         for column, row in self.screen.narrows(
@@ -102,8 +102,11 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
     Returns
     -------
     DoorwayNecks
-        The necks, each with its certainty in percent; view frame (origin at the south-west corner of the map view's
-        square [0, 0]).
+        The necks, and the floor on which they were found, as a screen with a margin about it. A neck holds the passage
+        (width, mouths and clearances on both sides, in squares), the line (two points) across it where it was seen
+        best, and its certainty in percent; view frame (origin at the south-west corner of the map view's square [0,
+        0]). Among those with an equally wide floor the order is that in which geometry finds them. Of several lines
+        with equal certainty that along the middle of the neck is preferred to its mouths.
     """
     walls, seen_verge = _wall_parts(model), verge & model.view.seen
     screen = Screen(np.pad(~verge, NECK_UNSEEN_MARGIN, constant_values=True))
@@ -123,7 +126,9 @@ def find_necks(model: WorldModel, verge: Bools, doubtful: Bools) -> DoorwayNecks
 def _passages(screen: Screen) -> list[Passage]:
     """Return the necks whose ends lie within the view, in the view frame; `screen` has the margin about it.
 
-    Those come first that have floor ENCODED_DOOR_RATIO times as wide on both sides; then those with MIN_OPENING_RATIO.
+    Those come first that have floor ENCODED_DOOR_RATIO times as wide on both sides; then those with MIN_OPENING_RATIO
+    that share no mouth with one of the first. A neck (Passage) holds its width, mouths (lines across it, two points (x,
+    y) each), and the clearance on both sides, in squares.
     """
     doors = screen.passages(ENCODED_DOOR_RATIO)
     mouths = {frozenset(mouth) for passage in doors for mouth in passage.mouths}
@@ -145,9 +150,9 @@ def _passages(screen: Screen) -> list[Passage]:
 def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> list[Indices]:
     """Return the squares along a line across a passage, at two samples a square: on one side of it, and on the other.
 
-    Of a mouth of a doorway that has some depth, only the side within the doorway is returned. Each entry is (rows,
-    columns), two int arrays of one length, indices clipped to an array of `shape` (rows, columns). `line` is in the
-    view frame.
+    Two entries, or one: of a mouth of a doorway that has some depth, only the side within the doorway is returned. Each
+    entry is (rows, columns), two int arrays of one length, indices clipped to an array of `shape` (rows, columns).
+    `line` is in the view frame.
     """
     (ax, ay), (bx, by) = line
     one, two = passage.mouths
@@ -160,8 +165,8 @@ def _squares_along(passage: Passage, line: Segment, shape: tuple[int, ...]) -> l
 def _sample_positions(line: Segment) -> Floats:
     """Return the positions on a line at which squares are looked up, as fractions of its length.
 
-    (n,) float64, ascending, two for each square of length, and two at least, each in the middle of its part of the
-    line.
+    (n,) float64 between 0 (its first end) and 1, ascending, two for each square of length, and two at least, each in
+    the middle of its part of the line. `line` is two points (x, y), in squares.
     """
     count = max(2, round(2 * math.dist(*line)))
     parts: Floats = (np.arange(count) + 0.5) / count
@@ -187,7 +192,9 @@ class _WallParts(NamedTuple):
 def _wall_parts(model: WorldModel) -> _WallParts:
     """Return the edge-connected parts of what is probably occupied, on the view's arrays.
 
-    Those are the squares that are occupied with a probability of at least JAMB_PROBABILITY.
+    Those are the squares that are occupied with a probability of at least JAMB_PROBABILITY. The result holds the number
+    of each square's part, (rows, columns) with 0 for none, and the longer side of each part's containing rectangle, in
+    squares; a part on which verge was felt counts as at least SHORTEST_WALL squares long.
     """
     found = components(model.view.seen & (model.view.probability >= JAMB_PROBABILITY))
     longer = extents(found.labels, found.number)
@@ -279,7 +286,7 @@ def jamb(wall: Bools, end: XY) -> Indices:
     Returns
     -------
     rows, columns : (n,) int64
-        The indices of at most four squares; empty arrays where the point touches no wall.
+        The indices of at most four squares, by row, then by column; empty arrays where the point touches no wall.
     """
     columns, rows = (sorted({math.floor(v - 0.5), math.floor(v + 0.5)}) for v in end)
     touched = [

@@ -51,7 +51,8 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
     places : Places
         The rooms and corners of that model.
     accommodated : Accommodation
-        How the impression was explained, and the status of each of its fields.
+        How the impression was explained: the chosen explanation, with its kind as a word, and the status of each of the
+        160 fields.
     bound : mapping of str to str
         Name of a parameter of the task -> name of the node of the model that it means.
 
@@ -88,12 +89,13 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     model : WorldModel
         The world model.
     places : Places
-        Its rooms and corners.
+        Its rooms with their doors, and the corner of the known floor furthest towards each side.
 
     Yields
     ------
     str
-        One fact, such as `kind(o1,object,95)`.
+        One fact, such as `kind(o1,object,95)`: first those of the robot, the floor and the verge, then all outlines,
+        the objects by number, rooms, doors and corners.
     """
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
@@ -110,7 +112,9 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
 def _root_facts(model: WorldModel) -> Iterator[str]:
     """Yield the facts of the robot, the floor and the verge, without full stops.
 
-    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand.
+    These are node/1, kind/3, child/2 and offset/3, and held/1 for the object in hand. Offsets are hundredths of
+    squares, east and north in the robot frame: the robot's from where it woke, those of floor and verge from their
+    parent node. Confidences are percent.
     """
     east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ROOT_NODE})"
@@ -129,7 +133,8 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
 def _share_settled(model: WorldModel, kind: str) -> int:
     """Return the mean confidence in the squares of the floor or the verge, in percent; 0 when there are none.
 
-    `kind` is floor; any other word stands for verge.
+    It is rounded down; a square that the counts leave open counts as 0. `kind` is floor; any other word stands for
+    verge.
     """
     mask = model.floor if kind == "floor" else model.verge
     return int(_square_confidence(model)[mask].sum()) // int(mask.sum()) if mask.any() else 0
@@ -147,6 +152,8 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of one object, its outline apart, without full stops.
 
     These are node/1, child/2, kind/3, offset/3, shape/3, colour/3, movable/2, and in/2 and adjacent/2 where they hold.
+    The offset is that of the middle of its squares from where the robot woke, in hundredths of squares, robot frame;
+    confidences are percent. `rooms` tells in which room the object's middle lies.
     """
     name = node.name
     yield f"node({name})"
@@ -170,7 +177,10 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
 
 
 def _adjacent_to_robot(node: Node, model: WorldModel) -> bool:
-    """Return whether an object may cover the robot's square or one of the 8 squares about it."""
+    """Return whether an object may cover the robot's square or one of the 8 squares about it.
+
+    The squares are those of the node's patch and of the robot's place in `model`, both in the map frame.
+    """
     row, column = math.floor(model.place[1]) - node.patch.south, math.floor(model.place[0]) - node.patch.west
     return bool(node.patch.mask[max(row - 1, 0) : max(row + 2, 0), max(column - 1, 0) : max(column + 2, 0)].any())
 
@@ -213,7 +223,11 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
     `rect(Node,West,South,East,North)`, then `segment(Node,Number,East,North,East,North,Confidence)` from a point to the
     next one, numbered from 0 for each node. Coordinates are hundredths of squares, robot frame; confidences percent.
 
-    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated.
+    Nodes come in the order of `shapes`: of each its rectangle, then its segments, one for each point of its rings in
+    order. A confidence is the mean of the percent by which the squares on both sides of the segment are settled.
+
+    shapes : pairs (name of the node, its rings); a ring is (n, 2) points, map frame, the first not repeated. There is
+        at least one ring in all.
     """
     names, rings = zip(*((name, ring) for name, parts in shapes for ring in parts), strict=True)
     starts = np.concatenate(rings)
@@ -237,7 +251,7 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
 def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
     """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame.
 
-    The results are hundredths of squares, rounded.
+    The results are hundredths of squares from where the robot woke, rounded; `model` has the frame.
     """
     placed: Floats = np.column_stack(model.frame.place_to_utak(*points.T))
     answer: Longs = np.rint(FACT_UNITS_PER_SQUARE * placed).astype(np.int64)
@@ -268,7 +282,8 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of rooms and doors, without full stops.
 
     These are room/1, unseen/2 (the number of squares of the room that no count settles), in/2 for the robot, and for
-    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round.
+    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round. Rooms r1, r2,
+    ... come first, in order, then the doors in the order of `rooms`.
     """
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):

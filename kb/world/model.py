@@ -260,7 +260,8 @@ class WorldModel:
     def protruding(self) -> list[Bools]:
         """Masks of parts of the bounds that stick out into the floor and were not touched yet, smaller ones first.
 
-        Each is (rows, columns) bool on the view's arrays. Such a part may be a thing that stands against the verge.
+        Each is (rows, columns) bool on the view's arrays, row 0 in the south; [] when nothing sticks out. Parts may
+        overlap. Such a part may be a thing that stands against the verge.
         """
         height, width = self.labels.shape
         felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
@@ -271,7 +272,11 @@ class WorldModel:
         return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
 
     def object(self, name: str) -> Node | None:
-        """Return the node of the object with this name, `o<n>`; None when there is none."""
+        """Return the node of the object with this name, `o<n>`; None when there is none.
+
+        A node holds what is believed of the object: its squares and outline (map frame, in squares), shape and colour,
+        and confidences in percent.
+        """
         return next((node for node in self.objects if node.name == name), None)
 
     @property
@@ -323,7 +328,8 @@ class WorldModel:
     def mask(self, patch: Patch) -> Bools:
         """Return the (rows, columns) mask, on the view's arrays, of a patch that lies within them.
 
-        A patch of the map frame; for one that may reach beyond them see `mask_within`.
+        It is bool, row 0 in the south. A patch that reaches beyond them raises ValueError or gives a wrong mask. A
+        patch of the map frame; for one that may reach beyond them see `mask_within`.
         """
         mask = np.zeros(self.labels.shape, np.bool_)
         row, column = patch.south - self.view.south, patch.west - self.view.west
@@ -351,6 +357,9 @@ def count_open_squares(mask: Bools, view: MapView) -> tuple[int, int]:
 
     Determined is what the counts settle, or whose probability is within MAX_FREE_PROBABILITY of 0 or 1; doubtful what
     they do not settle, and whose probability is further than MAX_CLEAR_PROBABILITY from both.
+
+    Both are counts of squares, those of the region and those that share an edge with one of these; the doubtful ones
+    are among the undetermined ones.
 
     mask : (rows, columns) bool, the squares of the region on the view's arrays.
     """

@@ -69,6 +69,8 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     MapRegions
         `regions` itself where nothing but verge was felt. Else each thing has a label and a name `part<n>` beyond all
         others, and is an object with FELT_OBJECT_CONFIDENCE percent; regions of which no square is left are dropped.
+        The numbers of the other regions stay. The result holds the regions, old ones first, the number of each square's
+        region on the arrays of the map view, and what each region is taken for.
     """
     percept, labels, kinds = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
@@ -91,7 +93,9 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
     """Return the region `part<label>` of a thing that stands against the verge.
 
-    `thing` is its (rows, columns) mask on the view's arrays, with at least one square.
+    It holds the name, that it is occupied, the percent of its squares that are settled as occupied, that it touches
+    nothing unseen, its longer side in squares, and its mass (expected occupied squares) in tenths of squares. `thing`
+    is its (rows, columns) mask on the view's arrays, with at least one square.
     """
     rows, columns = np.nonzero(thing)
     settled = int(100 * (view.state[thing] == OCCUPIED).sum() // len(rows))
@@ -124,7 +128,9 @@ def seen_objects(
     Returns
     -------
     tuple of Node
-        By the number in their names; () when there are none.
+        By the number in their names; () when there are none. A node holds the region's name, its squares as a patch and
+        its believed outline (map frame, in squares; None when no shape fits), shape classes and the belief that it is
+        an object in percent, its colour or None, and how many squares are not determined.
 
     Raises
     ------
@@ -146,7 +152,10 @@ def seen_objects(
 
 
 def _may_be_object(region: Region, kinds: Kinds) -> bool:
-    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent."""
+    """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent.
+
+    Short enough is an extent of at most LONGEST_OBJECT squares. `kinds` has the confidences in what each region is.
+    """
     return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
 
 
@@ -168,7 +177,8 @@ class _Window(NamedTuple):
 def _windows(model: WorldModel, labels: list[int]) -> list[_Window]:
     """Return the parts of the map about the regions with these labels, in their order.
 
-    A label n is that of the region `part<n>`.
+    A label n is that of the region `part<n>`. Each holds the view of the region's containing rectangle, one square
+    wider on each side where the map goes on, and the (rows, columns) mask of the region on the arrays of that view.
     """
     framing = bounding_boxes(model.labels, int(model.labels.max()))
     found = []
@@ -190,6 +200,10 @@ def _seen_node(
     touches: Touches,
 ) -> Node:
     """Return the node of a region of the map.
+
+    It holds the squares and the outline (map frame, in squares; None when no shape fits), the belief in percent that it
+    is an object, its shape classes and colour, the impressions that settled its squares, and by how much its sides may
+    lie further in, as of an object that never moved.
 
     name : that of the node, `o<n>`.
     window : the map about the region.
@@ -242,7 +256,8 @@ def shape_facts(measured: Mapping[str, ShapeMeasurement]) -> list[str]:
 def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...] = ()) -> HeldObject:
     """Return an object that was held, classified anew if its shape is open, since it was found to be larger.
 
-    Its shape is then measured from where it lay when it was first held.
+    Its shape is then measured from where it lay when it was first held. The result is a new object that differs in
+    `shape` alone (shape class -> confidence in percent; {} when nothing fits), with its outline in the map frame.
 
     Parameters
     ----------
@@ -267,7 +282,9 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
 def grasped(node: Node) -> HeldObject:
     """Return an object as it is when it is held for the first time.
 
-    The outline of the node must be known. The object lies where the node's outline lies, map frame, and was not turned.
+    The outline of the node must be known. The object lies where the node's outline lies, map frame, in squares, and was
+    not turned, nor seen to move; name, shape, colour and the impressions that support it are the node's. Its outline is
+    exact where its corners are on the grid; then its sides may lie less than 1 square further in.
     """
     return HeldObject(
         name=node.name,
@@ -286,8 +303,9 @@ def within_reach(
 ) -> list[Node]:
     """Return the objects of which one may be on the adjacent square in a direction.
 
-    These are the objects that may cover that square. Without any: the objects near it, if the colour felt there may be
-    theirs, and if the squares that the direction may name are not all settled as occupied, as a wall is.
+    These are the objects that may cover that square; they are returned as their nodes. Without any: the objects near
+    it, if the colour felt there may be theirs, and if the squares that the direction may name are not all settled as
+    occupied, as a wall is.
 
     Parameters
     ----------
@@ -323,8 +341,13 @@ def _felt_objects(
 
     Near are those that may cover one of the squares that the direction may name, or one of the 8 squares about these.
     An object whose colour is not known may have any. [] when floor is felt, or when the squares that the direction may
-    name are all settled as occupied. For the parameters see `within_reach`: `square` is the robot's own, map frame,
-    `direction` one of the eight DIRECTIONS of the robot frame.
+    name are all settled as occupied. The nodes come in the order of `objects`.
+
+    touches : what is felt now in each direction.
+    frame : the believed frame, which tells the squares that a direction may name.
+    occupancy : the map, with what the counts settle of each square.
+    square : the robot's own square (x, y), map frame.
+    direction : one of the eight DIRECTIONS of the robot frame.
     """
     colour = touches.felt_in(direction)
     x, y = square
@@ -356,7 +379,9 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     Returns
     -------
     model : WorldModel
-        The model with one more region, the last one: its number is the greatest in `labels`.
+        A new model with one more region, the last one: its number is the greatest in `labels`, and it is an object with
+        100 percent. View (states, probabilities, seen squares), labels and kinds are changed; `percept` and `objects`
+        are not. Where the object may cover no square but settled walls, no square has the new number.
     patch : Patch
         The squares that the object covers, or may cover; map frame.
     """
@@ -375,7 +400,10 @@ def lay_upon(model: WorldModel, load: HeldObject) -> tuple[WorldModel, Patch]:
     outside = open_ & ~lies
 
     def with_object(chance: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return (rows, columns) probabilities of squares to be occupied, changed for the object."""
+        """Return (rows, columns) probabilities, 0 to 1, of squares to be occupied, changed for the object.
+
+        `chance` are those without it, on the view's arrays; a new array is returned.
+        """
         may = np.where(outside, np.maximum(chance, np.float32(PLAY_PROBABILITY)), np.float32(LAID_PROBABILITY))
         return np.where(sure, np.float32(1), np.where(open_, may, chance))
 
@@ -393,12 +421,14 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
     """Return the node of an object that was held.
 
     It can be moved with 99 percent belief when it was seen to move, with 0 after MIN_STUCK_MOTIONS motions in a row
-    that did not move it, else with 50.
+    that did not move it, else with 50. The node holds the squares and the believed outline (map frame, in squares), the
+    region's name, shape and colour as before the grasp, the degrees by which it was turned (counter-clockwise
+    positive), and that it is an object with 100 percent.
 
     Parameters
     ----------
     load : HeldObject
-        The object.
+        The object that was held, where it is believed to lie now; map frame.
     patch : Patch
         The squares that it covers, or may cover; map frame.
     label : int

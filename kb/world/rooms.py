@@ -139,11 +139,14 @@ class Rooms:
 
     @property
     def sure(self) -> tuple[Door, ...]:
-        """The doors that count as such: with a confidence of at least MIN_DOOR_CONFIDENCE percent."""
+        """The doors that count as such: with a confidence of at least MIN_DOOR_CONFIDENCE percent; in order."""
         return tuple(door for door in self.doors if door.sure)
 
     def leading(self, room: int, least: int = MIN_DOOR_CONFIDENCE) -> list[Door]:
         """Return the doors of a room, in the order of `doors`; [] when it has none.
+
+        A door holds its name, the ends of its neck (view frame, in squares), the numbers of the rooms on its two sides
+        and its confidence in percent.
 
         Parameters
         ----------
@@ -192,7 +195,11 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
     Returns
     -------
     Rooms
-        One room without doors, on all squares, where there is no verge; no room where no floor is known.
+        The number of each square's room, from 1 (the one in which the robot woke), 0 for none, and the squares of
+        doorways, both on the view's arrays; all necks that may be doors, d1, d2, ... in the order in which they were
+        found, each with its ends (view frame, in squares), the rooms on its two sides and its confidence in percent;
+        and of the other necks the nearest to being a door, or None. One room without doors, on all squares, where there
+        is no verge; no room where no floor is known.
 
     Raises
     ------
@@ -228,8 +235,11 @@ def _judge_necks(
 ) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
     """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door.
 
-    The first is a list of (neck, percent) in the order of `necks`; the second is None when every neck is a door. Necks
-    with a certainty of 0 percent are no doors.
+    The first is a list of (neck, percent) in the order of `necks`; the second holds the ends of that neck, the width of
+    the floor on its narrower side in squares, and a point beyond it on both sides, view frame; it is None when every
+    neck is a door. Necks with a certainty of 0 percent are no doors, and count for neither.
+
+    necks : the necks with their certainty in percent. rules : files with the user's own encodings; () for none.
     """
     known = [neck for neck in necks if neck.certainty > 0]
     facts = []
@@ -245,7 +255,12 @@ def _judge_necks(
 
 
 def _opening(neck: DoorwayNeck) -> Opening:
-    """Return a neck that is no door as an Opening: the width and the square of its narrower side come first."""
+    """Return a neck that is no door as an Opening: the width and the square of its narrower side come first.
+
+    It holds the two ends of the line across it (left one first as seen from its first side), the width of the floor on
+    its narrower side, and the centres (x, y) of a square beyond it on the narrower and on the wider side, in squares,
+    view frame.
+    """
     (least, narrow), (_, wide) = sorted(zip(neck.passage.sides, neck.passage.gates, strict=True))
     return Opening(*neck.line, 2 * least, narrow, wide)
 
@@ -265,9 +280,10 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
     """Return the rooms on both sides of a passage, and divide the doorway between them in `labels`, in place.
 
     `labels` is (rows, columns) int32 on the view's arrays: numbers of rooms, NO_ROOM on floor of no room, -1 where
-    there is no floor. The passage is in the view frame. Each square between its mouths gets the room of the nearer one.
-    Where nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room
-    counts as that of the other one; (0, 0) when neither has one.
+    there is no floor. The passage is in the view frame. The result is the room on its first side, then that on its
+    second. Each square between its mouths gets the room of the nearer one, of the first at equal distances. Where
+    nothing is seen beyond the doorway, its half of the doorway is a room of its own. A side without any room counts as
+    that of the other one; (0, 0) when neither has one.
     """
     columns, rows = np.array(passage.between, np.int64).reshape(-1, 2).T
     away = [_distances_to_line(mouth, columns, rows) for mouth in passage.mouths]
@@ -282,7 +298,10 @@ def _divide_doorway(passage: Passage, labels: Labels) -> tuple[int, int]:
 
 
 def _within(labels: Labels, columns: Longs, rows: Longs) -> Bools:
-    """Return which of some squares, given by index, lie within an array: (n,) bool."""
+    """Return which of some squares, given by index, lie within an array: (n,) bool.
+
+    columns, rows : (n,) indices, perhaps negative or too great. labels : the array, of which only the shape counts.
+    """
     inside: Bools = (rows >= 0) & (columns >= 0) & (rows < labels.shape[0]) & (columns < labels.shape[1])
     return inside
 
