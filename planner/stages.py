@@ -54,9 +54,12 @@ class Stage:
 def stages(task: Task) -> tuple[Stage, ...]:
     """Split the goals of a task into its stages, in the order in which they shall hold.
 
+    A Stage holds goals that shall hold at one time, and whether another stage follows.
+
     Parameters
     ----------
     task : Task
+        The goals and constraints, as the task file gives them.
 
     Returns
     -------
@@ -90,6 +93,8 @@ def _ordered(goals: list[Fact]) -> list[Stage]:
     """Order the goals of one step: each goal of the track in a stage alone, then the others together in one stage.
 
     Returns [] for no goals.
+
+    A Stage holds goals that shall hold at one time, and whether another stage follows.
     """
     of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]
     of_place = tuple(goal for goal in goals if goal.name not in TRACK_GOALS)

@@ -96,6 +96,8 @@ class Infeasibility:
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
     """Return why no way was found for an object.
 
+    An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+
     Parameters
     ----------
     node : the object.
@@ -150,6 +152,9 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
 
     It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
     one of that level. The most permissive level is the greatest number: it allows the most squares, 0 only the surest.
+
+    A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the grasp and
+    motions, in squares and degrees.
 
     plans : refuted plans, each with its certainty level, in the order of asking; at least one, else ValueError.
     """

@@ -24,6 +24,9 @@ def qualify(decision: Decision, model: WorldModel) -> Decision:
 
     The fact is added to the reason.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
     decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
@@ -89,6 +92,10 @@ def unfelt_walls(model: WorldModel) -> Bools:
     """Return the squares beside known floor on which a wall was seen and never felt.
 
     (rows, columns) bool on the arrays of the view; squares of objects do not count.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     things: Bools = np.zeros_like(felt)

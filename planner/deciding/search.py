@@ -52,11 +52,14 @@ def subgoals_towards(
     none. Else they are looks, first those where just the missing thing may be; and these alone, with objects that may
     be it, while one of them can surely be reached.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
     Parameters
     ----------
     where : the destination of each goal, at least one.
-    situation : what is believed.
-    reconciled : what the parameters of the task mean.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
     to : what the robot goes up to a missing object for; to take it by default.
     """
     cost_maps = situation.cost_maps
@@ -81,9 +84,12 @@ def contact_subgoals(situation: Situation) -> list[Subgoal]:
 
     Subgoals of kind INSPECT; [] when nothing is left to feel.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
     Parameters
     ----------
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     return wall_contacts(situation) or island_contacts(situation)
 
@@ -92,6 +98,13 @@ def wall_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each part of a wall that may be an object standing against it, where it can be felt.
 
     Subgoals of kind INSPECT; parts that were felt, or have no floor beside them, are left out.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     looks = [frontiers.wall_touch_viewpoint(situation.cost_maps, mask) for mask in situation.model.protruding]
     return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
@@ -101,6 +114,13 @@ def island_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each free-standing object that would make more doors if it were wall, where it can be felt.
 
     Subgoals of kind INSPECT; objects that were touched or moved, or have no floor beside them, are left out.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     subgoals = []
@@ -131,9 +151,12 @@ def _doubtful_objects(
 ) -> list[Candidate]:
     """Return the objects of the world model that may be what is looked for, each with a look at it or a touch of it.
 
+    A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
+    view), and a Subgoal: a look at it, with its chance in percent.
+
     Parameters
     ----------
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     reconciled : what the parameters of the task mean; its doubtful pairs name the objects.
     likely : the probability (rows, columns) that a square belongs to the shape looked for; None when no shape is told.
     to : what the robot goes up to an object for.
@@ -173,6 +196,9 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
 def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Candidate]:
     """Return the places where map completions show what is looked for, with looks at them; [] for none.
 
+    A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
+    view), and a Subgoal: a look at it, with its chance in percent.
+
     Parameters
     ----------
     cost_maps : of the present world model.
@@ -185,6 +211,9 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Ca
 
 def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
     """Return looks at what was never seen, and at what bounds the floor.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
     Parameters
     ----------
@@ -223,6 +252,11 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
 
     (rows, columns) on the arrays of the view, 0 to 1, by map completions (sampled maps that agree with all counts). Of
     the shapes that the task tells of parameters that match nothing seen so far, it is the first by name.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
+    reconciled : names the parameters that match nothing seen so far.
     """
     wanted = sorted(
         str(claim.fact.args[1])
@@ -238,6 +272,10 @@ def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
     """Return whether some square of a subgoal can be reached over squares that are surely free (certainty level 0).
 
     False for a subgoal without squares.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

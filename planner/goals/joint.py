@@ -50,6 +50,10 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 
     However much more floor becomes known, such corners only move further apart. Also "" when the two corners of the
     known floor are near enough to each other. goals : of one stage, for the robot.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
@@ -63,7 +67,11 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 
 
 def _all_ends(placement: Placement) -> list[End]:
-    """List all ends of a placement (squares, view frame), the loose ones last."""
+    """List all ends of a placement (squares, view frame), the loose ones last.
+
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+    """
     return [*placement.ends.values(), *placement.loose.values()]
 
 

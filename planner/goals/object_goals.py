@@ -39,12 +39,18 @@ class OptimisticEnds:
         """Compute each end as if the floor went on as optimistic planning assumes, by the same names.
 
         In squares, view frame; an end may reach beyond the arrays of the view.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
         """
         return {name: _optimistic_end(mask, self.situation) for name, mask in self.masks.items()}
 
 
 def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object.
+
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
 
     Parameters
     ----------
@@ -55,6 +61,7 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
     began : XY
         Where its middle was at first, a point (x, y) of the map frame, in squares.
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -77,6 +84,9 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
 def _without_rim(end: End) -> End:
     """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged.
 
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
     end : in squares, in any frame; the result is in the same one.
     """
     if not isinstance(end, Inside):
@@ -90,6 +100,14 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
     Ends in squares, view frame. began : where the middle of the object was at first, (x, y) of the map frame, in
     squares. Raises ValueError when the goal is none for an object.
+
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     where = goal.args[1]
     if side := corner_side(goal):
@@ -108,7 +126,13 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
-    """Return whether an object meets one of some ends as it is now. ends : by name, in squares, view frame."""
+    """Return whether an object meets one of some ends as it is now. ends : by name, in squares, view frame.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
     return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
 
@@ -117,6 +141,14 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 
     At first a likely door will do: the way there shows whether it is one. Walls that may be objects, and so might make
     other rooms, are only looked at when the object is there. Ends in squares, view frame, named by rooms: r1, r2, ...
+
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
@@ -138,6 +170,13 @@ def _optimistic_end(mask: Bools, situation: Situation) -> End:
     """Return the end inside squares of the view, or inside the unseen squares that these lead to.
 
     In squares, view frame; it may reach up to UNSEEN_MARGIN squares beyond the view. mask : (rows, columns) bool.
+
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     return moved(Inside(mask_to_polygon(spread_into_unseen(mask, situation))), -UNSEEN_MARGIN, -UNSEEN_MARGIN)
 
@@ -155,7 +194,12 @@ def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
 
     One end, "hidden", in squares, view frame; none while the hidden squares are fewer than the object needs.
 
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
     began : a point (x, y) of the map frame, in squares.
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))

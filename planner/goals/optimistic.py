@@ -31,6 +31,7 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
     mask : (rows, columns) bool of the view; it is not changed. Returns a new mask with the margin of
         `with_unseen_margin`.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     unseen, wider = ~with_unseen_margin(situation.model.view.seen), with_unseen_margin(mask)
     for _ in range(UNSEEN_MARGIN):
@@ -42,5 +43,9 @@ def optimistic_floor(situation: Situation) -> Bools:
     """Return all squares that are assumed to be free, (rows, columns) bool with the margin of `with_unseen_margin`.
 
     These are the free ones of level OPTIMISTIC_LEVEL and the unseen ones that these lead to.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

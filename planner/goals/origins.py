@@ -55,6 +55,7 @@ class Origins:
         node : Node
             The thing now; its outline is known.
         situation : Situation
+            What is believed: world model, rooms, doors, corners and track.
 
         Returns
         -------
@@ -82,7 +83,7 @@ class Origins:
         ----------
         parameter : the parameter of the task that means the thing.
         node : the thing now.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
@@ -100,7 +101,7 @@ class Origins:
         ----------
         parameter : the parameter of the task that means the thing.
         node : the thing now; its outline is known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         rooms, view = situation.rooms.labels, situation.model.view
         began = situation.model.frame.place_from_utak(*self._known[parameter].place)
@@ -112,6 +113,10 @@ def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
     """Return the middles of the doors of the room that holds a point, as points (east, north) of the robot's own frame.
 
     In squares; () for no door. place : a point (x, y) of the map frame, in squares.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])

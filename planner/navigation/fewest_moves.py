@@ -41,6 +41,9 @@ class FewestMoves:
         With the cost of the way there, the price then comes to MOVE_COST for each move and SQUARE_COST for each square
         of way. A subgoal that one move reaches keeps only the squares that it reaches; one that cannot be reached stays
         as it is.
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
         """
         return [self._priced(subgoal) for subgoal in subgoals]
 
@@ -50,6 +53,9 @@ class FewestMoves:
         These are the robot's square and where the move ends, (column, row) on the arrays of the view; they need not be
         neighbours. The length is straight, in squares; the clearance is not computed: 0; the level is 0. Returns None
         for all other subgoals, and when the robot is there.
+
+        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+        level, 0 the surest.
         """
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
@@ -67,7 +73,11 @@ class FewestMoves:
         return self._cost_maps.distances[0].ravel()
 
     def _priced(self, subgoal: Subgoal) -> Subgoal:
-        """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`)."""
+        """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`).
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+        """
         reached = self._cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is None:
             return subgoal

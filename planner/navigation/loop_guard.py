@@ -39,6 +39,10 @@ class LoopGuard:
 
         The same are the robot's place and the command, to STATE_DIGITS decimals, what it holds, and what is known (see
         `_knowledge`).
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
         """
         x, y = model.place
         values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
@@ -57,6 +61,9 @@ class LoopGuard:
 
         Prices are in squares of way. The loops of a subgoal are the most that were counted for one of its squares. All
         loops are forgotten as soon as more is known.
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
         Parameters
         ----------
@@ -78,7 +85,12 @@ class LoopGuard:
         return found
 
     def _on_view(self, model: WorldModel) -> Longs:
-        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view."""
+        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view.
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
+        """
         rows, columns = model.labels.shape
         loops = np.zeros((rows, columns), np.int64)
         for (x, y), times in self._loops.items():
@@ -93,6 +105,10 @@ def _knowledge(model: WorldModel) -> StateKey:
 
     In this order: how many squares were seen, how many are settled, how many stopped a motion, and for each object that
     was moved or is stuck its name, how often it is stuck, and the west and south square of its patch (map frame).
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(

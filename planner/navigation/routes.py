@@ -54,6 +54,8 @@ PathFinder = Callable[
 def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
 
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
+
     Parameters
     ----------
     free : (rows, columns) bool, True where free, on the arrays of the view.
@@ -71,6 +73,8 @@ def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's.
+
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
 
     Parameters
     ----------
@@ -90,6 +94,8 @@ def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route over the squares and their eight neighbours, by A*.
 
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
+
     Parameters
     ----------
     free : (rows, columns) bool, True where free, on the arrays of the view.
@@ -107,6 +113,8 @@ def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
     """Return the only route of a path-finder, with its length and the clearance of the squares that it touches.
+
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
 
     Parameters
     ----------
@@ -128,9 +136,13 @@ PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility":
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
     """Find topologically distinct routes to the nearest reachable square of `goals`.
 
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     level : int
         The certainty level of the squares that may be crossed, 0 the surest; at least one goal can be reached at it.
     goals : SquareIndices
@@ -171,11 +183,15 @@ def choose_route(
     of the expected number of occupied squares; `through(number, door)`; `last(number)` for a route that continues the
     one before.
 
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
     Parameters
     ----------
     offered : Sequence[PlannedRoute]
         On the arrays of the view.
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     before : frozenset[Square]
         The squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
     doors : Sequence[Door]

@@ -116,6 +116,9 @@ class CostMaps:
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
 
+        A Reached holds a certainty level (0 the surest) and the cost of the way: squares, plus LEVEL_COST for each
+        level.
+
         Parameters
         ----------
         squares : flat indices (row * columns + column) on the arrays of the view.
@@ -231,6 +234,7 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
 
     Returns
     -------
@@ -249,6 +253,10 @@ def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
     """List the squares of a patch and all squares around it (eight neighbours) that lie within the view.
 
     Returns flat indices (row * columns + column) on the arrays of the view, (n,), in no stated order.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))
     rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west

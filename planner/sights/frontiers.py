@@ -58,9 +58,13 @@ class Viewpoint(NamedTuple):
 def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     apart : int
         Floor within so many rows and columns of an earlier viewpoint is left out.
 
@@ -81,6 +85,13 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     Returns one Viewpoint for each gap; [] for none. Its squares (flat indices on the arrays of the view) are the
     squares of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot would see
     beyond.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)
@@ -93,9 +104,13 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
 def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
     """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     apart : int
         Floor within so many rows and columns of an earlier viewpoint is left out.
     odd : bool
@@ -119,6 +134,14 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
     """Return the floor beside an object from which the robot feels its colour and did not look yet.
 
     Floor of the eight neighbours counts. A Viewpoint without squares when there is none.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+    node : the object, a node of the world model.
     """
     beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
@@ -129,7 +152,11 @@ def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
 
     A Viewpoint without squares when there is none. Only floor that shares an edge with the thing counts.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
@@ -138,9 +165,13 @@ def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
 def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     """Return the floor from which some squares are seen best, where the robot did not look yet.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     mask : Bools
         (rows, columns) bool on the arrays of the view, the squares to see.
     what : str
@@ -164,6 +195,7 @@ def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
 
     x, y : the point, in squares, map frame. Returns flat indices (row * columns + column) on the arrays of the view,
         (n,), possibly none.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
@@ -175,6 +207,10 @@ def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareInd
     The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them that is more than
     VIEW_SPACING from every square looked from. Given and returned are flat indices (row * columns + column) on the
     arrays of the view, (n,); possibly none is returned.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask = indices_to_mask(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
@@ -186,7 +222,11 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
 
     Returns at most one Viewpoint for each door, each with squares, in the order of the doors.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     doors : possible doors; those that are sure, or whose walls are settled or cannot be seen better, are left out.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view = cost_maps.model.view
     vague = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY)
@@ -208,6 +248,13 @@ def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
 
     Its squares are those of the part itself. All floor is connected, so a passage that is not seen yet must lead there.
     Parts of less than MIN_UNREACHED_SQUARES squares are left out.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     apart = components(cost_maps.model.space & ~cost_maps.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
@@ -219,6 +266,13 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
 
     The chance is in percent, 1 to 90. The nearest square is that of the shortest way for the robot; the first one when
     none can be reached.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     if not viewpoints:
         return []
@@ -231,9 +285,13 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
 
     They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     reachable : Bools
         (rows, columns) bool on the arrays of the view, the squares that one move reaches.
     move_cost, square_cost : float
@@ -268,6 +326,10 @@ def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
     """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached.
 
     A flat index on the arrays of the view, as those given (at least one); the first of them when none is reached.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     reached = cost_maps.nearest(squares)
     if reached is None:
@@ -283,6 +345,7 @@ def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:
 
     apart : floor within so many rows and columns of an earlier viewpoint, a square looked from, is left out; 0 for that
         square only.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask: Bools = cost_maps.floor & ~dilate(cost_maps.looked_from, apart)
     return mask

@@ -57,9 +57,13 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 
     A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     likely : Floats
         (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted object.
     what : str
@@ -91,9 +95,13 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Return the floor from which an object is seen better than it was.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     node : Node
         The object.
     chance : float
@@ -119,6 +127,7 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     mask : Bools
         (rows, columns) bool on the arrays of the view, the squares that it may cover.
     chance : float
@@ -183,6 +192,7 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
     a corner in `to`, all of these.
 
     surely : (rows, columns) bool, the squares of the object.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     sides = with_edge_neighbours(surely)
     if to.corner is None:
