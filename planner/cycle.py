@@ -168,6 +168,10 @@ class Robot:
 
         It holds the chosen explanation, and how each of the 160 fields of the retina is accounted for.
 
+        Parameters
+        ----------
+        impression : what the body returned last.
+
         Returns
         -------
         Accommodation or None

@@ -127,6 +127,8 @@ class Situation:
         A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
         sides, and its confidence in percent.
 
+        In the order of `rooms.doors`; one door alone for the robot when a sure one is known.
+
         Parameters
         ----------
         actor : str
@@ -150,6 +152,9 @@ class Situation:
 
         A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
         sides, and its confidence in percent.
+
+        In the order of `rooms.doors`; () for none. A Door holds its name, the ends of its neck (squares, view frame),
+        and its confidence in percent.
         """
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
@@ -178,6 +183,9 @@ def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
 
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
+
+    In the ascending order of the labels of the regions. The verge is what bounds the floor: walls, and all that is
+    taken for wall.
 
     Parameters
     ----------

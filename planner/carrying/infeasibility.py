@@ -167,5 +167,9 @@ def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
     """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help.
 
     False when no passage is too narrow.
+
+    Parameters
+    ----------
+    plan : a plan that geometry refuted.
     """
     return plan.passage is not None and not plan.opens

@@ -55,7 +55,7 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     Parameters
     ----------
     model : what is believed.
-    immovable : an object fits, but did not move when it was pushed. While the angle of the map frame is open, the robot
+    immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map frame is open, the robot
         may have pushed at another object: then it is `limit`, too.
 
     Returns
@@ -129,6 +129,10 @@ def _nearest_square(mask: Bools, near: XY) -> XY | None:
     """Return the middle (x, y) of the marked square nearest to a place, the first of several; None for an empty mask.
 
     In squares, in the frame of the mask, (rows, columns) bool; `near` is a point (x, y) of the same frame.
+
+    Parameters
+    ----------
+    mask : the squares to choose from.
     """
     rows, columns = np.nonzero(mask)
     if not len(rows):

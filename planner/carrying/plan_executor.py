@@ -211,7 +211,7 @@ class PlanExecutor:
         squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
             wants to look.
         fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
-            and one or two pushes.
+            and one or two pushes; if not, None is returned for it.
         situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model

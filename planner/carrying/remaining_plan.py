@@ -296,6 +296,7 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
 
     Parameters
     ----------
+    plan : the remaining plan, with its certainty level.
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """

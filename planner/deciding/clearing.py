@@ -60,6 +60,9 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
+    The end is Inside its own squares and surely free ones off the route; for one that goes on in a wall it is At, a
+    pull out of it.
+
     Parameters
     ----------
     things : the objects in question.
@@ -87,6 +90,8 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
 
     A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
     level, 0 the surest.
+
+    It leads to the nearest such floor, over the shortest way by the grid of squares.
 
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
     situation : what is believed: world model, rooms, doors, corners and track.

@@ -54,6 +54,7 @@ class Pursuer:
 
         Parameters
         ----------
+        command : in the robot's own frame.
         model : what is believed, with its frame and its map view.
         """
         return self._circles.noticed(model, command)
@@ -74,6 +75,8 @@ class Pursuer:
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
+
+        A Decision with a command may be the release, or what `along` returns.
 
         Parameters
         ----------
@@ -144,8 +147,12 @@ class Pursuer:
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
 
+        For a Go the way to the square, so that the last move halts at its place; for a See the way to one of its
+        squares.
+
         Parameters
         ----------
+        advice : what the executor advises; an Act or Infeasibility gives None.
         stage : of the task: the goals that shall hold now.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
@@ -221,6 +228,7 @@ class Pursuer:
 
         Parameters
         ----------
+        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)

@@ -55,6 +55,9 @@ def subgoals_towards(
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    Destinations that name what is missing come first, in their order; then objects that may be the missing one, then
+    likely places, then looks at the unseen. Each keeps its own chance.
+
     Parameters
     ----------
     where : the destination of each goal, at least one.
@@ -102,6 +105,8 @@ def wall_contacts(situation: Situation) -> list[Subgoal]:
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    In the order in which the model lists the parts, each with the chance 100.
+
     Parameters
     ----------
     situation : what is believed: world model, rooms, doors, corners and track.
@@ -117,6 +122,9 @@ def island_contacts(situation: Situation) -> list[Subgoal]:
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    In the order of the model's objects, each with the chance 100. Wall would join what bounds the floor, and so make
+    necks of the floor beside it.
 
     Parameters
     ----------
@@ -137,6 +145,10 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
     """Return the probability, 0 to 1, that none of some candidates is what is looked for; 1 for no candidates.
 
     Of candidates that share squares, only the first counts.
+
+    Parameters
+    ----------
+    candidates : in order; each with the squares where it lies and its chance in percent.
     """
     none, counted = 1.0, np.zeros(0, np.int64)
     for squares, subgoal in candidates:
@@ -153,6 +165,9 @@ def _doubtful_objects(
 
     A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
     view), and a Subgoal: a look at it, with its chance in percent.
+
+    In the order of the doubtful pairs; only for parameters that match nothing seen so far; without objects that have no
+    such squares.
 
     Parameters
     ----------
@@ -215,6 +230,9 @@ def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> li
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    Frontiers (EXPLORE) come first, then unsettled boundaries of the floor (SETTLE), then passages to floor that is seen
+    and not reached (PASS), each with a chance in percent.
+
     Parameters
     ----------
     cost_maps : of the present world model.
@@ -275,6 +293,7 @@ def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
 
     Parameters
     ----------
+    subgoal : its squares are flat indices (row * columns + column) on the arrays of the view.
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     reached = cost_maps.nearest(subgoal.squares)

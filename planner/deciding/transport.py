@@ -408,7 +408,7 @@ class Transporter:
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
 
-        shut_in : it is known that it does; by default that is tested.
+        shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if it does not.
         node : the object, a node of the world model.
         stage : of the task: the goals that shall hold now.
         situation : what is believed: world model, rooms, doors, corners and track.
@@ -535,7 +535,8 @@ def _take_along(
     situation : what is believed (world model, rooms, doors, corners, track).
     tools : executor, pursuer and verifier, with which the decision is worked out.
     subgoal : where the robot wants to look from.
-    fetch : whether an object that is not held is fetched for that.
+    fetch : whether an object that is not held is fetched for that; if not, only a held object is taken along, by one
+        straight push.
     """
     advice = tools.executor.take_along(node, subgoal.squares, fetch, situation)
     if isinstance(advice, Go):

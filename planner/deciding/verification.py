@@ -110,7 +110,7 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
     Parameters
     ----------
     node : the object.
-    turns : whether the plan turns it.
+    turns : whether the plan turns it; if not, a look is needed only after a push that did not move it.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
@@ -185,9 +185,13 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    First the frontier behind the door that shows whether the thing is in another room (not for the goal around), else a
+    part of the verge (what bounds the floor) that may be an object and on which the goal depends.
+
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where it began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     situation : what is believed (world model, rooms, doors, corners, track).
@@ -203,9 +207,12 @@ def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> S
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    Of several parts of the verge, the first in the order of the model. One that cannot be felt is looked at instead.
+
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     situation : what is believed (world model, rooms, doors, corners, track).
@@ -234,7 +241,8 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
 
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     situation : what is believed (world model, rooms, doors, corners, track).
@@ -249,7 +257,12 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
-        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares."""
+        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares.
+
+        Parameters
+        ----------
+        look : its squares are flat indices (row * columns + column) on the arrays of the view, at least one.
+        """
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
@@ -294,7 +307,8 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
 
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     situation : what is believed (world model, rooms, doors, corners, track).

@@ -163,6 +163,7 @@ def corner_may_move(goal: Fact, situation: Situation) -> bool:
 
     Parameters
     ----------
+    goal : a goal of the task, as a fact, such as at(x, corner(northeast)).
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     side = corner_side(goal)
@@ -334,6 +335,10 @@ def _pressed(end: InCorner) -> InCorner:
 
     An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
     gap to each wall in squares.
+
+    Parameters
+    ----------
+    end : the corner, in squares, with its slack: the greatest gap to each wall.
     """
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
@@ -483,6 +488,7 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
 
     Parameters
     ----------
+    side : of the corner in the robot frame, such as northeast.
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """

@@ -106,6 +106,7 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
     Parameters
     ----------
+    goal : a goal of the task whose first argument is the parameter of an object.
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
@@ -185,6 +186,13 @@ def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
     """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ...
 
     Both are (rows, columns) bool on the arrays of the view; rooms without such squares are left out.
+
+    In the ascending order of the rooms' numbers.
+
+    Parameters
+    ----------
+    rooms : the partition of the floor into rooms.
+    mask : the squares to divide.
     """
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 

@@ -20,6 +20,10 @@ def with_unseen_margin(mask: Bools) -> Bools:
 
     The result is (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN); square [0, 0] of the view is its square
     [UNSEEN_MARGIN, UNSEEN_MARGIN].
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool on the arrays of the view; it is not changed.
     """
     return np.pad(mask, UNSEEN_MARGIN)
 

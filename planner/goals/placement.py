@@ -149,6 +149,11 @@ def meets_end(end: End, shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame.
 
     An At end is met when it is the shape's present pose; a Roomy end never.
+
+    Parameters
+    ----------
+    end : where the outline must lie.
+    shape : the outline of the object as it lies now.
     """
     return is_goal_met(end, shape, shape)
 
@@ -157,6 +162,10 @@ def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame.
 
     False for no ends. ends : by name.
+
+    Parameters
+    ----------
+    shape : the outline of the object as it lies now.
     """
     return any(meets_end(end, shape) for end in ends.values())
 
@@ -181,6 +190,7 @@ def to_view_frame(shape: Any, situation: Situation) -> Any:
 
     Parameters
     ----------
+    shape : a shapely geometry, in squares, map frame.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     west, south = situation.model.view.west, situation.model.view.south
@@ -192,6 +202,10 @@ def mask_to_polygon(mask: Bools) -> Any:
 
     x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
     geometry for an empty mask.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool, row 0 in the south.
     """
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
@@ -227,6 +241,8 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
 
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
     """Compute the squares straight behind an object that seem to be wall and may belong to the object.
+
+    They are verge (what bounds the floor) without a gap from the object on, at most `depth` rows or columns.
 
     Parameters
     ----------

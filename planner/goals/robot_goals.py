@@ -93,6 +93,10 @@ def corner_side(goal: Fact) -> str:
     """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner.
 
     The side is one of the robot's own frame, as in at(utak, corner(northeast)).
+
+    Parameters
+    ----------
+    goal : a goal of the task, as a fact.
     """
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
@@ -194,6 +198,9 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    First the unreached rooms that a way of some certainty leads to, then frontiers, then gaps. All get the same words
+    for what is not known; for frontiers and gaps the chance in percent that an object comes into sight.
+
     Parameters
     ----------
     side : str
@@ -214,6 +221,10 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         """Return how much less far than the known corner a viewpoint lies towards the side, in squares.
 
         East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
+
+        Parameters
+        ----------
+        view : its squares are flat indices (row * columns + column) on the arrays of the view.
         """
         return known - _furthest_towards(side, view.squares, model)
 
@@ -357,6 +368,8 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
     known first, and viewpoints from which that may be seen.
 
+    When no way leads there, the viewpoint is all floor beside the object.
+
     parameter : the parameter of the task that means the object.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
@@ -436,6 +449,8 @@ def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    In the ascending order of the rooms' numbers.
+
     Parameters
     ----------
     situation : what is believed: world model, rooms, doors, corners and track.
@@ -453,6 +468,7 @@ def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
     """Return the numbers of the rooms that have squares of a mask, in ascending order; [] for an empty mask.
 
     mask : (rows, columns) bool on the arrays of the view. Number 0 stands for floor that is part of no room.
+    rooms : the partition of the floor into rooms; number 1 is the one in which the robot woke.
     """
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
@@ -465,7 +481,8 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    tried : whether likely doors are left out, because the robot goes through them anyway.
+    tried : whether likely doors are left out, because the robot goes through them anyway; by default all possible doors
+        count.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]

@@ -34,6 +34,9 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
     A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
     level, 0 the surest.
 
+    The routes keep off the object's own squares. A sense without a route has no key; the length of a route is that of
+    the diagonal steps, not of the squares between.
+
     Parameters
     ----------
     cost_maps : CostMaps

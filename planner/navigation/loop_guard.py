@@ -42,6 +42,7 @@ class LoopGuard:
 
         Parameters
         ----------
+        command : the command that is about to be given, in the robot's own frame.
         model : what is believed, with its frame and its map view.
         """
         x, y = model.place
@@ -53,7 +54,12 @@ class LoopGuard:
         return again
 
     def tire(self, squares: frozenset[Square]) -> None:
-        """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
+        """Count one more loop for a subgoal with these squares (x, y) of the map frame.
+
+        Parameters
+        ----------
+        squares : whole numbers (x, y), the south-west corner of each square in the map frame.
+        """
         self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
@@ -64,6 +70,8 @@ class LoopGuard:
 
         A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
         any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        The rest stays in order; `subgoals` is not changed.
 
         Parameters
         ----------

@@ -139,6 +139,9 @@ def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: s
     A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
     level, 0 the surest.
 
+    The nearest is by the length of the way at that level; of equals the first in `goals`. At most MAX_ROUTES with the
+    skeleton, else one.
+
     Parameters
     ----------
     cost_maps : CostMaps
@@ -221,11 +224,21 @@ def leads_through(route: PlannedRoute, door: Door) -> bool:
     """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side.
 
     Both are in the view frame; the route counts as the line through the centres of its squares.
+
+    Parameters
+    ----------
+    route : squares (column, row) on the arrays of the view, in order.
+    door : its neck is the segment from a to b, in squares, view frame.
     """
     points = np.array(route.squares) + 0.5
     return bool(count_crossings(points, door) % 2)
 
 
 def _centre(square: Square) -> XY:
-    """Return the centre (x, y) of a square (column, row), in squares, in the same frame."""
+    """Return the centre (x, y) of a square (column, row), in squares, in the same frame.
+
+    Parameters
+    ----------
+    square : (column, row) on any array with (0, 0) at the outer corner of square [0, 0].
+    """
     return square[0] + 0.5, square[1] + 0.5

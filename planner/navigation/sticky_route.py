@@ -98,6 +98,7 @@ def to_map_squares(squares: SquareIndices, model: WorldModel) -> frozenset[Squar
 
     Parameters
     ----------
+    squares : (n,) flat indices; the result is a set of whole numbers (x, y).
     model : what is believed, with its frame and its map view.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])

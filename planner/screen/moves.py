@@ -194,6 +194,8 @@ def _roomy(cost_maps: CostMaps) -> Bools | None:
 
     Returns None while the orientation is certain enough, so that no such room is asked for.
 
+    Safe squares are those over which a move is made without looking first.
+
     Parameters
     ----------
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
@@ -247,6 +249,8 @@ def move_by(model: WorldModel, dx: float, dy: float) -> Move:
 
     Parameters
     ----------
+    dx : to the east of the map frame, in squares.
+    dy : to the north of the map frame, in squares.
     model : what is believed, with its frame and its map view.
     """
     return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
@@ -262,6 +266,7 @@ def _straight_to(place: XY, model: WorldModel) -> Move:
 
     Parameters
     ----------
+    place : where it ends, (x, y) in squares, map frame.
     model : what is believed, with its frame and its map view.
     """
     here = snap_to_line(model.place)

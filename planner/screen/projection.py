@@ -119,6 +119,8 @@ class CostMaps:
         A Reached holds a certainty level (0 the surest) and the cost of the way: squares, plus LEVEL_COST for each
         level.
 
+        The cost is the least at the first level at which any is reached; a surer level counts before a shorter way.
+
         Parameters
         ----------
         squares : flat indices (row * columns + column) on the arrays of the view.
@@ -231,6 +233,8 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
 
     The vicinity are the squares of the object and all squares around it.
 
+    In the order of the model's objects.
+
     Parameters
     ----------
     cost_maps : CostMaps
@@ -256,6 +260,7 @@ def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
 
     Parameters
     ----------
+    patch : the squares of an object, map frame.
     model : what is believed, with its frame and its map view.
     """
     rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))

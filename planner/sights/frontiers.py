@@ -61,6 +61,10 @@ def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+
+    Each has the chance 100, as nothing is told of it here: see `with_chances`.
+
     Parameters
     ----------
     cost_maps : CostMaps
@@ -89,6 +93,8 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+
     Parameters
     ----------
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
@@ -107,6 +113,8 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+
     Parameters
     ----------
     cost_maps : CostMaps
@@ -114,7 +122,8 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
     apart : int
         Floor within so many rows and columns of an earlier viewpoint is left out.
     odd : bool
-        Whether only squares count that may well be floor, and so part of a door or of the floor behind an object.
+        Whether only squares count that may well be floor, and so part of a door or of the floor behind an object; False
+        for all squares that are not settled.
 
     Returns
     -------
@@ -252,6 +261,8 @@ def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+
     Parameters
     ----------
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
@@ -272,6 +283,7 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
 
     Parameters
     ----------
+    viewpoints : the viewpoints; [] is returned for none. They are not changed.
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     if not viewpoints:
@@ -287,6 +299,8 @@ def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_c
 
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
+
+    With it comes the chance in percent, 1 to 90, that a wanted object comes into sight from the nearest of its squares.
 
     Parameters
     ----------
@@ -355,6 +369,10 @@ def _stretches(mask: Bools) -> Labels:
     """Label the connected stretches of a mask, (rows, columns) int32: 1 and up, 0 outside the mask.
 
     Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool on the arrays of the view.
     """
     labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
     return labels
@@ -364,6 +382,10 @@ def group_by_label(labels: Labels) -> list[SquareIndices]:
     """Group the flat indices of a (rows, columns) array by label, in ascending order of labels, without label 0.
 
     Returns one array of flat indices (row * columns + column) for each label that occurs, each ascending and not empty.
+
+    Parameters
+    ----------
+    labels : (rows, columns) whole numbers, 0 for no label.
     """
     flat = labels.ravel()
     squares = np.flatnonzero(flat)
@@ -377,6 +399,11 @@ def _grown_labels(labels: Labels, squares: int) -> Labels:
 
     (rows, columns) labels, 0 for none; returns a new array of the same shape, in which only zeros and lesser labels
     change.
+
+    Parameters
+    ----------
+    labels : (rows, columns) whole numbers, 0 for none.
+    squares : how far, in rows and columns; each way, with the corners.
     """
     for _ in range(squares):
         for axis in (0, 1):

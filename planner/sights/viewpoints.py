@@ -60,6 +60,8 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
+    Places come in the ascending order of their labels; one entry each.
+
     Parameters
     ----------
     cost_maps : CostMaps

@@ -28,6 +28,8 @@ class FailedGrasps:
         Nothing is recorded for None, and for an object of unknown outline. Both the present place and the middle of the
         square are recorded, for plans grasp from the middle.
 
+        Two grasps are appended: from the present place, then from the middle of its square.
+
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -57,6 +59,8 @@ class FailedGrasps:
         A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
         nothing is forgotten, and False is returned.
 
+        True when some were forgotten; each time counts against MAX_RETRIES.
+
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -73,5 +77,6 @@ def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
     """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
 
     grasps : (n, 2), (x, y) from the object's middle, in squares.
+    degrees : counter-clockwise positive.
     """
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))

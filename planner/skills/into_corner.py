@@ -179,7 +179,12 @@ def _are_near(one: Square | None, other: Square) -> bool:
 
 
 def _wall_sides(corner: Corner) -> tuple[int, int]:
-    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1."""
+    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1.
+
+    Parameters
+    ----------
+    corner : in squares, view frame; its square is (column, row).
+    """
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 

@@ -62,6 +62,9 @@ class SizeEstimator:
 def push_parts(node: Node) -> tuple[float | None, float | None] | None:
     """Return by which part of a square an object is pushed along x and y to measure it.
 
+    The insets of an object are how far its sides may lie within the squares in which it was seen. It cannot be measured
+    while its place is inexact or no inset is known.
+
     Parameters
     ----------
     node : the object; its outline is known when its insets are.

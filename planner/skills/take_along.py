@@ -29,6 +29,9 @@ def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> T
 
     A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
 
+    Of equally short pushes, the first of the squares; only squares that the pushes tried lead to count (at most
+    MAX_TRIED_PUSHES).
+
     Parameters
     ----------
     node : the held object.
@@ -52,6 +55,8 @@ def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situatio
     Of all such pairs it is the shortest.
 
     A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
+
+    Of equally short pairs the one with the shorter first push.
 
     Parameters
     ----------
@@ -81,6 +86,8 @@ def escape_push(node: Node, situation: Situation) -> Translate | None:
     """Return the shortest straight push, by whole squares, after which the held object does not shut the robot in.
 
     A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
+
+    Of equally short pushes the westernmost, then the southernmost.
 
     Parameters
     ----------
@@ -133,6 +140,8 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
     (n, 2) float64, (dx, dy) in squares along the axes of the map. At most MAX_TRIED_PUSHES of them, spread over all
     lengths; none longer than one move of an exploring robot, and none of at most MIN_PUSH squares. squares : flat
     indices.
+
+    Ties keep the order of `squares`.
 
     Parameters
     ----------
