@@ -407,7 +407,8 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
     objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
     where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
-    what may be an object, or its hidden part, in what seems to be wall. Necks of forbidden doors are never among them.
+    what may be an object, or its hidden part, in what seems to be wall. Necks of
+    forbidden doors (the narrow places between their walls) are never among them.
 
     Parameters
     ----------

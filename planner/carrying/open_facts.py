@@ -55,8 +55,8 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     Parameters
     ----------
     model : what is believed.
-    immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map frame is open, the robot
-        may have pushed at another object: then it is `limit`, too.
+    immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map
+        frame is open, the robot may have pushed at another object: then it is `limit`, too.
 
     Returns
     -------
@@ -107,6 +107,8 @@ def unfelt_walls(model: WorldModel) -> Bools:
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
     """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case.
+
+    A clause without full stop, with `where` in it.
 
     A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
     axis.

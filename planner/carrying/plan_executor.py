@@ -155,7 +155,7 @@ class PlanExecutor:
         return found if isinstance(found, Infeasibility) else None
 
     def forget_misses(self) -> None:
-        """Count missed plans (`missed`) from zero again."""
+        """Set `missed` to 0: the number of plans that ended with the object in hand before they led to their end."""
         self.missed = 0
 
     def release_looping(self, model: WorldModel) -> Act:

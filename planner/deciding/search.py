@@ -174,7 +174,7 @@ def _doubtful_objects(
     situation : what is believed (world model, rooms, doors, corners, track).
     reconciled : what the parameters of the task mean; its doubtful pairs name the objects.
     likely : the probability (rows, columns) that a square belongs to the shape looked for; None when no shape is told.
-    to : what the robot goes up to an object for.
+    to : what the robot goes up to an object for: to take it (and towards which corner) or only to be beside it.
     """
     cost_maps, model = situation.cost_maps, situation.model
     found = []
@@ -218,7 +218,7 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Ca
     ----------
     cost_maps : of the present world model.
     likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
-    to : what the robot goes there for.
+    to : what the robot goes there for: to take something (and towards which corner) or only to be beside it.
     """
     seen = sightings(cost_maps, likely, "what is looked for may be there", to)
     return [Candidate(squares, Subgoal(SubgoalKind.INSPECT, *look)) for squares, look in seen]

@@ -408,7 +408,7 @@ class Transporter:
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
 
-        shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if it does not.
+        shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
         node : the object, a node of the world model.
         stage : of the task: the goals that shall hold now.
         situation : what is believed: world model, rooms, doors, corners and track.

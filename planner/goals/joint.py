@@ -52,10 +52,11 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
     """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
     However much more floor becomes known, such corners only move further apart. Also "" when the two corners of the
-    known floor are near enough to each other. goals : of one stage, for the robot.
+    known floor are near enough to each other.
 
     Parameters
     ----------
+    goals : of one stage, for the robot.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     wanted = set(map(corner_side, goals))

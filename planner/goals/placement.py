@@ -173,7 +173,7 @@ def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
 def is_off_quarter_turn(node: Node) -> bool:
     """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns.
 
-    What counts is `node.turned`, the degrees since it was first held.
+    A quarter turn is 90 degrees. What counts is `node.turned`, the degrees since it was first held.
 
     Parameters
     ----------

@@ -84,7 +84,10 @@ def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) ->
     A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
     known first, and viewpoints from which that may be seen.
 
-    missing : in words, what must be known first. viewpoints : where that may be seen; () for any place worth a look.
+    Parameters
+    ----------
+    missing : in words, what must be known first; a clause without full stop.
+    viewpoints : where that may be seen; () for any place worth a look.
     """
     return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
@@ -420,8 +423,9 @@ def _room(situation: Situation) -> Destination:
 def next_room_missing(situation: Situation) -> str:
     """Return in words why no next room is known: none can be reached, or no neck is a door.
 
-    Then the neck that comes nearest to being a door is named, if any is known, with its width in squares and its place
-    in the robot frame.
+    A clause without full stop. A neck is a narrow place of the floor; a door is one with floor at least twice as wide
+    on both sides. If no neck is a door, the one that comes nearest to that is named, if any is known, with its width in
+    squares and its place in the robot frame.
 
     Parameters
     ----------

@@ -54,6 +54,9 @@ PathFinder = Callable[
 def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
 
+    A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
+    of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings.
+
     A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
 
     Parameters
@@ -136,6 +139,8 @@ PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility":
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
     """Find topologically distinct routes to the nearest reachable square of `goals`.
 
+    Distinct routes pass some obstacle on different sides.
+
     A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
     level, 0 the surest.
 
@@ -180,6 +185,9 @@ def choose_route(
     forbidden: frozenset[str],
 ) -> PlannedRoute | None:
     """Choose one of some routes, by planner/asp/routes.lp.
+
+    It is the one of least length, with costs added for risk, for a clearance below one square, and for a switch from
+    the route before; of equals the first offered. Routes through forbidden doors are not taken.
 
     The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
     `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths

@@ -243,8 +243,6 @@ def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> M
 def move_by(model: WorldModel, dx: float, dy: float) -> Move:
     """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame.
 
-    The move is a vector of the robot's own frame (east, north), in squares.
-
     A Move is a straight line (east, north) in squares of the robot's own frame.
 
     Parameters
@@ -287,7 +285,7 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
     ----------
     cost_maps : of the present world model.
     square : the last square (column, row) on the arrays of the view.
-    kind : of the subgoal; only OFF_CENTRE_KINDS may end near the edge.
+    kind : of the subgoal (SubgoalKind); only OFF_CENTRE_KINDS may end near the edge.
     """
     model = cost_maps.model
     if orientation_is_uncertain(model):

@@ -107,7 +107,7 @@ class CostMaps:
 
     @cached_property
     def distances(self) -> "DistanceMaps":
-        """The distance of every square from the robot, by certainty level (UNSEEN_LEVEL included).
+        """The length of the shortest way from the robot to every square, by certainty level (UNSEEN_LEVEL included).
 
         `distances[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
         """
@@ -123,7 +123,7 @@ class CostMaps:
 
         Parameters
         ----------
-        squares : flat indices (row * columns + column) on the arrays of the view.
+        squares : (n,) flat indices (row * columns + column) on the arrays of the view.
 
         Returns
         -------
@@ -168,8 +168,9 @@ class CostMaps:
     def believed(self) -> Bools:
         """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied.
 
-        The latter are free at level 0 and not beside unseen squares. For the case that being stopped costs less than
-        looking first.
+        A bold move crosses squares that are only believed to be free; a safe square is one that any move crosses
+        without looking first. Squares that are hardly occupied are free at level 0 (the surest) and not beside unseen
+        squares. For the case that being stopped costs less than looking first.
         """
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
@@ -178,8 +179,9 @@ class CostMaps:
     def approachable(self) -> Bools:
         """The squares of bold moves up to an object, (rows, columns) bool.
 
-        These are the squares of `believed`, and those that share an edge with an object and are free at APPROACH_LEVEL.
-        Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
+        A bold move crosses squares that are only believed to be free. These are the squares of `believed`, and those
+        that share an edge with an object and are free at APPROACH_LEVEL. Where such a square is occupied after all, the
+        object itself stops the robot, right where it wants to be.
         """
         view = self.model.view
         things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge

@@ -61,7 +61,7 @@ def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
 
     Each has the chance 100, as nothing is told of it here: see `with_chances`.
 
@@ -70,7 +70,8 @@ def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     cost_maps : CostMaps
         The present world model on arrays of squares, with the ways from where the robot stands.
     apart : int
-        Floor within so many rows and columns of an earlier viewpoint is left out.
+        Floor within so many rows and columns of a square from which the robot looked already is left out; 0 leaves out
+        that square only.
 
     Returns
     -------
@@ -93,7 +94,7 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
 
     Parameters
     ----------
@@ -113,14 +114,15 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
 
     Parameters
     ----------
     cost_maps : CostMaps
         The present world model on arrays of squares, with the ways from where the robot stands.
     apart : int
-        Floor within so many rows and columns of an earlier viewpoint is left out.
+        Floor within so many rows and columns of a square from which the robot looked already is left out; 0 leaves out
+        that square only.
     odd : bool
         Whether only squares count that may well be floor, and so part of a door or of the floor behind an object; False
         for all squares that are not settled.
@@ -261,7 +263,7 @@ def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    Viewpoints come in the ascending order of their labels; the squares of each ascend by flat index.
+    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
     A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
     the view), what is not known in words, and its chance in percent.
 
-    Places come in the ascending order of their labels; one entry each.
+    Places come in the order of their first squares, row by row from the south; one entry each.
 
     Parameters
     ----------
@@ -71,7 +71,8 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
     what : str
         What is not known there, in words.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------
@@ -109,7 +110,8 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
     chance : float
         The probability, 0 to 1, that it is the wanted one.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------
@@ -135,7 +137,8 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     chance : float
         The probability, 0 to 1, that it is the wanted one.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------

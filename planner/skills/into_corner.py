@@ -93,6 +93,8 @@ class IntoCorner:
 def halting_place(corner: Corner, situation: Situation) -> XY:
     """Return where in the square of a corner the robot halts: the point right beside its outer lines.
 
+    It lies HALT_DISTANCE squares from each of the two edges of the square that the walls are on.
+
     Parameters
     ----------
     corner : in squares, view frame.

@@ -59,8 +59,8 @@ class Presser:
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a held object that is believed to lie where a goal holds.
 
-        `next` then returns them in order. Notes nothing when the placement asks for no press, or the object is not
-        held.
+        A press is a push against a wall that may be further away than believed. `next` then returns them in order.
+        Notes nothing when the placement asks for no press, or the object is not held.
 
         Parameters
         ----------
@@ -75,6 +75,8 @@ class Presser:
 
     def next(self, node: Node, model: WorldModel) -> Act | None:
         """Return the next press as a push that no plan asks for, and remember it; None when none is left.
+
+        A press is a push against a wall that may be further away than believed, as `begin` noted it.
 
         An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
 

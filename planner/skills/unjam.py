@@ -34,7 +34,8 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
     pushed : the push that was stopped, (dx, dy) in squares along the axes of the map.
     model : what is believed.
     doubted : the object was stopped again where nothing known is in its way, so it lies, or is shaped, otherwise than
-        believed. It is drawn back to the middle of the room that there is to either side then.
+        believed. It is drawn back to the middle of the room that there is to either side then. By default an exactly
+        known object is drawn straight back, an inexactly known one aside as well where that lets it pass.
     """
     if not any(pushed):
         return pushed
