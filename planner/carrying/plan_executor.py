@@ -230,6 +230,8 @@ class PlanExecutor:
 
         An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
 
+        It is the pair of pushes with the least total length. The plan under way is not changed here.
+
         Parameters
         ----------
         node : the held object.
@@ -255,6 +257,8 @@ class PlanExecutor:
         not move the object, and after MAX_PLANS plans.
 
         An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        It is the shortest such push by whole squares.
 
         Parameters
         ----------
@@ -415,6 +419,8 @@ class PlanExecutor:
 
         A Node is an object of the world model, with name, patch of squares (map frame) and outline.
 
+        Obstacles are tried in the order of the model's objects; only a plan that needs nothing else moved counts.
+
         Parameters
         ----------
         found : the plan, view frame; its `aside` names at least one obstacle.
@@ -462,6 +468,9 @@ class PlanExecutor:
         end, its certainty level (0 the surest), and the objects to be moved aside first.
 
         A Node is an object of the world model, with name, patch of squares (map frame) and outline.
+
+        The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else carried to any
+        surely free place off those squares.
 
         Parameters
         ----------

@@ -31,6 +31,8 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
     A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
     arrays of the view), and what is not known in words.
 
+    Looked at are all unsure squares of the way together, from floor from which any of them is seen best.
+
     Parameters
     ----------
     found : the plan, view frame.
@@ -62,6 +64,9 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
     arrays of the view), and what is not known in words.
 
+    The first is meant in the order of the model's objects; only obstacles that are objects with less than
+    CERTAIN_OBJECT percent count.
+
     Parameters
     ----------
     found : the plan; its `aside` names the obstacles.
@@ -80,6 +85,8 @@ def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | Non
 
     A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
     arrays of the view), and what is not known in words.
+
+    The first is meant in the order of `found.aside`.
 
     Parameters
     ----------

@@ -166,6 +166,9 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
     A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
     end, its certainty level (0 the surest), and the objects to be moved aside first.
 
+    It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one the
+    longest free part, if any. Its level and its end's name stay as they were.
+
     Parameters
     ----------
     found : the plan, view frame.
@@ -244,6 +247,8 @@ def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | N
     One of the eight of the robot frame, such as "northeast", as seen from where the robot stands. It is the planned
     direction, or another one in which the object is felt. While touches are not known, the planned direction counts.
 
+    The planned direction comes first, then the others in the order of the frame's directions.
+
     Parameters
     ----------
     leg : the leg that begins with the grasp, map frame.
@@ -274,6 +279,8 @@ def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) 
     It is shorter than the push, in squares along the axes of the map.
 
     A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
+
+    Parts are tried from the longest on, in steps of one square, so it is at least about one square long.
 
     Parameters
     ----------

@@ -244,6 +244,8 @@ class Decider:
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
 
+        Objects are asked about in the order of the goals; the first look that is left is returned.
+
         Parameters
         ----------
         goals : of the stage, for the robot itself.
@@ -264,6 +266,8 @@ class Decider:
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
+
+        The sense of rotation, once begun, is kept while a route leads that way.
 
         Parameters
         ----------

@@ -73,6 +73,8 @@ class Transporter:
 
         When it is asked for the first time, the present place is noted.
 
+        Later calls return the noted place, as the frame is believed by then.
+
         Parameters
         ----------
         parameter : of the task.
@@ -504,6 +506,8 @@ def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situa
 
     A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
     and its reason.
+
+    Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
 
     Parameters
     ----------

@@ -55,6 +55,9 @@ class Verifier:
         A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
         any of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+        Its kind is INSPECT, its chance 100. A change of what is remembered: the object counts as unsettled while a look
+        is returned.
+
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -78,6 +81,8 @@ class Verifier:
 
         A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
         any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        The squares of the Subgoal are all floor from which the passage lies within the fovea; possibly none.
 
         Parameters
         ----------
@@ -107,6 +112,8 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
+    Its kind is INSPECT: to see the object from floor where the robot did not look yet.
+
     Parameters
     ----------
     node : the object.
@@ -131,6 +138,8 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Its kind is INSPECT: to see the robot's own square from floor nearby.
 
     Parameters
     ----------
@@ -162,6 +171,8 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Of several pieces of seeming wall beside the object, the first in the order of the model that can be felt.
 
     Parameters
     ----------

@@ -70,6 +70,8 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
     A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
     in words what must be known first.
 
+    It holds when the distance of the two is at most BESIDE_DISTANCE.
+
     Parameters
     ----------
     shape, target : shapely Polygons, in squares, view frame.

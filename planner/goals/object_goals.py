@@ -52,6 +52,8 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
     A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
     in words what must be known first.
 
+    The goal holds when the object meets one of the ends as it is now; for a corner see `planner.goals.corner_goal`.
+
     Parameters
     ----------
     goal : Fact

@@ -79,6 +79,8 @@ class Origins:
         counts as lost only where observations contradict what is believed. The origin must have been asked for with
         `at` before; else KeyError.
 
+        "the robot was lost" or "a door of its room was lost".
+
         Parameters
         ----------
         parameter : the parameter of the task that means the thing.
@@ -96,6 +98,8 @@ class Origins:
         """Return whether a thing is in another room now than at first.
 
         The origin must have been asked for with `at` before; else KeyError.
+
+        Compared are the rooms of the origin and of the middle of the outline, as the rooms are believed now.
 
         Parameters
         ----------

@@ -114,6 +114,8 @@ def encircled_point(node: Node) -> XY:
 
     It is the centre of that square of the object which is nearest to the mean of its squares.
 
+    Of squares that are equally near, the westernmost, then the southernmost.
+
     Parameters
     ----------
     node : the object, a node of the world model.
