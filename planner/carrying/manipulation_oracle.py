@@ -93,7 +93,7 @@ class ManipulationPlan:
 
     @property
     def askew(self) -> bool:
-        """Return whether some turn of the plan is not a multiple of a quarter turn (90 degrees); False without turns."""
+        """Return whether some turn of the plan is no multiple of a quarter turn (90 degrees); False without turns."""
         turns = (m for leg in self.plan.legs for m in leg.motions if isinstance(m, Rotate))
         return any(turn.degrees % 90.0 != 0.0 for turn in turns)
 

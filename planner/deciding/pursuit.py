@@ -221,13 +221,14 @@ class Pursuer:
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door; else None.
 
-        On the arrays of the view. level : the certainty level at which the subgoal is reached, 0 the surest.
+        On the arrays of the view.
 
         A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
         level, 0 the surest.
 
         Parameters
         ----------
+        level : the certainty level at which the subgoal is reached, 0 the surest.
         subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
         situation : what is believed: world model, rooms, doors, corners and track.
         """

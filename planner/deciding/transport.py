@@ -502,7 +502,7 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
 
-    None when there is nothing to see so, or no such push. land : where the goal holds; it names what to see on the way.
+    None when there is nothing to see so, or no such push.
 
     A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
     and its reason.
@@ -511,6 +511,7 @@ def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situa
 
     Parameters
     ----------
+    land : where the goal holds; it names what to see on the way.
     node : the object, a node of the world model.
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.

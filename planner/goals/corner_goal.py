@@ -64,7 +64,10 @@ class CornerRegion:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the region as an end, by the side of the corner, in squares, view frame: see `_must_reach`.
+        """Compute the region as one end, Inside, by the side of the corner (such as northeast), in squares, view frame.
+
+        The region is unseen squares and the floor around the known corner, as far as the object is long and a square
+        more.
 
         An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
         two walls) of geometry.manipulation.goals.
@@ -287,13 +290,14 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
 def _between_walls(side: str, situation: Situation) -> Between | None:
     """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not.
 
-    In squares, view frame. side : of the robot frame, such as northeast.
+    In squares, view frame.
 
     A Between end holds the corner (x, y), the outward unit normals of its two slanted walls, and the greatest gap to
     each in squares.
 
     Parameters
     ----------
+    side : of the robot frame, such as northeast.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     corner = situation.corners[side]
@@ -407,13 +411,14 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
 def _corner_end(side: str, situation: Situation) -> InCorner:
     """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls.
 
-    In squares, view frame. side : of the robot frame, such as northeast.
+    In squares, view frame.
 
     An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
     gap to each wall in squares.
 
     Parameters
     ----------
+    side : of the robot frame, such as northeast.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
@@ -503,10 +508,11 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
 def _around(side: str, squares: int, situation: Situation) -> Bools:
     """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool.
 
-    Axes as those of the view's arrays. side : of the robot frame, such as northeast.
+    Axes as those of the view's arrays.
 
     Parameters
     ----------
+    side : of the robot frame, such as northeast.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square

@@ -100,14 +100,16 @@ def _without_rim(end: End) -> End:
 def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object, whether or not what is settled may be wrong.
 
-    Ends in squares, view frame. began : where the middle of the object was at first, (x, y) of the map frame, in
-    squares. Raises ValueError when the goal is none for an object.
+    Ends in squares, view frame.
 
     A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
     in words what must be known first.
 
+    Raises ValueError when the goal is none for an object.
+
     Parameters
     ----------
+    began : where the middle of the object was at first, (x, y) of the map frame, in squares.
     goal : a goal of the task whose first argument is the parameter of an object.
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
@@ -129,10 +131,11 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
-    """Return whether an object meets one of some ends as it is now. ends : by name, in squares, view frame.
+    """Return whether an object meets one of some ends as it is now.
 
     Parameters
     ----------
+    ends : by name, in squares, view frame.
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
@@ -172,13 +175,14 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 def _optimistic_end(mask: Bools, situation: Situation) -> End:
     """Return the end inside squares of the view, or inside the unseen squares that these lead to.
 
-    In squares, view frame; it may reach up to UNSEEN_MARGIN squares beyond the view. mask : (rows, columns) bool.
+    In squares, view frame; it may reach up to UNSEEN_MARGIN squares beyond the view.
 
     An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
     walls) of geometry.manipulation.goals.
 
     Parameters
     ----------
+    mask : (rows, columns) bool.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     return moved(Inside(mask_to_polygon(spread_into_unseen(mask, situation))), -UNSEEN_MARGIN, -UNSEEN_MARGIN)

@@ -116,10 +116,11 @@ class Origins:
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
     """Return the middles of the doors of the room that holds a point, as points (east, north) of the robot's own frame.
 
-    In squares; () for no door. place : a point (x, y) of the map frame, in squares.
+    In squares; () for no door.
 
     Parameters
     ----------
+    place : a point (x, y) of the map frame, in squares.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, rooms = situation.model, situation.rooms

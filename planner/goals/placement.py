@@ -161,10 +161,11 @@ def meets_end(end: End, shape: Any) -> bool:
 def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame.
 
-    False for no ends. ends : by name.
+    False for no ends.
 
     Parameters
     ----------
+    ends : by name.
     shape : the outline of the object as it lies now.
     """
     return any(meets_end(end, shape) for end in ends.values())

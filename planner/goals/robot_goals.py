@@ -542,10 +542,11 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
 def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
     """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own.
 
-    Flat indices on the arrays of the view, (n,). point : (x, y) of the map frame, in squares.
+    Flat indices on the arrays of the view, (n,).
 
     Parameters
     ----------
+    point : (x, y) of the map frame, in squares.
     model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*point)

@@ -94,10 +94,11 @@ class Presser:
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:
-    """Return the corner (x, y) that a goal is about, in squares, map frame. goal : about a corner; else KeyError.
+    """Return the corner (x, y) that a goal is about, in squares, map frame.
 
     Parameters
     ----------
+    goal : about a corner; else KeyError.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view

@@ -138,13 +138,13 @@ def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
     """Return the pushes that bring the robot to the middles of some squares, the shortest first.
 
     (n, 2) float64, (dx, dy) in squares along the axes of the map. At most MAX_TRIED_PUSHES of them, spread over all
-    lengths; none longer than one move of an exploring robot, and none of at most MIN_PUSH squares. squares : flat
-    indices.
+    lengths; none longer than one move of an exploring robot, and none of at most MIN_PUSH squares.
 
     Ties keep the order of `squares`.
 
     Parameters
     ----------
+    squares : flat indices.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
