@@ -104,6 +104,9 @@ class Robot:
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
 
+        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
+        words.
+
         Returns
         -------
         StepReport
@@ -122,6 +125,9 @@ class Robot:
 
     def step(self) -> StepReport:
         """Give the decided command, perceive, and decide anew (steps 8 to 13).
+
+        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
+        words.
 
         Returns
         -------
@@ -160,6 +166,12 @@ class Robot:
         Changes `model`, `decision` and what the robot knows. While an object is held, only `decision` changes, to its
         release: the restart follows after that.
 
+        It holds the chosen explanation, and how each of the 160 fields of the retina is accounted for.
+
+        Parameters
+        ----------
+        impression : what the body returned last.
+
         Returns
         -------
         Accommodation or None
@@ -179,6 +191,9 @@ class Robot:
         self, command: Command | None, impression: Impression, accommodated: Accommodation, why: str
     ) -> StepReport:
         """Return the report of one turn of the cycle.
+
+        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
+        words.
 
         Parameters
         ----------

@@ -51,6 +51,9 @@ class Situation:
         """The rooms that follow when everything that may be an object is one, and does not bound a room.
 
         These are `rooms` when all verge is sure to be wall.
+
+        Rooms hold the doors, and the number of the room of each square, (rows, columns) int32 on the arrays of the
+        view, 0 for none.
         """
         if (self.model.walls == self.model.verge).all():
             return self.rooms
@@ -68,6 +71,9 @@ class Situation:
 
         The answer is reliable when it holds both for the rooms as believed and for the rooms by sure walls alone. A
         wall seen in part may be an object, and then the rooms are others.
+
+        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
+        of the view), what is not known in words, and its chance in percent.
 
         Parameters
         ----------
@@ -90,6 +96,9 @@ class Situation:
         """Compute the squares of the rooms that likely share a door with the room of a point.
 
         The rooms as believed come first; where they show none, the rooms by sure walls alone.
+
+        Rooms hold the doors, and the number of the room of each square, (rows, columns) int32 on the arrays of the
+        view, 0 for none.
 
         Parameters
         ----------
@@ -115,6 +124,11 @@ class Situation:
         one sure door that it has not gone through. While no such door is known, it is kept from all possible doors,
         however unlikely: going through a forbidden one could not be undone.
 
+        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
+        sides, and its confidence in percent.
+
+        In the order of `rooms.doors`; one door alone for the robot when a sure one is known.
+
         Parameters
         ----------
         actor : str
@@ -134,7 +148,14 @@ class Situation:
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
-        """The sure doors that the robot has not gone through, by its track; view frame."""
+        """The sure doors that the robot has not gone through, by its track; view frame.
+
+        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
+        sides, and its confidence in percent.
+
+        In the order of `rooms.doors`; () for none. A Door holds its name, the ends of its neck (squares, view frame),
+        and its confidence in percent.
+        """
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
         return tuple(door for door in self.rooms.sure if not went_through(track, door))
@@ -159,6 +180,16 @@ def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
 
     If one of them is an object, rooms end elsewhere. One Viewpoint for each region of such squares that can be seen
     better from reachable floor; () for none.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    In the ascending order of the labels of the regions. The verge is what bounds the floor: walls, and all that is
+    taken for wall.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)

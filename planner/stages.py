@@ -54,9 +54,12 @@ class Stage:
 def stages(task: Task) -> tuple[Stage, ...]:
     """Split the goals of a task into its stages, in the order in which they shall hold.
 
+    A Stage holds goals that shall hold at one time, and whether another stage follows.
+
     Parameters
     ----------
     task : Task
+        The goals and constraints, as the task file gives them.
 
     Returns
     -------
@@ -75,12 +78,22 @@ def stages(task: Task) -> tuple[Stage, ...]:
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:
-    """Return the constraints of a task, such as not_through(utak, d), in order; () for none."""
+    """Return the constraints of a task, such as not_through(utak, d), in order; () for none.
+
+    Parameters
+    ----------
+    task : the goals and constraints, as the task file gives them.
+    """
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
 def _inner(fact: Fact) -> Fact:
-    """Return the goal within first(...) or then(...); any other fact itself."""
+    """Return the goal within first(...) or then(...); any other fact itself.
+
+    Parameters
+    ----------
+    fact : a goal of the task, perhaps wrapped.
+    """
     inner = fact.args[0] if fact.name in ("first", "then") else fact
     assert isinstance(inner, Symbol)
     return inner
@@ -90,6 +103,12 @@ def _ordered(goals: list[Fact]) -> list[Stage]:
     """Order the goals of one step: each goal of the track in a stage alone, then the others together in one stage.
 
     Returns [] for no goals.
+
+    A Stage holds goals that shall hold at one time, and whether another stage follows.
+
+    Parameters
+    ----------
+    goals : in the order of the task; those of the track are on what the robot's way does, such as circled.
     """
     of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]
     of_place = tuple(goal for goal in goals if goal.name not in TRACK_GOALS)

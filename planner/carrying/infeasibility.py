@@ -31,7 +31,11 @@ class Refutation:
     model: WorldModel
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none.
+
+        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`); a neck is
+        a narrow place of the floor.
+        """
         passage = closest_refuted(self.plans).passage
         return None if passage is None else passage.place
 
@@ -54,6 +58,9 @@ class Refutation:
         """Return the open fact by which the passage may be wide enough, in words; "" for none.
 
         Also "" when no passage is too narrow, or a wider one would not help.
+
+        A clause such as "the passage at ..., which is between 1.00 and 2.41 squares wide, is wide enough"; places in
+        the robot frame. It is about the refuted plan that comes closest to leading somewhere.
         """
         closest = closest_refuted(self.plans)
         passage = closest.passage
@@ -85,16 +92,26 @@ class Infeasibility:
         return self.message or (self.refutation.reason() if self.refutation is not None else "")
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none.
+
+        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`); a neck is
+        a narrow place of the floor.
+        """
         return None if self.refutation is None else self.refutation.neck()
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""
+        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none.
+
+        A clause such as "the passage at ..., which is between 1.00 and 2.41 squares wide, is wide enough"; places in
+        the robot frame. It is about the refuted plan that comes closest to leading somewhere.
+        """
         return "" if self.refutation is None else self.refutation.unless()
 
 
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
     """Return why no way was found for an object.
+
+    An Infeasibility holds whether it is proved that there is no way, and the reason in words.
 
     Parameters
     ----------
@@ -121,6 +138,8 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
 
 def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> str:
     """Return why an object may lie elsewhere than believed, in words; "" for no reason.
+
+    A clause without full stop, with the name of the object.
 
     Parameters
     ----------
@@ -151,6 +170,9 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
     one of that level. The most permissive level is the greatest number: it allows the most squares, 0 only the surest.
 
+    A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the grasp and
+    motions, in squares and degrees.
+
     plans : refuted plans, each with its certainty level, in the order of asking; at least one, else ValueError.
     """
     most_permissive = max(level for level, _ in plans)
@@ -162,5 +184,9 @@ def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
     """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help.
 
     False when no passage is too narrow.
+
+    Parameters
+    ----------
+    plan : a plan that geometry refuted.
     """
     return plan.passage is not None and not plan.opens

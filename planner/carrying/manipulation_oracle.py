@@ -93,7 +93,7 @@ class ManipulationPlan:
 
     @property
     def askew(self) -> bool:
-        """Return whether some turn of the plan is not a multiple of a quarter turn (90 degrees)."""
+        """Return whether some turn of the plan is no multiple of a quarter turn (90 degrees); False without turns."""
         turns = (m for leg in self.plan.legs for m in leg.motions if isinstance(m, Rotate))
         return any(turn.degrees % 90.0 != 0.0 for turn in turns)
 
@@ -169,10 +169,15 @@ class ManipulationOracle:
     ) -> ManipulationPlan | Infeasibility:
         """Return the plan that is chosen and verified, or why there is none.
 
+        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+        end, its certainty level (0 the surest), and the objects to be moved aside first.
+
+        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+
         Parameters
         ----------
         request : what is to be carried, and where to.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the ends (by name, squares, view frame) as they are if the floor goes on as it is hoped to; none
             by default. It is called only when a plan was found that a bolder one may replace.
 
@@ -222,11 +227,14 @@ class ManipulationOracle:
         for the encoding, without full stops: `plan(number, commands)`, `hopes(number)`, `askew(number)`,
         `aside(number)`, `short(number)`; number 0 is the plan that was found.
 
+        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+        end, its certainty level (0 the surest), and the objects to be moved aside first.
+
         Parameters
         ----------
         request : what the plan was asked for.
         found : the plan, view frame.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the hoped ends, by name, in squares, view frame.
         """
         if found.level == OPTIMISTIC_LEVEL:
@@ -254,10 +262,13 @@ class ManipulationOracle:
         impression tells well where a motion was stopped. The plans are in the view frame and of UNSEEN_LEVEL, in the
         order of the names of the ends.
 
+        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+        end, its certainty level (0 the surest), and the objects to be moved aside first.
+
         Parameters
         ----------
         request : what is to be carried, and where to.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the hoped ends, by name, in squares, view frame; they replace the ends of the same name.
         """
         model, node = situation.model, request.node
@@ -282,6 +293,9 @@ class ManipulationOracle:
         The plan is in squares, in the frame of `end` and `floor`, which is one: the view frame, or that with the margin
         for unseen squares. Its status is found, impossible or limit (neither found nor refuted).
 
+        A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the grasp and
+        motions, in squares and degrees.
+
         Parameters
         ----------
         request : what is to be carried; its own ends are not read.
@@ -302,6 +316,9 @@ class ManipulationOracle:
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
                 """Return what geometry says for some free squares and walls.
 
+                A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the
+                grasp and motions, in squares and degrees.
+
                 free : (rows, columns) bool. walls : shapely geometry in squares, same frame; None for all that is not
                     free.
                 """
@@ -319,6 +336,11 @@ def _may_use_other_doors(node: Node, situation: Situation) -> bool:
 
     Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
     the object may pass where the robot may not. False when no door is forbidden.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     own = situation.forbidden(node.name)
     return bool(len(own) > 1 or (not own and situation.forbidden("utak")))
@@ -352,6 +374,11 @@ def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
 
     In squares along the axes of the map, from the middle of the outline to the centre of the square where the robot
     would stand. In a frame that is turned these are squares at its corners.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    model : what is believed, with its frame and its map view.
     """
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in ADJACENT_OFFSETS} - covered
@@ -364,6 +391,10 @@ def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
     """Return each certainty level that is tried, with other objects where they are and, if there are any, without.
 
     The surest level first, and for each level CLEAR before ASIDE.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     several = len(situation.model.objects) > 1
     choices = (OtherObjects.CLEAR, OtherObjects.ASIDE) if several else (OtherObjects.CLEAR,)
@@ -376,12 +407,13 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
     objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
     where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
-    what may be an object, or its hidden part, in what seems to be wall. Necks of forbidden doors are never among them.
+    what may be an object, or its hidden part, in what seems to be wall. Necks of
+    forbidden doors (the narrow places between their walls) are never among them.
 
     Parameters
     ----------
     node : the object to carry.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     level : the certainty level of squares, 0 the surest, UNSEEN_LEVEL the most permissive.
     others : what is done about the other objects.
     """
@@ -442,13 +474,16 @@ def _manipulation_plan(
 
     Objects whose squares it crosses, where these are not free at that level, are to be moved aside first.
 
+    A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+    end, its certainty level (0 the surest), and the objects to be moved aside first.
+
     Parameters
     ----------
     plan : what geometry found, in squares, view frame.
     shape : the outline of the object where it lies, shapely Polygon, in squares, view frame.
     name : of the end.
     level : the certainty level of the squares, 0 the surest.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     node : the object.
     """
     model = situation.model

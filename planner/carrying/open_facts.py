@@ -24,6 +24,9 @@ def qualify(decision: Decision, model: WorldModel) -> Decision:
 
     The fact is added to the reason.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
     decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
@@ -52,8 +55,8 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     Parameters
     ----------
     model : what is believed.
-    immovable : an object fits, but did not move when it was pushed. While the angle of the map frame is open, the robot
-        may have pushed at another object: then it is `limit`, too.
+    immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map
+        frame is open, the robot may have pushed at another object: then it is `limit`, too.
 
     Returns
     -------
@@ -89,6 +92,10 @@ def unfelt_walls(model: WorldModel) -> Bools:
     """Return the squares beside known floor on which a wall was seen and never felt.
 
     (rows, columns) bool on the arrays of the view; squares of objects do not count.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     things: Bools = np.zeros_like(felt)
@@ -100,6 +107,8 @@ def unfelt_walls(model: WorldModel) -> Bools:
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:
     """Return the open fact that a passage is wide enough, in words; "" when it is too narrow in any case.
+
+    A clause without full stop, with `where` in it.
 
     A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
     axis.
@@ -122,6 +131,10 @@ def _nearest_square(mask: Bools, near: XY) -> XY | None:
     """Return the middle (x, y) of the marked square nearest to a place, the first of several; None for an empty mask.
 
     In squares, in the frame of the mask, (rows, columns) bool; `near` is a point (x, y) of the same frame.
+
+    Parameters
+    ----------
+    mask : the squares to choose from.
     """
     rows, columns = np.nonzero(mask)
     if not len(rows):

@@ -103,11 +103,14 @@ class PlanExecutor:
         The plan under way is followed while it holds; else the failure is answered, or another plan is made. The
         command of an Act counts as given: the plan goes on behind it at the next call.
 
+        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
+        from, an Infeasibility a reason why nothing can be done; each with words.
+
         Parameters
         ----------
         node : the object; its outline is known.
         ends : where it shall lie, by name, in squares, view frame.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the ends, likewise, as they are if the floor goes on as it is hoped to; none by default.
 
         Returns
@@ -140,23 +143,31 @@ class PlanExecutor:
 
         The plan under way is not touched.
 
+        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+
         Parameters
         ----------
         node : the object; its outline is known.
         ends : where it shall lie, by name, in squares, view frame.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
 
     def forget_misses(self) -> None:
-        """Count missed plans (`missed`) from zero again."""
+        """Set `missed` to 0: the number of plans that ended with the object in hand before they led to their end."""
         self.missed = 0
 
     def release_looping(self, model: WorldModel) -> Act:
         """Return the release of a held object that was carried in a loop, and mark its grasp as failed.
 
         The plan under way is dropped. An object must be held: else AssertionError.
+
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
         """
         assert model.held is not None
         self._plan = None
@@ -169,10 +180,12 @@ class PlanExecutor:
         Returns None, too, when the plan no longer holds. Wherever it leads, it is not asked whether that is still
         wanted.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
         Parameters
         ----------
         node : the object; None is returned unless it is held and the plan carries it.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
             return None
@@ -187,14 +200,19 @@ class PlanExecutor:
 
         A held object is taken along by one straight push, if that leads there.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
+        (x, y) in squares, map frame, at which to halt, and the reason in words.
+
         Parameters
         ----------
         node : the object.
         squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
             wants to look.
         fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
-            and one or two pushes.
-        situation : what is believed.
+            and one or two pushes; if not, None is returned for it.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model
         if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
@@ -210,12 +228,16 @@ class PlanExecutor:
         It may take the place of the command that was advised last. Returns None when there is no such push, or when
         what is left of the plan is not one leg of pushes with the object in hand.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        It is the pair of pushes with the least total length. The plan under way is not changed here.
+
         Parameters
         ----------
         node : the held object.
         squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
             wants to look.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         plan = self._plan
         if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
@@ -233,6 +255,15 @@ class PlanExecutor:
 
         Returns None, and marks nothing, where no push does that, where pulling is not allowed, when the last motion did
         not move the object, and after MAX_PLANS plans.
+
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        It is the shortest such push by whole squares.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
         if push is None:
@@ -258,7 +289,14 @@ class PlanExecutor:
 
         Returns None when that cannot be done over squares that are surely free.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
+        (x, y) in squares, map frame, at which to halt, and the reason in words.
+
         squares : flat indices (row * columns + column) on the arrays of the view.
+        node : the object, a node of the world model.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
@@ -285,6 +323,9 @@ class PlanExecutor:
         An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
         degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
         None when nothing failed, or when nothing is held: then a grasp that the plan relied on is marked as failed.
+
+        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
+        from, an Infeasibility a reason why nothing can be done; each with words.
 
         Parameters
         ----------
@@ -318,10 +359,18 @@ class PlanExecutor:
         Where an obstacle must be moved aside first, the plan is for that obstacle. Failed grasps are tried again when
         nothing else is found and nothing is proved.
 
+        A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on
+        the arrays of the view), and what is not known in words.
+
+        A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must
+        stay free (all in squares, map frame), and the name of its end.
+
+        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+
         Parameters
         ----------
         request : what is to be carried, and where to.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the hoped ends, by name, in squares, view frame.
         """
         node, asked = request.node, request
@@ -360,11 +409,23 @@ class PlanExecutor:
 
         First of all it is felt whether the obstacle is an object, where that is not certain.
 
+        A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on
+        the arrays of the view), and what is not known in words.
+
+        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+        end, its certainty level (0 the surest), and the objects to be moved aside first.
+
+        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+
+        A Node is an object of the world model, with name, patch of squares (map frame) and outline.
+
+        Obstacles are tried in the order of the model's objects; only a plan that needs nothing else moved counts.
+
         Parameters
         ----------
         found : the plan, view frame; its `aside` names at least one obstacle.
         node : the object that it carries.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
@@ -403,11 +464,19 @@ class PlanExecutor:
         None, too, when the other plan does not name it as an obstacle, or when it could only go once a further object
         is moved.
 
+        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+        end, its certainty level (0 the surest), and the objects to be moved aside first.
+
+        A Node is an object of the world model, with name, patch of squares (map frame) and outline.
+
+        The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else carried to any
+        surely free place off those squares.
+
         Parameters
         ----------
         other : the object that may be in the way.
         found : the other plan, view frame.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
@@ -424,11 +493,16 @@ class PlanExecutor:
 
         The plan, without that step, becomes the plan under way.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
+        (x, y) in squares, map frame, at which to halt, and the reason in words.
+
         Parameters
         ----------
         plan : the remaining plan, map frame; it has at least one leg.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         self._plan = plan
         leg, model = plan.legs[0], situation.model
@@ -452,12 +526,17 @@ class PlanExecutor:
         A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
         the object: it lies otherwise than believed.
 
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
+        (x, y) in squares, map frame, at which to halt, and the reason in words.
+
         Parameters
         ----------
         plan : the remaining plan, map frame.
         leg : its first leg, before the grasp.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)

@@ -28,11 +28,16 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
     grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the room for a
     shorter one, and may be free, is looked at too.
 
+    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
+    arrays of the view), and what is not known in words.
+
+    Looked at are all unsure squares of the way together, from floor from which any of them is seen best.
+
     Parameters
     ----------
     found : the plan, view frame.
     node : the object that it carries; its own squares need not be seen.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model, is_long = situation.model, found.plan.commands > LONG_PLAN
     if found.hopes or (found.plan.goes_on and not is_long):
@@ -56,10 +61,16 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
 
     Also None when there is no floor beside it from which the robot did not feel it yet.
 
+    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
+    arrays of the view), and what is not known in words.
+
+    The first is meant in the order of the model's objects; only obstacles that are objects with less than
+    CERTAIN_OBJECT percent count.
+
     Parameters
     ----------
     found : the plan; its `aside` names the obstacles.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     things = (thing for thing in situation.model.objects if thing.name in found.aside)
     return _first_see(
@@ -72,10 +83,15 @@ def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | Non
 
     Also None when the robot looked at each of them from everywhere. Open squares are not determined yet.
 
+    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
+    arrays of the view), and what is not known in words.
+
+    The first is meant in the order of `found.aside`.
+
     Parameters
     ----------
     found : the plan; its `aside` names the obstacles.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     named = (situation.model.object(name) for name in found.aside)
     unclear = (other for other in named if other is not None and other.open)
@@ -87,6 +103,10 @@ def turn_cost(model: WorldModel) -> float:
 
     A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
     place of the robot within its square is open.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     if orientation_is_uncertain(model):
         return TURN_COST_OPEN_FRAME
@@ -94,5 +114,13 @@ def turn_cost(model: WorldModel) -> float:
 
 
 def _first_see(looks: Iterable[Viewpoint]) -> See | None:
-    """Return the advice to use the first of some viewpoints that has squares; None when none has."""
+    """Return the advice to use the first of some viewpoints that has squares; None when none has.
+
+    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
+    arrays of the view), and what is not known in words.
+
+    Parameters
+    ----------
+    looks : the viewpoints, in the order of preference.
+    """
     return next((See(look) for look in looks if len(look.squares)), None)

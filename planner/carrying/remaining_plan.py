@@ -77,6 +77,9 @@ class RemainingPlan:
 def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
     """Return all of a manipulation plan that was just made, as a remaining plan in the map frame.
 
+    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
+    free (all in squares, map frame), and the name of its end.
+
     Parameters
     ----------
     found : the plan, view frame.
@@ -96,11 +99,14 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     of the ends. Where the object lies otherwise than it says, the motions are verified anew from there. A plan with
     nothing left to do does not hold.
 
+    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
+    free (all in squares, map frame), and the name of its end.
+
     Parameters
     ----------
     plan : the remaining plan, map frame.
     ends : where it must lead, by name, in squares, view frame; None when it only clears the way for another object.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     node = model.object(plan.name)
@@ -131,11 +137,14 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 
     Returns None when it would not lead to one of the ends so.
 
+    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
+    free (all in squares, map frame), and the name of its end.
+
     Parameters
     ----------
     plan : the remaining plan, map frame, before its first grasp.
     ends : where it must lead, by name, in squares, view frame; None is returned for {}.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     node = model.object(plan.name)
@@ -154,11 +163,17 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
     by a walk there and back. Plans with turns or several grasps have no such part, for these depend on what is not
     seen.
 
+    A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
+    end, its certainty level (0 the surest), and the objects to be moved aside first.
+
+    It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one the
+    longest free part, if any. Its level and its end's name stay as they were.
+
     Parameters
     ----------
     found : the plan, view frame.
     node : the object that it carries.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     first, *others = found.plan.legs
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
@@ -205,13 +220,24 @@ def square_index(place: XY, model: WorldModel) -> SquareIndices:
     """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies.
 
     It is row * columns + column; without meaning for a point outside of the arrays of the view.
+
+    Parameters
+    ----------
+    place : (x, y) in squares.
+    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
 
 
 def is_at(model: WorldModel, place: XY) -> bool:
-    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
+    place : (x, y) in squares.
+    """
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
@@ -220,6 +246,8 @@ def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | N
 
     One of the eight of the robot frame, such as "northeast", as seen from where the robot stands. It is the planned
     direction, or another one in which the object is felt. While touches are not known, the planned direction counts.
+
+    The planned direction comes first, then the others in the order of the frame's directions.
 
     Parameters
     ----------
@@ -250,6 +278,10 @@ def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) 
 
     It is shorter than the push, in squares along the axes of the map.
 
+    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
+
+    Parts are tried from the longest on, in steps of one square, so it is at least about one square long.
+
     Parameters
     ----------
     workspace : what is free for the object and the robot.
@@ -268,6 +300,12 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
 
     These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
     own, without the necks of forbidden doors.
+
+    Parameters
+    ----------
+    plan : the remaining plan, with its certainty level.
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~forbidden_necks(node, situation)
@@ -283,7 +321,7 @@ def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situat
     plan : the remaining plan, map frame.
     node : the object; its outline is known.
     free : (rows, columns) bool on the arrays of the view, the squares that may be used.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs

@@ -58,10 +58,15 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
     stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
     Nothing is yielded when no object blocks.
 
+    An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
+
+    The end is Inside its own squares and surely free ones off the route; for one that goes on in a wall it is At, a
+    pull out of it.
+
     Parameters
     ----------
     things : the objects in question.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
@@ -83,7 +88,13 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
 
     At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
 
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
+    It leads to the nearest such floor, over the shortest way by the grid of squares.
+
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (
@@ -118,11 +129,13 @@ def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[
     each side on which that is so, its end relative to where the object lies; nothing for an object that does not block
     so.
 
+    An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
+
     Parameters
     ----------
     thing : the object.
     depth : in squares, 1 or more.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model, mask = situation.model, situation.model.mask(thing.patch)
     for side in SIDE_DIRECTIONS:
@@ -149,11 +162,14 @@ class ObstacleClearer:
 
         Also None when its command would close a loop: then it is no longer being moved.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
-        stage : of the task.
-        situation : what is believed.
-        tools : what the command is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         node, held = situation.model.object(self._moving), situation.model.held
         if node is not None and held is None:
@@ -174,13 +190,16 @@ class ObstacleClearer:
         What the goals speak of stays where it is. While an obstacle is left, because it must stay or did not move, the
         verdict is `limit`, not `impossible`: nothing is proved of what lies behind it.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         decision : what was decided towards the goals; one with a command is returned unchanged.
         goals : the goals that the decision is about.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the command is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         if not decision.verdict:
             return decision
@@ -199,6 +218,7 @@ class ObstacleClearer:
         Only those that are objects with at least POSSIBLE_OBJECT percent, and not known to be immovable.
 
         stays : the names of those that must stay where they are.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in stays]
@@ -208,12 +228,15 @@ class ObstacleClearer:
     ) -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         things : the objects in question.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the command is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
         name : only the object of that name is moved; "" for any of `things`.
         """
         for node, aside in obstacles(things, situation):
@@ -227,13 +250,16 @@ class ObstacleClearer:
 def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
     node : the object.
     aside : where it shall lie, in squares, view frame.
-    stage : of the task.
-    situation : what is believed.
-    tools : what the command is worked out with.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    tools : executor, pursuer and verifier, with which the command is worked out.
     """
     if node.confidence < CERTAIN_OBJECT:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))

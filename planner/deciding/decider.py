@@ -98,6 +98,9 @@ class Decider:
 
         Stages that are attained are counted as such for good.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         model : what is believed.
@@ -141,11 +144,14 @@ class Decider:
     ) -> Decision | None:
         """Return the next command towards a stage, or the verdict when it cannot be attained; None when it is.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
-        stage : of the task.
-        situation : what is believed.
-        reconciled : what the parameters of the task mean.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
         track : where the robot has been, (x, y) in squares, map frame.
         """
         conflict = self._transporter.conflict_verdict(stage, situation)
@@ -169,11 +175,14 @@ class Decider:
     ) -> Decision | None:
         """Return the next command towards where the robot itself shall be, or the verdict; None when it is there.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         stage : of the task; it has a goal for the robot itself.
-        situation : what is believed.
-        reconciled : what the parameters of the task mean.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
         track : where the robot has been, (x, y) in squares, map frame.
         """
         goals = stage.own
@@ -209,6 +218,14 @@ class Decider:
         """Return what to look at before a stage is believed to be attained; None for nothing.
 
         First what the last impression contradicts, then what the origin of a thing depends on (doors, walls).
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         model, doubt = situation.model, look_at_contradiction(situation)
         for goal in (goal for goal in stage.goals if goal.name in ORIGIN_GOALS):
@@ -224,12 +241,17 @@ class Decider:
 
         The next command of it, or the verdict `limit` when no way leads to where it is looked from.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Objects are asked about in the order of the goals; the first look that is left is returned.
+
         Parameters
         ----------
         goals : of the stage, for the robot itself.
         there : whether the goals seem to hold.
-        stage : of the task.
-        situation : what is believed.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         nodes = [situation.model.object(self.bound.get(str(goal.args[1]), "")) for goal in goals]
         doubted = [n for n in nodes if n is not None and (self._verifier.is_unsettled(n) or (there and n.vague))]
@@ -242,11 +264,16 @@ class Decider:
 
         The verdict `impossible` when no way leads round it.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        The sense of rotation, once begun, is kept while a route leads that way.
+
         Parameters
         ----------
-        stage : of the task.
+        stage : of the task: the goals that shall hold now.
         name : of the object; the model knows it: else AssertionError.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         track : where the robot has been, (x, y) in squares, map frame; the first point is where the round began.
         """
         model, cost_maps = situation.model, situation.cost_maps
@@ -269,7 +296,15 @@ class Decider:
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
-        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound."""
+        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
+
+        A Reconciliation holds the binding (parameter -> name of a node), and the pairs that are doubtful or
+        contradicted.
+
+        Parameters
+        ----------
+        cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+        """
         carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)

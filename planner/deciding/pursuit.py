@@ -51,6 +51,11 @@ class Pursuer:
         """Record a command that is about to be given, and return whether it was given before in the same state.
 
         The state is the robot's place, what it holds, and what is known (planner.navigation.loop_guard).
+
+        Parameters
+        ----------
+        command : in the robot's own frame.
+        model : what is believed, with its frame and its map view.
         """
         return self._circles.noticed(model, command)
 
@@ -68,11 +73,16 @@ class Pursuer:
         A held object that is not taken along is released first. A subgoal that leads in a loop becomes dearer until
         another one is chosen.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        A Decision with a command may be the release, or what `along` returns.
+
         Parameters
         ----------
         subgoals : what is worth doing, with squares on the arrays of the view.
-        stage : of the task.
-        situation : what is believed.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
         missing : returns what is missing, in words. It is called only for a verdict, for it may take time.
         verdict : the verdict when none can be reached. It is `limit` when one was dropped for leading in circles.
         along : returns how an object is taken along to a subgoal, or None when it had better stay; None when no object
@@ -100,7 +110,12 @@ class Pursuer:
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         if look is None:
             return None
@@ -110,6 +125,15 @@ class Pursuer:
         """Return the next command to a square where an object is grasped, so that the last move halts at its place.
 
         The verdict `impossible`, or `limit` after loops, when no way leads there.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        go : the square, the place in it at which to halt, (x, y) in squares, map frame, and the reason in words.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         subgoal = Subgoal(SubgoalKind.ATTAIN, go.square, go.why)
         walk = self.pursue([subgoal], stage, situation, lambda: "no way leads there")
@@ -119,6 +143,18 @@ class Pursuer:
         """Return the next command to where an object is grasped, or to see what must be seen first.
 
         Returns None when the advice is neither (an Act or an Infeasibility), or cannot be followed: never a verdict.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        For a Go the way to the square, so that the last move halts at its place; for a See the way to one of its
+        squares.
+
+        Parameters
+        ----------
+        advice : what the executor advises; an Act or Infeasibility gives None.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         walk: Decision | None = None
         if isinstance(advice, Go):
@@ -132,12 +168,15 @@ class Pursuer:
 
         A way to feel something is gone on with: on the way something else may come to be worth a look.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         ask : returns what is decided otherwise, a command or a verdict. It is called only while nothing is on the way
             to be felt, or when nothing is left to feel.
-        stage : of the task.
-        situation : what is believed.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         decision = None if self._feeling else ask()
         if decision is None or decision.verdict:
@@ -152,11 +191,14 @@ class Pursuer:
 
         The verdict `impossible` when every route leads through a forbidden door.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         subgoal : one of its squares can be reached at some certainty level: else AssertionError.
-        stage : of the task.
-        situation : what is believed.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
         fewest : finds routes of few moves; None for short routes.
         """
         model, cost_maps = situation.model, situation.cost_maps
@@ -179,7 +221,16 @@ class Pursuer:
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
         """Return what is left of the present route, if it leads to a subgoal and through no forbidden door; else None.
 
-        On the arrays of the view. level : the certainty level at which the subgoal is reached, 0 the surest.
+        On the arrays of the view.
+
+        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+        level, 0 the surest.
+
+        Parameters
+        ----------
+        level : the certainty level at which the subgoal is reached, 0 the surest.
+        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.forbidden("utak") else rest
@@ -201,10 +252,13 @@ class Pursuer:
 
         None, too, when no route is offered.
 
+        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+        level, 0 the surest.
+
         Parameters
         ----------
         offered : the routes that there are, on the arrays of the view, possibly none.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if not offered:
             return None
@@ -216,9 +270,12 @@ class Pursuer:
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:
     """Return the verdict when no subgoal can be reached.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
-    stage : of the task.
+    stage : of the task: the goals that shall hold now.
     missing : what is missing, in words.
     verdict : the verdict, unless some subgoals led in circles: then it is `limit`.
     in_circles : some were dropped for leading in circles.

@@ -73,11 +73,13 @@ class Transporter:
 
         When it is asked for the first time, the present place is noted.
 
+        Later calls return the noted place, as the frame is believed by then.
+
         Parameters
         ----------
         parameter : of the task.
         node : the object that it means; its outline is known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         return self._origins.at(parameter, node, situation)
 
@@ -86,13 +88,16 @@ class Transporter:
     ) -> Decision | None:
         """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         goal : one goal of the stage; its first argument is the parameter that means the object.
-        stage : of the task.
+        stage : of the task: the goals that shall hold now.
         situation : what is believed; its binding tells which object the parameter means, if any is known.
         reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
-        tools : what the decision is worked out with.
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         x = str(goal.args[0])
         node = situation.model.object(situation.binding.get(x, ""))
@@ -148,10 +153,13 @@ class Transporter:
 
         None, too, while it is not known where the goals hold.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
-        stage : of the task.
-        situation : what is believed.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
@@ -178,12 +186,15 @@ class Transporter:
         Returns None, too, when nothing is held, when the held object is the one that parameter x means, or when it does
         not shut the robot in.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         x : the parameter of the task that is pursued next.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         held = situation.model.held
         node = situation.model.object(held or "")
@@ -196,13 +207,16 @@ class Transporter:
 
         Before the verdict, an object that may be it if its size were known better is measured.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         x : the parameter of the task.
-        stage : of the task.
-        situation : what is believed.
-        reconciled : what the parameters of the task mean.
-        tools : what the decision is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         immovable = dict(reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
@@ -224,13 +238,16 @@ class Transporter:
 
         In a loop the object is released instead.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         advice : the command that the executor advises, and its reason.
         node : the object that is carried.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         if isinstance(advice.command, Push | Turn) and tools.pursuer.closes_loop(situation.model, advice.command):
             advice = tools.executor.release_looping(situation.model)
@@ -259,15 +276,18 @@ class Transporter:
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         refused : why the object cannot be carried there now; the verdict is `impossible` only if this is proved.
         node : the object.
-        land : where the goal holds.
+        land : where the goal holds: ends by name (squares, view frame), and what must be known first.
         subgoals : what is worth a look.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
@@ -299,15 +319,18 @@ class Transporter:
         In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
         object cannot come to where it must be in any case makes any verdict `impossible`.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         refused : why the object cannot be carried there.
         decision : what was decided; one with a command is returned unchanged.
         node : the object.
-        land : where the goal holds.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        land : where the goal holds: ends by name (squares, view frame), and what must be known first.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         must_reach = land.must_reach.ends() if decision.verdict else {}
         if must_reach:
@@ -330,12 +353,15 @@ class Transporter:
         After plans that missed their end, and once the object is near, the end is looked at first: then it is an
         Infeasibility that names what is missing.
 
+        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
+        from, an Infeasibility a reason why nothing can be done; each with words.
+
         Parameters
         ----------
         node : the object.
         land : where its goal holds, in squares, view frame.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         executor, looked = tools.executor, len(situation.model.looked_from)
         missed = land.ends and executor.missed >= MAX_MISSED_PLANS
@@ -359,6 +385,16 @@ class Transporter:
         """Return the next press of a held object against a wall; when none is left, what leads it out; or None.
 
         It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         act = self._presser.next(node, situation.model)
         if act is None:
@@ -371,7 +407,14 @@ class Transporter:
     ) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
 
-        shut_in : it is known that it does; by default that is tested.
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
+        node : the object, a node of the world model.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         out = tools.executor.lead_out(node, situation) if shut_in or not robot_can_leave(node, situation) else None
         if out is None:
@@ -387,13 +430,16 @@ class Transporter:
 
         Returns the verdict `limit` when its size cannot be told.
 
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
         Parameters
         ----------
         node : the object.
         ends : where it should lie, by name, in squares, view frame.
-        stage : of the task.
-        situation : what is believed.
-        tools : what the decision is worked out with.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         if (push := self._measure(node, stage, situation, tools)) is not None:
             return push
@@ -409,6 +455,16 @@ class Transporter:
 
         None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
         that.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         for pose in self._size_estimator.poses(node):
             advice = tools.executor.advise(node, {SIZE_TARGET: pose}, situation)
@@ -424,6 +480,16 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
     """Return the next command to look at an object of which something is not clear; None when no look tells more.
 
     What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    tools : executor, pursuer and verifier, with which the command is worked out.
     """
     if node.polygon is None or node.vague or tools.verifier.is_unsettled(node):
         look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
@@ -436,7 +502,20 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
 
-    None when there is nothing to see so, or no such push. land : where the goal holds; it names what to see on the way.
+    None when there is nothing to see so, or no such push.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
+
+    Parameters
+    ----------
+    land : where the goal holds; it names what to see on the way.
+    node : the object, a node of the world model.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    tools : executor, pursuer and verifier, with which the command is worked out.
     """
     for look in land.by_the_way.viewpoints():
         act = tools.executor.detour(node, look.squares, situation)
@@ -451,14 +530,18 @@ def _take_along(
 ) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
     node : the object.
-    stage : of the task.
-    situation : what is believed.
-    tools : what the decision is worked out with.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    tools : executor, pursuer and verifier, with which the decision is worked out.
     subgoal : where the robot wants to look from.
-    fetch : whether an object that is not held is fetched for that.
+    fetch : whether an object that is not held is fetched for that; if not, only a held object is taken along, by one
+        straight push.
     """
     advice = tools.executor.take_along(node, subgoal.squares, fetch, situation)
     if isinstance(advice, Go):
@@ -471,12 +554,15 @@ def _take_along(
 def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the decision to push a held object in order to see something; None when that would close a loop.
 
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
     Parameters
     ----------
     act : the push; None when there is none: then None is returned.
     what : what is to be seen, in words.
-    stage : of the task.
-    situation : what is believed.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed (world model, rooms, doors, corners, track).
     tools : what the decision is worked out with; the executor is told that the push is given.
     """
     if act is None or tools.pursuer.closes_loop(situation.model, act.command):

@@ -38,7 +38,12 @@ class Verifier:
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def is_unsettled(self, node: Node) -> bool:
-        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
+        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        """
         return node.name in self._unsettled
 
     def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
@@ -46,6 +51,17 @@ class Verifier:
 
         A look that was begun is gone on with (see `is_unsettled`). An object is settled when its outline is known and
         no square of it or beside it is open.
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        Its kind is INSPECT, its chance 100. A change of what is remembered: the object counts as unsettled while a look
+        is returned.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
@@ -63,10 +79,15 @@ class Verifier:
         other. Returns None when the map is sure, no passage is named, or it was looked at again already, within
         FOVEA_RANGE squares.
 
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        The squares of the Subgoal are all floor from which the passage lies within the fovea; possibly none.
+
         Parameters
         ----------
         refusal : the infeasibility that names the passage.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model
         neck = None if model.view.sure else refusal.neck()
@@ -88,11 +109,16 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
     are hard to set right again. A push leaves it as it lies. But when a push did not move it, the robot may have
     misjudged where it is, or what stands about it. None, too, when there is no floor left from which to look.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Its kind is INSPECT: to see the object from floor where the robot did not look yet.
+
     Parameters
     ----------
     node : the object.
-    turns : whether the plan turns it.
-    situation : what is believed.
+    turns : whether the plan turns it; if not, a look is needed only after a push that did not move it.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     if not (
@@ -109,6 +135,15 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
 
     What contradicts was withdrawn, so the new impression agrees with the rest if that is right. The look may have no
     squares, when the robot looked from everywhere near.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Its kind is INSPECT: to see the robot's own square from floor nearby.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     if not model.contradicted:
@@ -119,7 +154,12 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
 
 
 def robot_square(model: WorldModel) -> Bools:
-    """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view."""
+    """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
+    """
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
@@ -129,10 +169,15 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
     to be felt.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Of several pieces of seeming wall beside the object, the first in the order of the model that can be felt.
+
     Parameters
     ----------
     node : the object.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     rim = with_edge_neighbours(model.mask(node.patch))
@@ -148,12 +193,19 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    First the frontier behind the door that shows whether the thing is in another room (not for the goal around), else a
+    part of the verge (what bounds the floor) that may be an object and on which the goal depends.
+
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where it began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
 
@@ -163,12 +215,18 @@ def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> S
 
     If it were an object that stands against the wall, the goal would no longer hold.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+    Of several parts of the verge, the first in the order of the model. One that cannot be felt is looked at instead.
+
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     depends_on = _dependence(goal, began, covered, situation)
     for mask in situation.model.protruding:
@@ -189,12 +247,16 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     only a narrow arm of the same room. Of all frontiers it is the one nearest to the thing; None, too, when none is
     left, and for the goal around.
 
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
+    of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model, view = situation.model, situation.model.view
     if goal == "around":
@@ -206,7 +268,12 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     rows, columns = np.nonzero(covered)
 
     def distance(look: frontiers.Viewpoint) -> float:
-        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares."""
+        """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares.
+
+        Parameters
+        ----------
+        look : its squares are flat indices (row * columns + column) on the arrays of the view, at least one.
+        """
         there = np.unravel_index(look.squares, covered.shape)
         return float(np.hypot(there[0] - rows.mean(), there[1] - columns.mean()).min())
 
@@ -235,6 +302,7 @@ def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
     """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction.
 
     place : (x, y) in squares, view frame. way : a unit vector (x, y) along the axes of the map.
+    model : what is believed, with its frame and its map view.
     """
     steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
     columns, rows = np.floor(steps).astype(int).T
@@ -250,10 +318,11 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
 
     Parameters
     ----------
-    goal : in, through or around.
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     if goal == "around":

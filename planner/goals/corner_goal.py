@@ -64,7 +64,14 @@ class CornerRegion:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the region as an end, by the side of the corner, in squares, view frame: see `_must_reach`."""
+        """Compute the region as one end, Inside, by the side of the corner (such as northeast), in squares, view frame.
+
+        The region is unseen squares and the floor around the known corner, as far as the object is long and a square
+        more.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
+        """
         return _must_reach(self.side, self.node, self.situation)
 
 
@@ -84,7 +91,11 @@ class FurtherCorner:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the corner as an end, by `name`, in squares, view frame; {} when it would not be further away."""
+        """Compute the corner as an end, by `name`, in squares, view frame; {} when it would not be further away.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
+        """
         return _further_corner(self.side, self.name, self.situation)
 
 
@@ -102,7 +113,11 @@ class RoomsByTheWay:
     situation: Situation
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none."""
+        """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none.
+
+        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
+        of the view), what is not known in words, and its chance in percent.
+        """
         return _room_viewpoints(self.side, self.situation)
 
 
@@ -113,11 +128,14 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
     corner further on is looked at last, for mostly there is none; or on the way, with the object in hand. While it is
     not known where the corner is, the placement has no ends, and says what is missing and where to look.
 
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
     Parameters
     ----------
     side : of the robot frame: northeast, northwest, southeast or southwest.
     node : the object; its outline is known.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
@@ -145,6 +163,11 @@ def corner_may_move(goal: Fact, situation: Situation) -> bool:
     """Return whether a goal is about a corner that rooms not seen yet may put elsewhere.
 
     False for a goal about no corner.
+
+    Parameters
+    ----------
+    goal : a goal of the task, as a fact, such as at(x, corner(northeast)).
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     side = corner_side(goal)
     return bool(side and rooms_to_see(side, situation))
@@ -153,11 +176,15 @@ def corner_may_move(goal: Fact, situation: Situation) -> bool:
 def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
     """Choose how the robot goes up to an object that it shall carry to where some goals hold.
 
+    An Approach says whether the object shall be taken, and towards which corner of walls it shall be brought, as signs
+    (x, y), each 1 or -1, or None.
+
     Parameters
     ----------
     goals : Iterable[Fact]
         The goals for the object.
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -178,7 +205,11 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
     What lies behind their squares is seen from there, too. Flat indices on the arrays of the view; () for no such room.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     side : of the robot frame, such as northeast.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     rooms = rooms_to_see(side, situation)
     return tuple(
@@ -193,7 +224,12 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     When the places of the robot and the object are not certain, the corner is looked at first: then the placement has
     no ends.
 
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
     side : of the robot frame, such as northeast.
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     model = situation.model
@@ -226,6 +262,9 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
     object whose place is inexact is brought nearer if possible.
 
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
+
     Parameters
     ----------
     side : the name of the end, such as northeast.
@@ -251,7 +290,15 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
 def _between_walls(side: str, situation: Situation) -> Between | None:
     """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not.
 
-    In squares, view frame. side : of the robot frame, such as northeast.
+    In squares, view frame.
+
+    A Between end holds the corner (x, y), the outward unit normals of its two slanted walls, and the greatest gap to
+    each in squares.
+
+    Parameters
+    ----------
+    side : of the robot frame, such as northeast.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     corner = situation.corners[side]
     return None if corner.walls is None else Between(*corner.point, corner.walls)
@@ -263,6 +310,9 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
     Slanted walls are seen as stairs of squares and lie somewhere behind these. Only what stops the object tells where.
     The presses are named into, one and two (towards both walls, the first, the second), in this order, in squares along
     the axes of the map; none while the goal does not hold.
+
+    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
+    in words what must be known first.
 
     Parameters
     ----------
@@ -286,6 +336,13 @@ def _pressed(end: InCorner) -> InCorner:
 
     The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much. Same
     frame.
+
+    An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
+    gap to each wall in squares.
+
+    Parameters
+    ----------
+    end : the corner, in squares, with its slack: the greatest gap to each wall.
     """
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
@@ -296,6 +353,8 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
     A wall lies anywhere in the squares in which it was seen, and so does a side of the object that is not settled.
     Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is. With
     a part of a square free in between, seen or not, it may not be.
+
+    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
 
     Parameters
     ----------
@@ -322,6 +381,10 @@ def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
 
     First for the eastern or western side of the object, then for the northern or southern one: those that `end`, the
     corner, is towards.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
     """
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south
@@ -348,7 +411,15 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
 def _corner_end(side: str, situation: Situation) -> InCorner:
     """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls.
 
-    In squares, view frame. side : of the robot frame, such as northeast.
+    In squares, view frame.
+
+    An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
+    gap to each wall in squares.
+
+    Parameters
+    ----------
+    side : of the robot frame, such as northeast.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
     return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
@@ -359,11 +430,14 @@ def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, 
 
     In squares, view frame. It lies at most MAX_CORNER_SHIFT squares further along each axis.
 
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
     Parameters
     ----------
     side : of the corner in the robot frame, such as northeast.
     name : the key of the end.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
@@ -389,11 +463,14 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
     frame, by the names near_<side> and about_<side>, the best first; the second is left out when it is empty or the
     object is there.
 
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
     Parameters
     ----------
     side : of the robot frame, such as northeast.
     node : the object.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     floor : (rows, columns) bool on the arrays of the view, the squares that the robot can reach.
     """
     end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
@@ -410,6 +487,15 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
 
     One end by the name of the side, in squares, view frame. Around is as far as the object's bounding box is long, and
     a square more.
+
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
+    Parameters
+    ----------
+    side : of the corner in the robot frame, such as northeast.
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
@@ -422,7 +508,12 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
 def _around(side: str, squares: int, situation: Situation) -> Bools:
     """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool.
 
-    Axes as those of the view's arrays. side : of the robot frame, such as northeast.
+    Axes as those of the view's arrays.
+
+    Parameters
+    ----------
+    side : of the robot frame, such as northeast.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square
     high, wide = situation.model.view.seen.shape
@@ -435,6 +526,11 @@ def _reachable_floor(node: Node, situation: Situation) -> Bools:
     """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool.
 
     Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     cost_maps = situation.cost_maps
     mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED

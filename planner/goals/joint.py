@@ -24,6 +24,9 @@ OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
 def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int, int] | None:
     """Find two of some goals that cannot hold at once for one object.
 
+    Pairs are tried in the order (0, 1), (0, 2), ..., (1, 2), ... A goal conflicts with another when no end of the one
+    shares enough region with an end of the other, loose ends included.
+
     Parameters
     ----------
     placements : Sequence[Placement]
@@ -49,7 +52,12 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
     """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
     However much more floor becomes known, such corners only move further apart. Also "" when the two corners of the
-    known floor are near enough to each other. goals : of one stage, for the robot.
+    known floor are near enough to each other.
+
+    Parameters
+    ----------
+    goals : of one stage, for the robot.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
@@ -63,7 +71,15 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 
 
 def _all_ends(placement: Placement) -> list[End]:
-    """List all ends of a placement (squares, view frame), the loose ones last."""
+    """List all ends of a placement (squares, view frame), the loose ones last.
+
+    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
+    walls) of geometry.manipulation.goals.
+
+    Parameters
+    ----------
+    placement : where a goal holds; `ends` come first, in order, then those of `loose`.
+    """
     return [*placement.ends.values(), *placement.loose.values()]
 
 
@@ -117,6 +133,7 @@ def _corner_region(end: InCorner, longest: float) -> Any:
     In squares, in the frame of the end.
 
     longest : the greatest distance between two points of the shape, or more, in squares.
+    end : the corner, with its slack and how far the box may reach from the walls.
     """
     reach = end.slack + end.press + longest + REGION_ROUNDING
     far_x, far_y = end.x - math.copysign(reach, end.sx), end.y - math.copysign(reach, end.sy)

@@ -20,6 +20,10 @@ def with_unseen_margin(mask: Bools) -> Bools:
 
     The result is (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN); square [0, 0] of the view is its square
     [UNSEEN_MARGIN, UNSEEN_MARGIN].
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool on the arrays of the view; it is not changed.
     """
     return np.pad(mask, UNSEEN_MARGIN)
 
@@ -31,6 +35,7 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
     mask : (rows, columns) bool of the view; it is not changed. Returns a new mask with the margin of
         `with_unseen_margin`.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     unseen, wider = ~with_unseen_margin(situation.model.view.seen), with_unseen_margin(mask)
     for _ in range(UNSEEN_MARGIN):
@@ -42,5 +47,9 @@ def optimistic_floor(situation: Situation) -> Bools:
     """Return all squares that are assumed to be free, (rows, columns) bool with the margin of `with_unseen_margin`.
 
     These are the free ones of level OPTIMISTIC_LEVEL and the unseen ones that these lead to.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

@@ -55,6 +55,7 @@ class Origins:
         node : Node
             The thing now; its outline is known.
         situation : Situation
+            What is believed: world model, rooms, doors, corners and track.
 
         Returns
         -------
@@ -78,11 +79,13 @@ class Origins:
         counts as lost only where observations contradict what is believed. The origin must have been asked for with
         `at` before; else KeyError.
 
+        "the robot was lost" or "a door of its room was lost".
+
         Parameters
         ----------
         parameter : the parameter of the task that means the thing.
         node : the thing now.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
@@ -96,11 +99,13 @@ class Origins:
 
         The origin must have been asked for with `at` before; else KeyError.
 
+        Compared are the rooms of the origin and of the middle of the outline, as the rooms are believed now.
+
         Parameters
         ----------
         parameter : the parameter of the task that means the thing.
         node : the thing now; its outline is known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         rooms, view = situation.rooms.labels, situation.model.view
         began = situation.model.frame.place_from_utak(*self._known[parameter].place)
@@ -111,7 +116,12 @@ class Origins:
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
     """Return the middles of the doors of the room that holds a point, as points (east, north) of the robot's own frame.
 
-    In squares; () for no door. place : a point (x, y) of the map frame, in squares.
+    In squares; () for no door.
+
+    Parameters
+    ----------
+    place : a point (x, y) of the map frame, in squares.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])

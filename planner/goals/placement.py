@@ -32,14 +32,22 @@ class DeferredEnds(Protocol):
     """The ingredients of some ends. To compute these takes time, so it is done only when they are asked for."""
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the ends, by name, in squares, view frame; {} for none."""
+        """Compute the ends, by name, in squares, view frame; {} for none.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
+        """
 
 
 class DeferredViewpoints(Protocol):
     """The ingredients of some viewpoints. To compute these takes time, so it is done only when asked for."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute the viewpoints, on the arrays of the view; () for none."""
+        """Compute the viewpoints, on the arrays of the view; () for none.
+
+        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
+        of the view), what is not known in words, and its chance in percent.
+        """
 
 
 @dataclass(frozen=True)
@@ -54,7 +62,11 @@ class KnownEnds:
     by_name: Mapping[str, End] = field(default_factory=dict)
 
     def ends(self) -> Mapping[str, End]:
-        """Return the ends, by name, in squares, view frame."""
+        """Return the ends, by name, in squares, view frame.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
+        """
         return self.by_name
 
 
@@ -70,7 +82,11 @@ class RegionEnds:
     masks: Mapping[str, Bools]
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the region of each mask as an end, by the same names, in squares, view frame."""
+        """Compute the region of each mask as an end, by the same names, in squares, view frame.
+
+        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
+        two walls) of geometry.manipulation.goals.
+        """
         return {name: Inside(mask_to_polygon(mask)) for name, mask in self.masks.items()}
 
 
@@ -79,7 +95,11 @@ class NoViewpoints:
     """Deferred viewpoints of which there are none."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Return (): no viewpoint."""
+        """Return (): no viewpoint.
+
+        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
+        of the view), what is not known in words, and its chance in percent.
+        """
         return ()
 
 
@@ -129,6 +149,11 @@ def meets_end(end: End, shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame.
 
     An At end is met when it is the shape's present pose; a Roomy end never.
+
+    Parameters
+    ----------
+    end : where the outline must lie.
+    shape : the outline of the object as it lies now.
     """
     return is_goal_met(end, shape, shape)
 
@@ -136,7 +161,12 @@ def meets_end(end: End, shape: Any) -> bool:
 def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame.
 
-    False for no ends. ends : by name.
+    False for no ends.
+
+    Parameters
+    ----------
+    ends : by name.
+    shape : the outline of the object as it lies now.
     """
     return any(meets_end(end, shape) for end in ends.values())
 
@@ -144,7 +174,11 @@ def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
 def is_off_quarter_turn(node: Node) -> bool:
     """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns.
 
-    What counts is `node.turned`, the degrees since it was first held.
+    A quarter turn is 90 degrees. What counts is `node.turned`, the degrees since it was first held.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
     """
     over = node.turned % 90.0
     return min(over, 90.0 - over) > ANGLE_TOLERANCE
@@ -154,6 +188,11 @@ def to_view_frame(shape: Any, situation: Situation) -> Any:
     """Convert a shape (shapely geometry, in squares) from the map frame to the view frame; the shape is not changed.
 
     The view frame is that of the arrays of the view: (0, 0) is the south-west corner of square [0, 0].
+
+    Parameters
+    ----------
+    shape : a shapely geometry, in squares, map frame.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
@@ -164,6 +203,10 @@ def mask_to_polygon(mask: Bools) -> Any:
 
     x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
     geometry for an empty mask.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool, row 0 in the south.
     """
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
@@ -182,6 +225,7 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
     node : Node
         The object.
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -199,6 +243,8 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
     """Compute the squares straight behind an object that seem to be wall and may belong to the object.
 
+    They are verge (what bounds the floor) without a gap from the object on, at most `depth` rows or columns.
+
     Parameters
     ----------
     node : Node
@@ -208,6 +254,7 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
     depth : int
         How far the object may go on, in squares.
     model : WorldModel
+        What is believed, with its frame and its map view.
 
     Returns
     -------
@@ -225,6 +272,8 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
 def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
     """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole.
 
+    A Pose is x, y in squares and degrees, counter-clockwise positive.
+
     Parameters
     ----------
     node : Node
@@ -234,6 +283,7 @@ def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situ
     depth : int
         How far, in squares. It is pulled by one square more, or as far as the floor is surely free.
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -255,7 +305,12 @@ def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
     An At end: the translation from where it lies, in squares along the axes of the map. Returns None when none of the
     squares may belong to the object, or when it cannot be pulled. It is pulled out as if it went on as far as possible.
 
+    An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
+    positive, then a translation (x, y) in squares.
+
     needed : (rows, columns) bool on the arrays of the view, the squares that must become free.
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     for depth, side in product(range(MAX_HIDDEN_DEPTH, 0, -1), SIDE_DIRECTIONS):
         if (possible_extension(node, side, depth, situation.model) & needed).any():
@@ -269,6 +324,11 @@ def robot_can_leave(node: Node, situation: Situation) -> bool:
     """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it.
 
     True for an object that is not held.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     held = situation.model.held == node.name
     return not held or floor_leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))

@@ -81,7 +81,13 @@ def unreachable_reason(where: Sequence[Destination]) -> str:
 def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
     """Return the destination of a goal of which it is not known yet where it holds: without squares.
 
-    missing : in words, what must be known first. viewpoints : where that may be seen; () for any place worth a look.
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
+    Parameters
+    ----------
+    missing : in words, what must be known first; a clause without full stop.
+    viewpoints : where that may be seen; () for any place worth a look.
     """
     return Destination(np.zeros(0, np.int64), missing, viewpoints)
 
@@ -90,6 +96,10 @@ def corner_side(goal: Fact) -> str:
     """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner.
 
     The side is one of the robot's own frame, as in at(utak, corner(northeast)).
+
+    Parameters
+    ----------
+    goal : a goal of the task, as a fact.
     """
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
@@ -99,11 +109,15 @@ def corner_side(goal: Fact) -> str:
 def destination(goal: Fact, situation: Situation) -> Destination:
     """Compute the squares on which a goal of place holds for the robot.
 
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
     Parameters
     ----------
     goal : Fact
         at, in, beside, through or around with "utak"; or circled, for the squares beside its object.
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -135,7 +149,11 @@ def corner_destination(side: str, situation: Situation) -> Destination:
     Where an unseen room may go further, the corner may be another one: then something is missing. Without the square
     when it is not known how the floor goes on there.
 
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
     side : northeast, northwest, southeast or southwest.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
@@ -150,10 +168,13 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
     It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there. The Destination
     has no squares then, but words and viewpoints.
 
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
     Parameters
     ----------
     side : of the robot's own frame, such as northeast.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     floor : (rows, columns) bool on the arrays of the view, the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
@@ -177,11 +198,18 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     The floor may go on unseen behind a door, also behind one that follows if a doubtful wall is an object; or behind a
     likely gap; or it is seen where no way leads yet. How far it may go is estimated by the constants of this module.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    First the unreached rooms that a way of some certainty leads to, then frontiers, then gaps. All get the same words
+    for what is not known; for frontiers and gaps the chance in percent that an object comes into sight.
+
     Parameters
     ----------
     side : str
         A side of the robot's own frame, such as "northeast".
     situation : Situation
+        What is believed: world model, rooms, doors, corners and track.
 
     Returns
     -------
@@ -196,6 +224,10 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         """Return how much less far than the known corner a viewpoint lies towards the side, in squares.
 
         East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
+
+        Parameters
+        ----------
+        view : its squares are flat indices (row * columns + column) on the arrays of the view.
         """
         return known - _furthest_towards(side, view.squares, model)
 
@@ -220,6 +252,7 @@ def _corner_square(side: str, situation: Situation) -> SquareIndices:
     """Return the square of the known corner towards a side, as a flat index on the arrays of the view, (1,) int64.
 
     side : of the robot's own frame, such as northeast.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square
     return np.array([row * situation.model.labels.shape[1] + column])
@@ -235,7 +268,7 @@ def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int
     ----------
     side : of the corner in the robot's own frame, such as northeast.
     view : the frontier.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     rooms = (situation.rooms, situation.rooms_by_sure_walls)
     if any(one.doorways.ravel()[view.squares].any() for one in rooms):
@@ -253,6 +286,11 @@ def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
     """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns.
 
     The span is the difference of the greatest and the least number of a row, or column.
+
+    Parameters
+    ----------
+    view : its squares are flat indices (row * columns + column) on the arrays of the view.
+    model : what is believed, with its frame and its map view.
     """
     return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
@@ -330,7 +368,13 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
     Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it.
 
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
+    When no way leads there, the viewpoint is all floor beside the object.
+
     parameter : the parameter of the task that means the object.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     node = situation.model.object(situation.binding.get(parameter, ""))
     if node is None:
@@ -357,6 +401,13 @@ def _room(situation: Situation) -> Destination:
     """Return the reachable floor of the rooms next to the one in which the robot woke.
 
     Without squares, and with what is missing and where to look, while no such room is known or is to be relied on.
+
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
     if viewpoints:
@@ -372,8 +423,13 @@ def _room(situation: Situation) -> Destination:
 def next_room_missing(situation: Situation) -> str:
     """Return in words why no next room is known: none can be reached, or no neck is a door.
 
-    Then the neck that comes nearest to being a door is named, if any is known, with its width in squares and its place
-    in the robot frame.
+    A clause without full stop. A neck is a narrow place of the floor; a door is one with floor at least twice as wide
+    on both sides. If no neck is a door, the one that comes nearest to that is named, if any is known, with its width in
+    squares and its place in the robot frame.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, opening = situation.model, situation.rooms.opening
     if situation.rooms.sure:
@@ -393,6 +449,15 @@ def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors.
 
     One Viewpoint for each room, with all its reachable squares (flat indices on the arrays of the view).
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    In the ascending order of the rooms' numbers.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     rooms, beyond = situation.likely_next_rooms(model.frame.origin)
@@ -407,6 +472,7 @@ def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
     """Return the numbers of the rooms that have squares of a mask, in ascending order; [] for an empty mask.
 
     mask : (rows, columns) bool on the arrays of the view. Number 0 stands for floor that is part of no room.
+    rooms : the partition of the floor into rooms; number 1 is the one in which the robot woke.
     """
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
@@ -416,7 +482,12 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
 
     Viewpoints on the arrays of the view, those of doors first; () for none.
 
-    tried : whether likely doors are left out, because the robot goes through them anyway.
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    tried : whether likely doors are left out, because the robot goes through them anyway; by default all possible doors
+        count.
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
     return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
@@ -426,6 +497,13 @@ def around_corner_destination(situation: Situation) -> Destination:
     """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between.
 
     Without squares, and with what is missing, when no such floor can be reached.
+
+    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
+    known first, and viewpoints from which that may be seen.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
@@ -464,7 +542,12 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
 def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
     """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own.
 
-    Flat indices on the arrays of the view, (n,). point : (x, y) of the map frame, in squares.
+    Flat indices on the arrays of the view, (n,).
+
+    Parameters
+    ----------
+    point : (x, y) of the map frame, in squares.
+    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*point)
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
@@ -478,6 +561,7 @@ def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
     """Return whether the robot stands on one of some squares; False for no squares.
 
     squares : (n,) flat indices (row * columns + column) on the arrays of the view.
+    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())

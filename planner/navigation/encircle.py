@@ -31,9 +31,16 @@ def winding_number(track: Sequence[XY], node: Node) -> int:
 def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
     """Find the routes that complete one turn around an object and end where the track began.
 
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
+    The routes keep off the object's own squares. A sense without a route has no key; the length of a route is that of
+    the diagonal steps, not of the squares between.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     track : Sequence[XY]
         Where the robot has been since it began to encircle the object, points (x, y) of the map frame in squares.
     node : Node
@@ -85,6 +92,9 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
     That square lies in the column of the later square and the row of the former. The length, in squares, is that of the
     given squares; the clearance is assumed to be 0.5 squares.
 
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
     Parameters
     ----------
     squares : (column, row) on the arrays of the view, at least two.
@@ -103,6 +113,12 @@ def encircled_point(node: Node) -> XY:
     """Return a point (x, y) within the object, in squares, map frame.
 
     It is the centre of that square of the object which is nearest to the mean of its squares.
+
+    Of squares that are equally near, the westernmost, then the southernmost.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
     """
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
@@ -113,6 +129,11 @@ def _square(place: XY, model: WorldModel) -> Square:
     """Return the square (column, row) on the arrays of the view that holds a point (x, y) of the map frame.
 
     It may lie outside of the arrays.
+
+    Parameters
+    ----------
+    place : (x, y) in squares.
+    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*place)
     return column, row

@@ -39,6 +39,11 @@ class LoopGuard:
 
         The same are the robot's place and the command, to STATE_DIGITS decimals, what it holds, and what is known (see
         `_knowledge`).
+
+        Parameters
+        ----------
+        command : the command that is about to be given, in the robot's own frame.
+        model : what is believed, with its frame and its map view.
         """
         x, y = model.place
         values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
@@ -49,7 +54,12 @@ class LoopGuard:
         return again
 
     def tire(self, squares: frozenset[Square]) -> None:
-        """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
+        """Count one more loop for a subgoal with these squares (x, y) of the map frame.
+
+        Parameters
+        ----------
+        squares : whole numbers (x, y), the south-west corner of each square in the map frame.
+        """
         self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
@@ -57,6 +67,11 @@ class LoopGuard:
 
         Prices are in squares of way. The loops of a subgoal are the most that were counted for one of its squares. All
         loops are forgotten as soon as more is known.
+
+        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
+        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
+
+        The rest stays in order; `subgoals` is not changed.
 
         Parameters
         ----------
@@ -78,7 +93,12 @@ class LoopGuard:
         return found
 
     def _on_view(self, model: WorldModel) -> Longs:
-        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view."""
+        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view.
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
+        """
         rows, columns = model.labels.shape
         loops = np.zeros((rows, columns), np.int64)
         for (x, y), times in self._loops.items():
@@ -93,6 +113,10 @@ def _knowledge(model: WorldModel) -> StateKey:
 
     In this order: how many squares were seen, how many are settled, how many stopped a motion, and for each object that
     was moved or is stuck its name, how often it is stuck, and the west and south square of its patch (map frame).
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(

@@ -54,6 +54,11 @@ PathFinder = Callable[
 def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
 
+    A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
+    of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings.
+
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
+
     Parameters
     ----------
     free : (rows, columns) bool, True where free, on the arrays of the view.
@@ -71,6 +76,8 @@ def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's.
+
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
 
     Parameters
     ----------
@@ -90,6 +97,8 @@ def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the shortest route over the squares and their eight neighbours, by A*.
 
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
+
     Parameters
     ----------
     free : (rows, columns) bool, True where free, on the arrays of the view.
@@ -107,6 +116,8 @@ def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
 
 def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
     """Return the only route of a path-finder, with its length and the clearance of the squares that it touches.
+
+    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
 
     Parameters
     ----------
@@ -128,9 +139,18 @@ PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility":
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
     """Find topologically distinct routes to the nearest reachable square of `goals`.
 
+    Distinct routes pass some obstacle on different sides.
+
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
+
+    The nearest is by the length of the way at that level; of equals the first in `goals`. At most MAX_ROUTES with the
+    skeleton, else one.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     level : int
         The certainty level of the squares that may be crossed, 0 the surest; at least one goal can be reached at it.
     goals : SquareIndices
@@ -166,16 +186,23 @@ def choose_route(
 ) -> PlannedRoute | None:
     """Choose one of some routes, by planner/asp/routes.lp.
 
+    It is the one of least length, with costs added for risk, for a clearance below one square, and for a switch from
+    the route before; of equals the first offered. Routes through forbidden doors are not taken.
+
     The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
     `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths
     of the expected number of occupied squares; `through(number, door)`; `last(number)` for a route that continues the
     one before.
+
+    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+    level, 0 the surest.
 
     Parameters
     ----------
     offered : Sequence[PlannedRoute]
         On the arrays of the view.
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     before : frozenset[Square]
         The squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
     doors : Sequence[Door]
@@ -205,11 +232,21 @@ def leads_through(route: PlannedRoute, door: Door) -> bool:
     """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side.
 
     Both are in the view frame; the route counts as the line through the centres of its squares.
+
+    Parameters
+    ----------
+    route : squares (column, row) on the arrays of the view, in order.
+    door : its neck is the segment from a to b, in squares, view frame.
     """
     points = np.array(route.squares) + 0.5
     return bool(count_crossings(points, door) % 2)
 
 
 def _centre(square: Square) -> XY:
-    """Return the centre (x, y) of a square (column, row), in squares, in the same frame."""
+    """Return the centre (x, y) of a square (column, row), in squares, in the same frame.
+
+    Parameters
+    ----------
+    square : (column, row) on any array with (0, 0) at the outer corner of square [0, 0].
+    """
     return square[0] + 0.5, square[1] + 0.5

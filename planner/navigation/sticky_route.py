@@ -36,7 +36,12 @@ class StickyRoute:
         self._subgoal, self._level = subgoal, route.level
 
     def path(self, model: WorldModel) -> list[Square]:
-        """Return the squares (column, row) of the route on the arrays of the present view, in order; [] for none."""
+        """Return the squares (column, row) of the route on the arrays of the present view, in order; [] for none.
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
+        """
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
     def subgoal(self, model: WorldModel) -> frozenset[int]:
@@ -44,6 +49,10 @@ class StickyRoute:
 
         A flat index is row * columns + column. Squares outside of the view are left out; empty when there is no
         subgoal.
+
+        Parameters
+        ----------
+        model : what is believed, with its frame and its map view.
         """
         rows, columns = model.labels.shape
         places = ((y - model.view.south, x - model.view.west) for x, y in self._subgoal)
@@ -52,6 +61,9 @@ class StickyRoute:
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
         """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares.
 
+        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
+        level, 0 the surest.
+
         Parameters
         ----------
         subgoal : Subgoal
@@ -59,6 +71,7 @@ class StickyRoute:
         level : int
             The certainty level at which it can be reached; another one than the route's ends the route.
         model : WorldModel
+            What is believed, with its frame and its map view.
         cost_maps : CostMaps
             Of the same model.
 
@@ -81,6 +94,12 @@ class StickyRoute:
 
 
 def to_map_squares(squares: SquareIndices, model: WorldModel) -> frozenset[Square]:
-    """Convert flat indices (row * columns + column) on the arrays of the view to squares (x, y) of the map frame."""
+    """Convert flat indices (row * columns + column) on the arrays of the view to squares (x, y) of the map frame.
+
+    Parameters
+    ----------
+    squares : (n,) flat indices; the result is a set of whole numbers (x, y).
+    model : what is believed, with its frame and its map view.
+    """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

@@ -37,6 +37,10 @@ def orientation_is_uncertain(model: WorldModel) -> bool:
     The angle is that between the map frame and the robot frame. Angles that are unlikely by all sampled completions of
     the map do not count: this is the weaker doubt, `model.likely_spread`, while `orientation_is_settled` asks for all
     doubt.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     return model.likely_spread > ORIENTATION_TOLERANCE
 
@@ -45,6 +49,10 @@ def orientation_is_settled(model: WorldModel) -> bool:
     """Return whether the angle of the map frame is known within ORIENTATION_TOLERANCE (5 degrees) beyond doubt.
 
     The angle is that between the map frame and the robot frame; unlikely angles count, too (`model.spread`).
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
     """
     return model.spread <= ORIENTATION_TOLERANCE
 
@@ -125,9 +133,12 @@ def next_move(
     passable. While the orientation is uncertain, the second half of a move of more than TIGHT_MOVE_LENGTH squares keeps
     one more square clear around it, unless the pace is bold.
 
+    A Move is a straight line (east, north) in squares of the robot's own frame.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     path : Sequence[Square]
         Edge-connected squares (column, row) on the arrays of the view, at least two; the first is the robot's.
     kind : str
@@ -163,6 +174,7 @@ def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = 
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     kind : str
         The kind of the subgoal (SubgoalKind); it decides how long a move may be, and which squares it may cross.
     candidates : Bools | None
@@ -181,6 +193,12 @@ def _roomy(cost_maps: CostMaps) -> Bools | None:
     """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view.
 
     Returns None while the orientation is certain enough, so that no such room is asked for.
+
+    Safe squares are those over which a move is made without looking first.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
@@ -210,6 +228,8 @@ def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> M
 
     The move is in the robot's own frame (east, north), in squares.
 
+    A Move is a straight line (east, north) in squares of the robot's own frame.
+
     Parameters
     ----------
     model : what is believed; its `place` is where the move begins.
@@ -223,7 +243,13 @@ def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> M
 def move_by(model: WorldModel, dx: float, dy: float) -> Move:
     """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame.
 
-    The move is a vector of the robot's own frame (east, north), in squares.
+    A Move is a straight line (east, north) in squares of the robot's own frame.
+
+    Parameters
+    ----------
+    dx : to the east of the map frame, in squares.
+    dy : to the north of the map frame, in squares.
+    model : what is believed, with its frame and its map view.
     """
     return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
 
@@ -233,6 +259,13 @@ def _straight_to(place: XY, model: WorldModel) -> Move:
 
     The move is in the robot's own frame (east, north), in squares, rounded to COMMAND_DIGITS decimals. A robot believed
     within rounding of a grid line is taken to stand on it.
+
+    A Move is a straight line (east, north) in squares of the robot's own frame.
+
+    Parameters
+    ----------
+    place : where it ends, (x, y) in squares, map frame.
+    model : what is believed, with its frame and its map view.
     """
     here = snap_to_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
@@ -252,7 +285,7 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
     ----------
     cost_maps : of the present world model.
     square : the last square (column, row) on the arrays of the view.
-    kind : of the subgoal; only OFF_CENTRE_KINDS may end near the edge.
+    kind : of the subgoal (SubgoalKind); only OFF_CENTRE_KINDS may end near the edge.
     """
     model = cost_maps.model
     if orientation_is_uncertain(model):
@@ -287,6 +320,8 @@ def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
 def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:
     """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`.
 
+    A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
+
     Parameters
     ----------
     command : Command | None
@@ -294,6 +329,7 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
     place : XY
         A point (x, y) of the map frame, in squares.
     model : WorldModel
+        What is believed, with its frame and its map view.
 
     Returns
     -------

@@ -107,7 +107,7 @@ class CostMaps:
 
     @cached_property
     def distances(self) -> "DistanceMaps":
-        """The distance of every square from the robot, by certainty level (UNSEEN_LEVEL included).
+        """The length of the shortest way from the robot to every square, by certainty level (UNSEEN_LEVEL included).
 
         `distances[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
         """
@@ -116,9 +116,14 @@ class CostMaps:
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
 
+        A Reached holds a certainty level (0 the surest) and the cost of the way: squares, plus LEVEL_COST for each
+        level.
+
+        The cost is the least at the first level at which any is reached; a surer level counts before a shorter way.
+
         Parameters
         ----------
-        squares : flat indices (row * columns + column) on the arrays of the view.
+        squares : (n,) flat indices (row * columns + column) on the arrays of the view.
 
         Returns
         -------
@@ -163,8 +168,9 @@ class CostMaps:
     def believed(self) -> Bools:
         """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied.
 
-        The latter are free at level 0 and not beside unseen squares. For the case that being stopped costs less than
-        looking first.
+        A bold move crosses squares that are only believed to be free; a safe square is one that any move crosses
+        without looking first. Squares that are hardly occupied are free at level 0 (the surest) and not beside unseen
+        squares. For the case that being stopped costs less than looking first.
         """
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
@@ -173,8 +179,9 @@ class CostMaps:
     def approachable(self) -> Bools:
         """The squares of bold moves up to an object, (rows, columns) bool.
 
-        These are the squares of `believed`, and those that share an edge with an object and are free at APPROACH_LEVEL.
-        Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
+        A bold move crosses squares that are only believed to be free. These are the squares of `believed`, and those
+        that share an edge with an object and are free at APPROACH_LEVEL. Where such a square is occupied after all, the
+        object itself stops the robot, right where it wants to be.
         """
         view = self.model.view
         things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge
@@ -228,9 +235,12 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
 
     The vicinity are the squares of the object and all squares around it.
 
+    In the order of the model's objects.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
 
     Returns
     -------
@@ -249,6 +259,11 @@ def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
     """List the squares of a patch and all squares around it (eight neighbours) that lie within the view.
 
     Returns flat indices (row * columns + column) on the arrays of the view, (n,), in no stated order.
+
+    Parameters
+    ----------
+    patch : the squares of an object, map frame.
+    model : what is believed, with its frame and its map view.
     """
     rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))
     rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west

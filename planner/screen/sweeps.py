@@ -154,6 +154,11 @@ def _touched_by(x: float, y: float) -> list[Square]:
     """List the square (column, row) that holds a point (x, y), or all squares on whose shared edge or corner it lies.
 
     The point is in squares; it lies on an edge within SWEEP_TOLERANCE. One, two or four squares.
+
+    Parameters
+    ----------
+    x : in squares, x = column at the western edge.
+    y : in squares, y = row at the southern edge.
     """
     columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

@@ -27,6 +27,10 @@ def expected_gain(view: MapView) -> Floats:
     It is the weighted number of unseen squares within GAIN_REACH rows and columns, those beyond the arrays of the view
     included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT. Axes as those
     of the view's arrays.
+
+    Parameters
+    ----------
+    view : the map as it is seen: row 0 in the south, column 0 in the west.
     """
     seen = np.pad(view.seen, GAIN_REACH)
     labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), GAIN_REACH)

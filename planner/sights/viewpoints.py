@@ -57,15 +57,22 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 
     A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    Places come in the order of their first squares, row by row from the south; one entry each.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     likely : Floats
         (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted object.
     what : str
         What is not known there, in words.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------
@@ -91,15 +98,20 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Return the floor from which an object is seen better than it was.
 
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     node : Node
         The object.
     chance : float
         The probability, 0 to 1, that it is the wanted one.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------
@@ -119,12 +131,14 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     Parameters
     ----------
     cost_maps : CostMaps
+        The present world model on arrays of squares, with the ways from where the robot stands.
     mask : Bools
         (rows, columns) bool on the arrays of the view, the squares that it may cover.
     chance : float
         The probability, 0 to 1, that it is the wanted one.
     to : Approach
-        What the robot wants there.
+        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
+        if any, it shall be brought.
 
     Returns
     -------
@@ -183,6 +197,7 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
     a corner in `to`, all of these.
 
     surely : (rows, columns) bool, the squares of the object.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     sides = with_edge_neighbours(surely)
     if to.corner is None:

@@ -27,6 +27,13 @@ class FailedGrasps:
 
         Nothing is recorded for None, and for an object of unknown outline. Both the present place and the middle of the
         square are recorded, for plans grasp from the middle.
+
+        Two grasps are appended: from the present place, then from the middle of its square.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        model : what is believed, with its frame and its map view.
         """
         if node is None or node.polygon is None:
             return
@@ -39,6 +46,10 @@ class FailedGrasps:
         """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
 
         Along the axes of the map, in the order of recording; () for none. The middle is the centroid of the outline.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
         """
         return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
 
@@ -47,6 +58,12 @@ class FailedGrasps:
 
         A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
         nothing is forgotten, and False is returned.
+
+        True when some were forgotten; each time counts against MAX_RETRIES.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
         """
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:
@@ -60,5 +77,6 @@ def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
     """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
 
     grasps : (n, 2), (x, y) from the object's middle, in squares.
+    degrees : counter-clockwise positive.
     """
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))

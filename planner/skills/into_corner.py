@@ -37,6 +37,11 @@ class IntoCorner:
 
         Where walls lie askew, it may then stand in a square that they fill in part. False for a stage without such a
         goal.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
         """
         asked = [situation.corners[side] for side in map(corner_side, stage.own) if side in situation.corners]
         squares = [_map_square(corner, situation) for corner in asked]
@@ -47,6 +52,8 @@ class IntoCorner:
 
         A Move in the robot's own frame, in squares. Also None while the orientation of the map frame is uncertain, and
         for a stage that asks for no corner.
+
+        A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
 
         Parameters
         ----------
@@ -86,6 +93,8 @@ class IntoCorner:
 def halting_place(corner: Corner, situation: Situation) -> XY:
     """Return where in the square of a corner the robot halts: the point right beside its outer lines.
 
+    It lies HALT_DISTANCE squares from each of the two edges of the square that the walls are on.
+
     Parameters
     ----------
     corner : in squares, view frame.
@@ -106,11 +115,13 @@ def halt_beside_walls(command: Command | None, stage: Stage, situation: Situatio
     All other commands and None are returned as they are, and so are moves that would then lead over squares that are
     not safe.
 
+    A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
+
     Parameters
     ----------
     command : the command that was decided, in the robot's own frame.
     stage : its goals of the robot itself may name a corner; the first one counts.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     side = next((side for side in map(corner_side, stage.own) if side), "")
     if (
@@ -132,7 +143,7 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
     Parameters
     ----------
     corner : in squares, view frame.
-    situation : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     """
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
     column, row = (number + STRAIGHT_LENGTH + 1 for number in corner.square)
@@ -144,7 +155,12 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
 
 
 def _square_at(place: XY) -> Square:
-    """Return the square (x, y) of the map frame in which a point (x, y) of it lies."""
+    """Return the square (x, y) of the map frame in which a point (x, y) of it lies.
+
+    Parameters
+    ----------
+    place : (x, y) in squares.
+    """
     return math.floor(place[0]), math.floor(place[1])
 
 
@@ -165,7 +181,12 @@ def _are_near(one: Square | None, other: Square) -> bool:
 
 
 def _wall_sides(corner: Corner) -> tuple[int, int]:
-    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1."""
+    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1.
+
+    Parameters
+    ----------
+    corner : in squares, view frame; its square is (column, row).
+    """
     return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
@@ -173,6 +194,7 @@ def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
     """Return whether the straight line from the robot to a point of the map frame stays on safe squares.
 
     place : (x, y) in squares; it lies on the arrays of the view.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)

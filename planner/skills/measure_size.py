@@ -38,6 +38,9 @@ class SizeEstimator:
         object that was never moved is first pushed so far that it shows whether it moves at all. Each call counts as
         one push; after MAX_SIZE_PUSHES nothing is yielded.
 
+        An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
+        positive, then a translation (x, y) in squares.
+
         node : the object; its outline is known.
         """
         wanted = push_parts(node)
@@ -58,6 +61,9 @@ class SizeEstimator:
 
 def push_parts(node: Node) -> tuple[float | None, float | None] | None:
     """Return by which part of a square an object is pushed along x and y to measure it.
+
+    The insets of an object are how far its sides may lie within the squares in which it was seen. It cannot be measured
+    while its place is inexact or no inset is known.
 
     Parameters
     ----------
@@ -87,6 +93,10 @@ def least_outline(node: Node) -> Any:
 
     A shapely Polygon, in squares, map frame. Its sides along the grid are moved in as far as impressions allow. Where
     nothing tells how far, it is the believed outline.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
     """
     return node.polygon if node.insets is None else inset_outline(node.polygon, node.short)
 
@@ -96,6 +106,13 @@ def _turned_back(node: Node) -> Iterator[At]:
 
     At ends relative to where it lies, in squares and degrees, at most about TURN_BACK_RANGE squares away along each
     axis.
+
+    An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
+    positive, then a translation (x, y) in squares.
+
+    Parameters
+    ----------
+    node : the object, a node of the world model.
     """
     x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)

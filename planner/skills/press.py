@@ -46,7 +46,7 @@ class Presser:
         ----------
         goal : a goal about a corner.
         node : the object; its outline is known.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if self._of != (str(goal), node.name):
             return False
@@ -59,22 +59,32 @@ class Presser:
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a held object that is believed to lie where a goal holds.
 
-        `next` then returns them in order. Notes nothing when the placement asks for no press, or the object is not
-        held.
+        A press is a push against a wall that may be further away than believed. `next` then returns them in order.
+        Notes nothing when the placement asks for no press, or the object is not held.
 
         Parameters
         ----------
         goal : a goal about a corner.
         node : the object.
         land : where the goal holds; its presses are in squares along the axes of the map.
-        situation : what is believed.
+        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
             self._left, self._last = list(land.presses.values()), None
 
     def next(self, node: Node, model: WorldModel) -> Act | None:
-        """Return the next press as a push that no plan asks for, and remember it; None when none is left."""
+        """Return the next press as a push that no plan asks for, and remember it; None when none is left.
+
+        A press is a push against a wall that may be further away than believed, as `begin` noted it.
+
+        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
+
+        Parameters
+        ----------
+        node : the object, a node of the world model.
+        model : what is believed, with its frame and its map view.
+        """
         if not self._left:
             return None
         push = self._left.pop(0)
@@ -84,7 +94,13 @@ class Presser:
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:
-    """Return the corner (x, y) that a goal is about, in squares, map frame. goal : about a corner; else KeyError."""
+    """Return the corner (x, y) that a goal is about, in squares, map frame.
+
+    Parameters
+    ----------
+    goal : about a corner; else KeyError.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
 
