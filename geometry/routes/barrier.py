@@ -61,6 +61,10 @@ class Barrier(NamedTuple):
 def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
     """Return the floor of a layer, cut along the necks of passages.
 
+    It holds `label`, (rows + 2, columns + 2), the number of the part of each padded cell, from 1 (0 on a cut and off
+    the floor); `closed`, (2, rows + 2, columns + 2) bool, whether the step from a cell to the east (0) or north (1) is
+    cut; and `closed_steps`, (b, 2), chain and position of the steps of the pathgraph that are cut.
+
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
@@ -110,7 +114,7 @@ def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> l
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : which steps are cut.
+    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
     cell : a cell where the body may be.
     """
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
@@ -133,7 +137,7 @@ def path_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal:
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : which steps are cut.
+    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
     cell : the cell at which the path begins.
     goal : (cells,) bool, True at goal cells, flat over the padded grid.
     """

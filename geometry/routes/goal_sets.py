@@ -92,7 +92,8 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
 def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Bools) -> list[GoalRegion]:
     """Return the parts of a goal set where a body may be, connected over edges; an empty list when there is none.
 
-    They are ordered by their first cell, row by row from the south-west.
+    They are ordered by their first cell, row by row from the south-west. Each holds its representative, the padded cell
+    of greatest clearance, and its folded cells: the vertex of each, and the steps between vertices over portals.
 
     Parameters
     ----------
@@ -110,8 +111,10 @@ def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Boo
 
 
 def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number: int) -> GoalRegion:
-    """Return the part with a number in `label`, folded.
+    """Return the part with a number in `label`, folded: cells that one word reaches are made one vertex.
 
+    It holds the padded cell of greatest clearance (of several the last), by cell the number of its vertex, and by
+    (vertex, signed portal) the vertex beyond. A signed portal is its index plus 1, negative when crossed southwards.
     A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
     Parameters
@@ -188,8 +191,8 @@ def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: in
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    goal : (rows, columns) bool, the squares of the set.
-    start : the padded cell of the start.
+    goal : (rows, columns) bool, the squares of the set, row 0 in the south; those below the level do not count.
+    start : the padded cell of the start; listed only when it lies in the set.
     """
     inside, free = np.pad(goal, 1), square >= level
     outside = free & ~inside

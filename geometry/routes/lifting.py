@@ -65,7 +65,7 @@ class Trail(NamedTuple):
 
 
 def new_trail(room: int) -> Trail:
-    """Return scratch for a path of at most `room` links."""
+    """Return scratch for a path of at most `room` links, which are entries of a linked list of cells; it holds none."""
     cell, before, after, queue = (np.empty(room, np.int32) for _ in range(4))
     return Trail(cell, before, after, queue, np.zeros(room, np.int32), np.zeros(2, np.int32))
 
@@ -84,7 +84,9 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
     Returns
     -------
     (Lifted, Trail)
-        The path, and the scratch that was used.
+        The path: its least squared clearance, in squared half squares, ends included, and the numbers of the chains
+        (edges of the pathgraph) that it follows, in order. Then the scratch that was used, to be given to the next
+        call.
     """
     trail = trail or new_trail(4 * len(word) + 1024)
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
@@ -128,7 +130,8 @@ def lift_word(
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) links and flags of the skeleton, 0 off it.
     width : columns of the padded grid.
-    chains, strips : those of the layer.
+    chains : the edges of the pathgraph, with their nodes and cells.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     trail : scratch; the answer stands at the beginning of its `queue`.
@@ -172,8 +175,8 @@ def direction_of(step: int) -> int:
 def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
     """Write the cells of a path with this word as a linked list, and return the number of links.
 
-    The path goes along each strip to the nearest square of the next portal. Return TRAIL_OVERFLOW when there is no
-    room. All links are queued.
+    The path goes along each strip to the nearest square of the next portal. Link 0 is the start, link 1 the goal; those
+    between are numbered from 2 in order. Return TRAIL_OVERFLOW (-1) when there is no room. All links are queued.
 
     Parameters
     ----------
@@ -219,6 +222,8 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 @bare
 def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
     """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more.
+
+    All links ever made count, dropped ones too. The path is read from link 0 along `after`.
 
     A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
@@ -293,6 +298,8 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
 @bare
 def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
     """Put a cell between two links of a path, queue it, and return the number of its link.
+
+    It gets the next free number; the numbers of other links stay as they are.
 
     Parameters
     ----------

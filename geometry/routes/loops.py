@@ -51,14 +51,17 @@ def closed_paths(layer: Layer, start: Anchor, around: Bools, wanted: int) -> lis
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
+    start : the anchor of the start, where the steepest ascent from it meets the pathgraph: a chain and the position of
+        a cell on it, the node there (-1 inside a chain), and the cell.
     around : (rows, columns) bool, the blocked squares of one object, row 0 in the south; at least one.
     wanted : how many paths at most.
 
     Returns
     -------
     list of list of Arc
-        The arcs of each path, in the order in which they are walked; shortest path first. Empty when there is none.
+        The arcs of each path, in the order in which they are walked; shortest path first. An arc is a chain, or a part
+        of one, walked in one direction: its chain, the positions at which it begins and ends, the node to which it
+        leads, its length in squares. Empty when there is none.
     """
     arcs, origin = build_arcs(layer, start, ray_crossings(layer, around))
     to_origin = distances_to_origin(arcs, origin)
@@ -130,12 +133,15 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
-    crossings : (cells,) as of `ray_crossings`: for each chain cell, crossings of the ray up to there.
+    start : the anchor of the start, where the steepest ascent from it meets the pathgraph: a chain and the position of
+        a cell on it, the node there (-1 inside a chain), and the cell.
+    crossings : (cells,) for each chain cell how often its chain has crossed the ray up to there, westwards less
+        eastwards.
 
     Returns
     -------
-    arcs : by node, the list of arcs that leave it.
+    arcs : by node, the list of arcs that leave it, in the order of the chains; empty for a node without chains. A chain
+        is in it once for each direction.
     origin : the number of the start's node.
     """
     chains, origin = layer.chains, start.node
@@ -160,7 +166,8 @@ def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[i
     ----------
     arcs : by node, the arcs that leave it; extended.
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    crossings : (cells,) for each chain cell, crossings of the ray up to there.
+    crossings : (cells,) for each chain cell how often its chain has crossed the ray up to there, westwards less
+        eastwards.
     chain : the number of the chain.
     one, two : the stretch's ends, each a node and its position on the chain; that of `one` is the lower.
     """
@@ -206,7 +213,7 @@ def cells_of_path(chains: Chains, path: list[Arc]) -> list[int]:
     Parameters
     ----------
     chains : the chains of the pathgraph.
-    path : arcs, in the order in which they are walked.
+    path : arcs (a chain, and the positions at which each begins and ends), in the order in which they are walked.
     """
     cells: list[int] = []
     for arc in path:

@@ -105,6 +105,10 @@ class LayerQueries:
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...] = ()) -> list[Route]:
         """Return at most k routes between two points, shortest first; an empty list when they are not connected.
 
+        A route holds its corners (x, y) in squares from the screen's south-west corner, both ends included, its length
+        and clearance in squares, its signature (the crossing numbers that name its class), and the chains that it
+        follows. Each is the shortest of its class.
+
         Parameters
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
@@ -156,6 +160,8 @@ class LayerQueries:
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY, k: int) -> list[Route]:
         """Return at most k routes: those given, preceded by the shortest path of all if none of them is of its class.
 
+        When one of them is, they are returned as they are, however many there are.
+
         Parameters
         ----------
         routes : routes from start to goal, shortest first; at least one.
@@ -169,9 +175,10 @@ class LayerQueries:
         return routes if length >= first else [self._polyanya_route(length, (*start, *goal)), *routes][:k]
 
     def with_skeleton_path(self, route: Route) -> Route:
-        """Return the same route with the clearance and the chains of its class's path over the skeleton.
+        """Return a copy of a route with the clearance and the chains of its class's path over the skeleton.
 
-        The clearance is in squares; the chains are numbers of edges of the pathgraph, in the order of the route.
+        Points, length and signature stay. The clearance is in squares; the chains are numbers of edges of the
+        pathgraph, in the order of the route.
         """
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
         found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
@@ -180,6 +187,7 @@ class LayerQueries:
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
         """Return the floor cut along some passages, so that no route leads through them.
 
+        It holds the part of each padded cell, which steps between edge neighbours are cut, and which steps of chains.
         The last barrier is kept, and returned again when `avoid`, the passages, is the same.
         """
         if self._barrier is None or self._barrier[0] != avoid:
@@ -195,7 +203,7 @@ class LayerQueries:
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         k : how many routes at most.
-        barrier : the floor cut along the passages.
+        barrier : the floor cut along the passages: the part of each cell, and which steps between cells are cut.
         """
         first, last = self.cell(start), self.cell(goal)
         if barrier.separates(first, last):
@@ -225,6 +233,8 @@ class LayerQueries:
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """Return the tight route of a reduced word between two points, with its clearance and chains.
 
+        Its points (from the screen's south-west corner), length and clearance are in squares; it is the shortest of its
+        class, which the word names.
         A chain is an edge of the pathgraph, with its cells.
 
         Parameters
@@ -261,6 +271,7 @@ class LayerQueries:
     def shortest(self, start: XY, goal: XY) -> Route | None:
         """Return the shortest route of all, at any angle; None when start and goal are not connected.
 
+        Its points (x, y) and its length are in squares, its signature names its class.
         Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares from
         the screen's south-west corner, in free squares. A chain is an edge of the pathgraph, with its cells.
         """
@@ -268,8 +279,9 @@ class LayerQueries:
         return None if length == inf else self._polyanya_route(length, None)
 
     def _polyanya_route(self, length: float, ends: Ends | None) -> Route:
-        """Return the route left in the scratch, lifted to the skeleton when its ends are given.
+        """Return the route left in the scratch by the last search for the shortest path, with its points in squares.
 
+        It is lifted to the skeleton when its ends are given: it then has the clearance (squares) and the chains there.
         A chain is an edge of the pathgraph, with its cells.
 
         Parameters
@@ -291,6 +303,7 @@ class LayerQueries:
     def _lifted(self, ends: Ends, word: Ints) -> Lifted:
         """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
 
+        The clearance (`lowest`) is in squared half squares, the chains are numbers in the order of the path.
         A chain is an edge of the pathgraph, with its cells.
 
         Parameters
@@ -305,7 +318,8 @@ class LayerQueries:
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
         """Return at most k closed tight routes that wind once, counter-clockwise, about blocked squares.
 
-        They stand shortest first; the list is empty when there are none.
+        They stand shortest first; the list is empty when there are none. Each begins and ends at the start; its points,
+        length and clearance are in squares.
 
         Parameters
         ----------
@@ -324,13 +338,14 @@ class LayerQueries:
         return sorted(routes, key=lambda route: route.length)[:k]
 
     def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
-        """Return the tight loop of a closed path over the pathgraph.
+        """Return the tight loop of a closed path over the pathgraph: points, length and clearance in squares, chains.
 
         Parameters
         ----------
         start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
         rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
-        path : the arcs of the closed path, in the order in which they are walked.
+        path : the arcs of the closed path (chains or parts of chains, with a direction), in the order in which they
+            are walked; at least one.
         """
         cells = cells_of_path(self.layer.chains, path)
         word = join_words(rise, word_of_cells(self.layer.runs, cells, self._width), -rise[::-1])
@@ -343,6 +358,7 @@ class LayerQueries:
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
         """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
 
+        It holds the arcs that a query adds, scratch of the searches, and the routes found, as arrays.
         It is kept for each number of routes, and made anew when it has too little room. A signed portal is a portal's
         index plus 1, negative when it is crossed southwards.
         """
@@ -363,14 +379,14 @@ class LayerQueries:
         return (int(point[0]) + 0.5, int(point[1]) + 0.5) if self.layer.body else point
 
     def with_ends(self, route: Route, start: XY, goal: XY) -> Route:
-        """Return a body's route extended to its true ends, if they are not centres of squares.
+        """Return a body's route extended to its true ends, if they are not centres of squares; else the route itself.
 
         Within one square it becomes the straight line if that leaves room for the body. The length is that of the whole
         line; clearance, signature and chains stay. A chain is an edge of the pathgraph, with its cells.
 
         Parameters
         ----------
-        route : a route between the centres of the ends' squares.
+        route : a route between the centres of the ends' squares; not changed.
         start, goal : the true ends, (x, y) in squares from the screen's south-west corner.
         """
         line = [(x, y) for x, y in route.points.tolist()]

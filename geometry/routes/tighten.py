@@ -15,6 +15,8 @@ from geometry.routes.route import Route
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:
     """Return the tight route of a reduced word: the shortest of its class.
 
+    Its points are (x, y) in squares from the screen's south-west corner, both ends included; its length is in squares,
+    its signature made of the crossing numbers of the word.
     A chain is an edge of the pathgraph, with its cells.
 
     Parameters
