@@ -39,6 +39,7 @@ class Funnel(NamedTuple):
 def new_funnel(portals: int) -> Funnel:
     """Return scratch, not initialised, for words of at most `portals` signed portals.
 
+    It holds room for the corners (the ends of the portals): x, y, the corner before each, and the funnel.
     A signed portal is a portal's index plus 1, negative when it is crossed southwards.
     """
     size = 4 * portals + 8

@@ -66,7 +66,9 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
     Returns
     -------
     Strips
-        In unpadded rows and columns; without strips and portals when no cell is free.
+        In unpadded rows and columns; without strips and portals when no cell is free. Strips are numbered by (row,
+        column): first and last column of each, its portals to the row above and below. Portals are numbered by (lower
+        row, column): first and last column, the strips below and above, the crossing number (0 for none).
     """
     row = np.zeros(square.shape[0] - 1, np.int32)
     count = count_strips(square, level, row)
@@ -154,10 +156,11 @@ def fill_portals(
 
     Parameters
     ----------
-    row, low, high : attributes of `Strips`, read.
-    up, down : (n + 1,) zero at first, written: the attributes of that name of `Strips`.
-    left, right, lower, upper, line : written in their first entries: the attributes of that name of `Strips`. Twice as
-        many entries as there are strips are enough.
+    row : (rows + 1,) the number of the first strip of each row; read, as are the next two.
+    low, high : (n,) the first and the last column of each strip.
+    up, down : (n + 1,) zero at first, written: the first portal from each strip to the row above, and to the row below.
+    left, right, lower, upper, line : written in their first entries: of each portal the first and the last column, the
+        strips below and above, and the row below. Twice as many entries as there are strips are enough.
     """
     found = 0
     for i in range(row.shape[0] - 2):
@@ -208,7 +211,8 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
 
     Parameters
     ----------
-    up, down, lower, upper : attributes of `Strips`, read.
+    up, down : (n + 1,) the first portal from each strip to the row above, and to the row below.
+    lower, upper : (p,) the strips below and above each portal.
     exits : (n,) zero at first, written: the signed portal that leads out of a dead-end strip; it stays 0 elsewhere.
     degree : (n,) the number of portals of each strip; used up.
     queue : (n,) scratch.

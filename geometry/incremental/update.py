@@ -54,9 +54,9 @@ def change_squares(
     Returns
     -------
     SkeletonGraph or None
-        Equal to that of a new screen; ``bones`` itself when no square changes. None when the change may alter more of
-        the screen, or ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed
-        anew.
+        The cells of the nodes, and the ends, lowest cells and numbers of steps of the chains. Equal to that of a new
+        screen; ``bones`` itself when no square changes. None when the change may alter more of the screen, or
+        ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed anew.
 
     Raises
     ------

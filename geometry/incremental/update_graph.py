@@ -40,7 +40,8 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
     Returns
     -------
     SkeletonGraph
-        Equal to that of a new screen; ``bones`` itself when nothing in it has changed.
+        The cells of the nodes, and the ends, lowest cells and numbers of steps of the chains. Equal to that of a new
+        screen; ``bones`` itself when nothing in it has changed.
     """
     states, mark = journal.states, journal.mark
     keys = np.empty(int(journal.size[0]), np.int64)

@@ -84,7 +84,8 @@ def regrow(
     Returns
     -------
     ChangeLog
-        The states, and the cells touched with their states before.
+        The states, changed; marks of cells (logged, other clearance); and the touched cells (flat indices), in the
+        order in which they were first touched, with their states before.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
     journal = ChangeLog(states, *scratch, np.zeros(1, np.int32))
@@ -173,8 +174,12 @@ def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, 
 
     Parameters
     ----------
-    heights, width, about, journal
-        As for ``prune``: old squared clearances, flat; width of the padded screen; columns of each row; states and log.
+    heights, width : (cells,) and int
+        Squared clearances (half squares) before the change, flat, and the width of the padded screen.
+    about : (rows + 2, 2) int32
+        First and last column of each padded row at or next to a changed cell; the last is -1 for none.
+    journal : ChangeLog
+        Its states are changed, and every cell that is touched is logged.
     cell : int
         Flat index of the cell from which a link below was removed.
     """

@@ -17,8 +17,8 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
-    passage : the passage from which the floor is followed.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
+    passage : the passage from which the floor is followed, found on these walls: its width and its two mouths count.
     spare : in squares.
 
     Returns

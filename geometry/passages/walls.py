@@ -62,6 +62,10 @@ class Walls(NamedTuple):
 def find_walls(free: Bools) -> Walls:
     """Return the triangulated free squares of a screen; everything outside it is blocked.
 
+    It holds the corners of walls, (x, y) in squares from the screen's south-west corner, the triangles (numbers of
+    corners) with the squared width of the floor about each, and the edges that two triangles share: their ends, these
+    triangles, squared lengths (square squares), and whether each is a neck, shorter than all lines beside it.
+
     Parameters
     ----------
     free : (rows, columns) bool, row 0 in the south; at least one True.

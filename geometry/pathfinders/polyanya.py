@@ -77,7 +77,12 @@ class PolyanyaSearch(NamedTuple):
 
 
 def new_polyanya_search(room: int, strips: Strips) -> PolyanyaSearch:
-    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room."""
+    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room.
+
+    It holds the search nodes, and room for the result of a search: its word (signed portals), the corners of its path
+    (squares), and their numbers. A search node is an interval of a portal that is visible from the last corner of a
+    path.
+    """
     portals = len(strips.left)
     nodes = Nodes(
         np.empty((room, 3)),
@@ -110,7 +115,10 @@ def shortest_line(
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; infinite for none.
-    nodes, word, funnel, line, sizes : the attributes of a `PolyanyaSearch`; all changed.
+    nodes, funnel : scratch; changed.
+    word : written: the reduced word of the path, of which the first sizes[0] symbols count.
+    line : (n, 2) written: the corners (x, y) of the path in squares, of which the first sizes[1] count.
+    sizes : (2,) written.
     """
     size = shortest_word(strips, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > funnel.x.shape[0]:
@@ -133,7 +141,7 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; paths as long or longer are not found.
-    nodes : scratch.
+    nodes : scratch: intervals of portals, each visible from the last corner of a path; changed.
     word : written from index 0 on: signed portals, negative when crossed southwards. A size equal to its length says
         that there was not enough room.
     """
@@ -409,15 +417,16 @@ def enqueue(
 ) -> int:
     """Put the nodes from number `first` on the heap, but return the best one instead when it comes next.
 
-    Left out are bends, nodes beyond the limit, and nodes whose root has a shorter path. In open space the best new node
-    nearly always comes next. Return NO_PATH when it does not. A node is an interval of a portal that is visible from
-    its root, the last corner of a path.
+    The best is the one of the least length of a path through it. Its number is returned. Left out are bends, nodes
+    beyond the limit, and nodes whose root has a shorter path. In open space the best new node nearly always comes next.
+    Return NO_PATH when it does not. A node is an interval of a portal that is visible from its root, the last corner of
+    a path.
 
     Parameters
     ----------
     left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    limit : in squares.
+    limit : in squares; nodes whose paths are as long or longer are left out.
     span, link : attributes of `Nodes`: interval and length of each node, and its portal, root and parent; read.
     key, heap, best, seen, counters : attributes of `Nodes`: the heap, the shortest path to each corner, numbers of
         nodes; changed.

@@ -86,7 +86,9 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
     Returns
     -------
     Buffers
-        With arbitrary values, but for the bytes of ``words`` beyond the last cell, which are 0.
+        ``square``, room for squared clearances, of the padded shape, and ``words``, room for the states of the
+        skeleton, eight cells a word. With arbitrary values, but for the bytes of ``words`` beyond the last cell, which
+        are 0.
     """
     buffers = SPARE_BUFFERS.pop(shape, None)
     if buffers is None or buffers.square.dtype < kind:
@@ -111,7 +113,8 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
 def take_scratch(cells: int) -> Scratch:
     """Return scratch for a screen of so many padded cells: that of the last change if it was of that size, else new.
 
-    Its ``mark`` is all 0; what the other arrays hold is arbitrary. It is no longer spare until ``keep_scratch``.
+    It holds an array ``mark`` of marks of cells, all 0, and room for a list of touched cells and for their states
+    before the change, both arbitrary. Cells are flat indices. It is no longer spare until ``keep_scratch``.
     """
     scratch = SPARE_SCRATCH.pop(cells, None)
     if scratch is None:

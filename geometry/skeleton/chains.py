@@ -53,7 +53,9 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     Returns
     -------
     Chains
-        Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
+        The cells of the nodes, the chain that leaves each node in each of the four directions (-1 for none), and of
+        each chain its two nodes, its cells from the first to the last, and its lowest cell. Cells are flat padded
+        indices. Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
     """
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)

@@ -61,12 +61,14 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
     words : (n,) uint64
         The memory of ``state`` by eights.
     min_notes : int
-        The least room for notes of lowest cells (see lowest_cells.py).
+        The least room for notes, which are the cells that may be the lowest of their chain; it changes no result.
 
     Returns
     -------
     SkeletonGraph
-        With no node when the skeleton is empty. A summit without links is a node without chains.
+        The cells of the nodes, ascending (flat padded indices), and of each chain its two ends (4 times the node plus
+        the direction in which it leaves), its lowest cell and its number of steps. With no node when the skeleton is
+        empty. A summit without links is a node without chains.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states), min_notes)
@@ -86,7 +88,9 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
 def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
     """Return ``bones`` with the rings added whose first cells are flagged in ``states``, in the order of cells.
 
-    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends.
+    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends. New nodes
+    and chains are inserted where the order of cells puts them, so the numbers of old ones behind them grow. The graph
+    holds the cells of nodes, and of each chain its two ends, its lowest cell and its number of steps.
 
     Parameters
     ----------
@@ -99,7 +103,7 @@ def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGra
     bones : SkeletonGraph
         The graph without the rings; it is not changed.
     notes : (size,) int32
-        Scratch.
+        Scratch for cells that may be the lowest of their ring.
     """
     cells = np.flatnonzero(states >= HALT).astype(np.int32)
     place = bones.node.searchsorted(cells)
@@ -149,7 +153,7 @@ def walk_rings(
     neck, steps : (r,) int32
         Filled with the lowest cell (flat index) of each ring and its number of steps from square to square.
     notes : (size,) int32
-        Scratch.
+        Scratch for cells that may be the lowest of their ring.
     """
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
@@ -254,7 +258,7 @@ def walk_chains(
     width : int
         Width of the padded screen.
     base, since : int32 and uint8
-        As ``count_nodes`` filled them: nodes before each group of sixteen words, and from there up to each word.
+        Nodes before each group of sixteen words, and from there up to each word.
     node : (n + 1,) int32
         Filled with the cells of the nodes, ascending.
     port : (m, 2) int32
@@ -265,7 +269,7 @@ def walk_chains(
     seen : (n,) uint8
         0 at first; notes the ends met at each node, as bits by direction.
     notes : (2, size) int32
-        Scratch (see lowest_cells.py).
+        Scratch for cells that may be the lowest of their chain, and their squared clearances.
     """
     chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
     for first in range(-WORDS_AHEAD, words.shape[0], WORDS_AHEAD):

@@ -22,7 +22,8 @@ def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
     Parameters
     ----------
     arrays : PathgraphArrays
-        The pathgraph. The points of edges become views of its block of points.
+        The pathgraph: places and clearances of nodes, ends, lengths and points of edges. The points of edges become
+        views of its block of points.
 
     Returns
     -------

@@ -118,8 +118,9 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Returns
     -------
     PathgraphArrays
-        Writable arrays, in squares, in the frame of the screen without its padding; of no rows when the skeleton is
-        empty.
+        Of the nodes their places and clearances, of the edges their end nodes, lengths, least clearances and points,
+        and lists of the edges at each node. Writable arrays, in squares, in the frame of the screen without its
+        padding; of no rows when the skeleton is empty.
     """
     n, m = len(bones.node), len(bones.steps)
     offsets = np.zeros(m + 1, np.int32)
@@ -179,7 +180,9 @@ def fill_arrays(
         The graph: cell of each node, both ends of each chain (4 times the node plus the direction in which it leaves),
         lowest cell and number of steps of each chain; cells are flat indices.
     nodes, node_clearances, edges, lengths, edge_clearances, points, narrowest, incident_edges, neighbours
-        Filled; shapes and units as in ``PathgraphArrays``.
+        Filled: (n, 2) places and (n,) clearances of nodes; (m, 2) end nodes, (m,) lengths and (m,) least clearances of
+        edges; (p, 2) points of all edges; (m,) row of ``points`` where each is narrowest; (2 m,) edges at each node and
+        nodes at their other ends. Lengths and places in squares.
     offsets : (m + 1,) int32
         Given: rows of ``points`` at which those of each edge start.
     adjacency_offsets : (n + 2,) int32

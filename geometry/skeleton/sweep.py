@@ -93,7 +93,8 @@ def sweep(
     band : int
         Number of rows that are measured and climbed at a time, 1 or more.
     window, flags, waiting
-        Scratch: a new window (distance_rows.py), (width,) uint8 and (width,) int32.
+        Scratch: a new window of rows for the measuring (distance_rows.py), (width,) uint8 for the flags of a row, and
+        (width,) int32 for cells whose ascents wait.
     """
     last, width = square.shape[0] - 2, square.shape[1]
     measured, waits = last + 1, 0
