@@ -372,7 +372,7 @@ class Screen:
         k : int
             How many loops at most, no two of one class.
         radius : float
-            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            Radius of a round body, in squares: it moves from centre to centre of squares whose
             clearance is at least the radius. 0 for a point.
 
         Returns
@@ -414,7 +414,7 @@ class Screen:
         route : Route
             Any polyline over free space; only its ``points`` count, (x, y) in squares in the frame of this screen.
         radius : float
-            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            Radius of a round body, in squares: it moves from centre to centre of squares whose
             clearance is at least the radius. 0 for a point.
 
         Returns
@@ -437,7 +437,7 @@ class Screen:
     def passages(self, pinch: float = DOOR_RATIO) -> list[Passage]:
         """Return the necks of free space, ordered by place: by row from the south, then by column from the west.
 
-        A neck is a straight line from wall to wall that is shorter than all near it (see necks.py).
+        A neck is a straight line from wall to wall that is shorter than all near it.
 
         Parameters
         ----------
@@ -523,8 +523,8 @@ class Screen:
     def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
         """Take memory for squared clearances of that type of integers, and for the states of the skeleton.
 
-        Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word, both with arbitrary values.
-        ``_tenant`` keeps them from being used again as long as the screen lives.
+        ``kind`` is np.int16 or np.int32. Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word,
+        both with arbitrary values. ``_tenant`` keeps them from being used again as long as the screen lives.
         """
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
@@ -565,7 +565,7 @@ class Screen:
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
         """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
 
-        ``level`` is in half squares squared, from 1 (all free squares, as for a point) on: the higher, the larger the
+        ``level`` is in half squares squared, from 1 (all free squares: for a point) on: the higher, the larger the
         body and the less floor. Returned are the states by cells and by words of eight, and the nodes and chains, as by
         ``_survey``.
         """

@@ -114,8 +114,8 @@ def pictures(
 ) -> NDArray[np.int8]:
     """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0.
 
-    They agree as well as the sampling brings them; some counts may stay wrong. A field is a set of squares that the
-    robot sees as one; its count is that of its occupied squares.
+    There is one for each of `first`, in that order. They agree as well as the sampling brings them; some counts may
+    stay wrong. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -471,7 +471,8 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int: 
     image : (size,) the flat framed raster, 1 where occupied.
     k : the number of the square, among those that are drawn (sampled).
     random : a random number; its lowest 11 bits are used.
-    flipped : written from index 0 on: numbers of drawn squares, k first.
+    flipped : written from index 0 on: numbers of drawn squares, k first, then those on its edge to one side, to the
+        other, then those of the outline opposite if it moves too.
     """
     side, here = random & 3, squares[k]
     across, along, look = around[ACROSS[side]], around[ALONG_EDGE[side]], image[here]

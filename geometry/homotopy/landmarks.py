@@ -140,7 +140,8 @@ def measure_chains(
     """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
 
     A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
-    with its cells.
+    with its cells. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips
+    (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -249,6 +250,8 @@ def ascend(
 ) -> tuple[int, int]:
     """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`.
 
+    A word is reduced when no symbol stands next to its negative.
+
     Parameters
     ----------
     cell : the index, in the flat padded screen, (row + 1) * width + column + 1, of a cell where the body may be.
@@ -333,7 +336,8 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph, with its cells. A portal is the overlap of two strips (rows of free squares) in
+    neighbouring rows.
 
     Parameters
     ----------
@@ -357,6 +361,8 @@ def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word:
 @bare
 def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
     """Append part of a reduced word, or its inverse, to a reduced word; return the new size.
+
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------

@@ -58,6 +58,8 @@ class Strips(NamedTuple):
 def find_strips(square: SquaredDistances, level: int) -> Strips:
     """Return the strips and portals of the cells whose squared clearance is at least a level.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares, padded by one cell on each side.
@@ -94,7 +96,7 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
 
 
 def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
-    """Return copies of the first `size` entries of three one-dimensional arrays, in the order given."""
+    """Return copies of the first `size` entries of three one-dimensional arrays `a`, `b` and `c`, in that order."""
     return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
@@ -154,6 +156,8 @@ def fill_portals(
 ) -> int:
     """Fill the portals between each row and the next, and return their number.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     row : (rows + 1,) the number of the first strip of each row; read, as are the next two.
@@ -186,6 +190,8 @@ def fill_portals(
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
     """Give crossing numbers, from 1 in the order of the portals, to the portals that close a ring of strips.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     lower, upper : (p,) the strips below and above each portal.
@@ -207,7 +213,8 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
     """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
 
     A dead end is a part of free space, without rings, that one portal joins to the rest. A signed portal is a portal's
-    index plus 1, negative when it is crossed southwards.
+    index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips (rows of free squares)
+    in neighbouring rows.
 
     Parameters
     ----------
@@ -280,7 +287,8 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
     """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
 
     Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free. A signed
-    portal is a portal's index plus 1, negative when it is crossed southwards.
+    portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips
+    (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -309,7 +317,8 @@ def append_symbol(word: Ints, size: int, symbol: int) -> int:
     """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol.
 
     A symbol of 0 changes nothing. A word that fills its array is not changed any more: the caller sees by a size equal
-    to the array's length that it needs a larger one.
+    to the array's length that it needs a larger one. A portal is the overlap of two strips (rows of free squares) in
+    neighbouring rows.
 
     Parameters
     ----------

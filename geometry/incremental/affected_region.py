@@ -74,7 +74,7 @@ def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares before the change.
+        Squared clearances in squared half squares before the change.
     boxes : (n, 4) int32
         First and last row, first and last column of the boxes around changed cells, padded.
     bounds : (rows + 2, 2 or more) int32
@@ -104,7 +104,7 @@ def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints)
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares before the change.
+        Squared clearances in squared half squares before the change.
     boxes : (n, 4) int32
         First and last row, first and last column of each box, padded.
     k, row : int

@@ -200,7 +200,7 @@ def merge_chains(
     Parameters
     ----------
     heights, states : (cells,)
-        Squared clearances in half squares and states of the skeleton, after the change, flat.
+        Squared clearances in squared half squares and states of the skeleton, after the change, flat.
     width : int
         Width of the padded screen.
     ahead : (a, 2) int32

@@ -28,7 +28,7 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares after the change, flat.
+        Squared clearances in squared half squares after the change, flat.
     width : int
         Width of the padded screen.
     bones : SkeletonGraph

@@ -87,7 +87,7 @@ class Passage(NamedTuple):
 
 
 def _halfway(one: XY, other: XY) -> XY:
-    """Return the midpoint of two points (x, y)."""
+    """Return the midpoint of two points, `one` and `other`, (x, y), in their unit and frame."""
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 

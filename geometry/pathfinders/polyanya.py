@@ -81,7 +81,7 @@ def new_polyanya_search(room: int, strips: Strips) -> PolyanyaSearch:
 
     It holds the search nodes, and room for the result of a search: its word (signed portals), the corners of its path
     (squares), and their numbers. A search node is an interval of a portal that is visible from the last corner of a
-    path.
+    path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
     """
     portals = len(strips.left)
     nodes = Nodes(
@@ -108,7 +108,8 @@ def shortest_line(
 
     The path's corners are left in `line`. The numbers of its symbols (signed portals: index plus 1, negative when
     crossed southwards) and corners are written to `sizes`; the first is NO_PATH or SEARCH_OVERFLOW when none is found.
-    No path as long as `limit` or longer is found, unless start and goal lie in one strip.
+    No path as long as `limit` or longer is found, unless start and goal lie in one strip. A word is reduced when no
+    symbol stands next to its negative.
 
     Parameters
     ----------
@@ -134,7 +135,7 @@ def shortest_line(
 def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
     """Write the reduced word of the shortest path and return its size, or NO_PATH, or SEARCH_OVERFLOW without room.
 
-    The size is 0 when start and goal lie in one strip.
+    The size is 0 when start and goal lie in one strip. A word is reduced when no symbol stands next to its negative.
 
     Parameters
     ----------
@@ -182,7 +183,8 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
 def mark_dead_ends_to_goal(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
     """Mark with the stamp the strips of the dead end in which the goal's strip lies, if it lies in one.
 
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -214,7 +216,8 @@ def add_start_nodes(
     """Add a node for every portal of the start's strip.
 
     Where the start lies on the strip's southern edge beside a portal there, the portal's nearer end is the root. A node
-    is an interval of a portal that is visible from its root, the last corner of a path.
+    is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -259,7 +262,7 @@ def add_successors(
     """Add the nodes that follow a node which enters a strip: what its root sees of the other portals, and bends.
 
     Dead ends are left out, but for those marked in `enter`. A node is an interval of a portal that is visible from its
-    root, the last corner of a path.
+    root, the last corner of a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -329,6 +332,8 @@ def add_successors(
 def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
     """Return the first of a strip's portals, numbered `first` to `last` - 1, that ends east of x; `last` if none does.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     right : (portals,) the last column of each portal, included; its east end lies one square further.
@@ -358,6 +363,8 @@ def snap_to_corner(x: float) -> float:
 def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> bool:
     """Record the length of a path to a corner, and return whether no shorter one is known.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     best, seen : attributes of `Nodes`: by corner, the length of the shortest path and the search that found it;
@@ -381,7 +388,8 @@ def add_node(
     """Write a node, without putting it on the heap, and return its number.
 
     A signed portal is a portal's index plus 1, negative when it is crossed southwards. A node is an interval of a
-    portal that is visible from its root, the last corner of a path.
+    portal that is visible from its root, the last corner of a path. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -420,7 +428,7 @@ def enqueue(
     The best is the one of the least length of a path through it. Its number is returned. Left out are bends, nodes
     beyond the limit, and nodes whose root has a shorter path. In open space the best new node nearly always comes next.
     Return NO_PATH when it does not. A node is an interval of a portal that is visible from its root, the last corner of
-    a path.
+    a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -472,7 +480,8 @@ def add_goal_node(
 ) -> None:
     """Add the goal as a node, if it is reached from a node's root within the strip that the node enters.
 
-    A node is an interval of a portal that is visible from its root, the last corner of a path.
+    A node is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap
+    of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -502,7 +511,9 @@ def add_goal_node(
 def spell_word(link: Ints, node: int, word: Ints) -> int:
     """Write the reduced word of the portals on the path to a node, and return its size.
 
-    A node is an interval of a portal that is visible from its root, the last corner of a path.
+    A node is an interval of a portal that is visible from its root, the last corner of a path. A word is reduced when
+    no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring
+    rows.
 
     Parameters
     ----------

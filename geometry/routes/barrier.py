@@ -43,7 +43,7 @@ class Barrier(NamedTuple):
     def separates(self, one: int, other: int) -> bool:
         """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut.
 
-        A cell is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
+        `one` is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
         2.
         """
         label = self.label.reshape(-1)
@@ -52,7 +52,7 @@ class Barrier(NamedTuple):
     def is_closed(self, cell: int, other: int) -> bool:
         """Return whether the step between two edge neighbours is cut, in either direction.
 
-        Both are indices in the flat padded grid, (row + 1) * width + column + 1.
+        `cell` and `other` are indices in the flat padded grid, (row + 1) * width + column + 1.
         """
         low = min(cell, other)
         return bool(self.closed[int(abs(cell - other) > 1)].reshape(-1)[low])

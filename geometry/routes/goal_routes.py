@@ -139,7 +139,8 @@ class GoalArea:
         """Return the word of a route to a representative up to the first cell of the set, and that cell.
 
         The whole word, and the representative, are returned where the path from square to square, unlike the route,
-        leads through a passage to avoid.
+        leads through a passage to avoid. A word is reduced when no symbol stands next to its negative. A portal is the
+        overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -165,7 +166,8 @@ class GoalArea:
 
         The end moves from square to square, to the edge neighbour that shortens it most. Returned is (route, number of
         the part of the set, last cell); the route's points and length are in squares, its clearance is nan and its
-        chains are empty.
+        chains are empty. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two
+        strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -184,7 +186,8 @@ class GoalArea:
     def moved_end(self, word: Ints, cell: int, step: int) -> tuple[Route, Ints, int] | None:
         """Return the route, word and cell with the end moved by a step; None when the end may not move so.
 
-        The new cell must be in the set, and the step must not be cut.
+        The new cell must be in the set, and the step must not be cut. A word is reduced when no symbol stands next to
+        its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -204,7 +207,8 @@ class GoalArea:
 
         Its points (x, y), from the south-west corner of the screen, and its length are in squares, its signature names
         its class. Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A
-        chain is an edge of the pathgraph, with its cells.
+        chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its negative.
+        A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------

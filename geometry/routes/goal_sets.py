@@ -40,7 +40,8 @@ class GoalRegion(NamedTuple):
         """Return a name for the class of a reduced word to one of the cells, whose end may be moved within the part.
 
         Names are equal exactly when the classes are: first a vertex, then what is left of the word. They hold within
-        one part.
+        one part. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips
+        (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -145,7 +146,8 @@ def fold(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict
     """Return the vertex that stands for each one, and the steps, once no two steps of one name lead apart.
 
     Where two steps from one vertex with the same signed portal lead to two vertices, these are made one. A signed
-    portal is a portal's index plus 1, negative when it is crossed southwards.
+    portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips
+    (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------

@@ -73,6 +73,9 @@ def new_trail(room: int) -> Trail:
 def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
     """Return the one path over the skeleton, without turning back, of the class of a reduced word.
 
+    A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
+
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
@@ -99,7 +102,9 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
     """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal.
 
-    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last.
+    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last. A
+    word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -255,7 +260,8 @@ def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
 def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
     """Lead the step from a link to a higher one over the highest edge neighbour of its group.
 
-    A group is a connected part of the higher cells on the ring of a cell's eight neighbours. Nothing changes when the
+    A group is a connected part of the higher cells on the ring of a cell's eight neighbours; a cell is higher when its
+    clearance is greater, or as great and its index greater. Nothing changes when the
     other link is not higher, or is that highest neighbour. A cell's index is (row + 1) * width + column + 1, with width
     = columns + 2.
 

@@ -235,7 +235,8 @@ class LayerQueries:
 
         Its points (from the screen's south-west corner), length and clearance are in squares; it is the shortest of its
         class, which the word names.
-        A chain is an edge of the pathgraph, with its cells.
+        A chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its
+        negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -304,7 +305,8 @@ class LayerQueries:
         """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
 
         The clearance (`lowest`) is in squared half squares, the chains are numbers in the order of the path.
-        A chain is an edge of the pathgraph, with its cells.
+        A chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its
+        negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -340,6 +342,8 @@ class LayerQueries:
     def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
         """Return the tight loop of a closed path over the pathgraph: points, length and clearance in squares, chains.
 
+        A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
         Parameters
         ----------
         start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
@@ -360,7 +364,8 @@ class LayerQueries:
 
         It holds the arcs that a query adds, scratch of the searches, and the routes found, as arrays.
         It is kept for each number of routes, and made anew when it has too little room. A signed portal is a portal's
-        index plus 1, negative when it is crossed southwards.
+        index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
         """
         buffers = self._buffers_of.get(wanted)
         if buffers is None or len(buffers.start) < room:

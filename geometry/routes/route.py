@@ -22,8 +22,8 @@ class Route:
     length : in squares.
     clearance : the radius of the largest body that can follow this route over the skeleton, from square to square, in
         squares; nan when the path over the skeleton is not known (from `shortest` alone).
-    signature : signed crossing numbers of the portals crossed, from start to goal, negative when crossed southwards
-        (see strips.py); empty for the class without any.
+    signature : signed crossing numbers of the portals crossed, from start to goal, negative when crossed southwards;
+        empty for the class without any.
     chains : the numbers of the chains (edges of the pathgraph) that the route follows, in order (its ends may lie
         inside the first and last); empty when not known.
     """

@@ -24,7 +24,7 @@ class RouteAnswers(NamedTuple):
     bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`: those of route k are from bounds[k] to
         bounds[k + 1], excluded.
     corners : (size, 2) corners (x, y) of the routes, in squares from the screen's south-west corner.
-    crossings : (size,) signed crossing numbers (see strips.py).
+    crossings : (size,) signed crossing numbers of the portals that the routes cross, negative when crossed southwards.
     chains : (size,) numbers of the chains of the pathgraph.
     length : (room,) of each route, in squares.
     lowest : (room,) the least squared clearance on each route's path over the skeleton, in squared half squares.
@@ -75,7 +75,8 @@ def new_router_buffers(
     It holds the arcs that the query adds to the pathgraph, scratch of the searches, the paths found, words of signed
     portals, and the routes found as arrays (corners in squares, crossing numbers, chains, lengths).
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph, with its cells. A portal is the overlap of two strips (rows of free squares) in
+    neighbouring rows.
 
     Parameters
     ----------
@@ -245,7 +246,7 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
     line : (4,) of the query, written: the start (x, y) in squares from the screen's south-west corner, and the scaled
         normal of the straight line.
     ends : x and y of the start, x and y of the goal, in squares.
-    bias : 0 for none.
+    bias : the share, without unit; 0 for none, the normal is then 0.
     """
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
     square = dx * dx + dy * dy
@@ -452,7 +453,8 @@ def write_word(
     """Write the reduced word of a path from start to goal, and return its size.
 
     A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph, with
-    its cells.
+    its cells. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows
+    of free squares) in neighbouring rows.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Buffers(NamedTuple):
     Attributes
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Room for squared clearances in half squares.
+        Room for squared clearances in squared half squares.
     words : (cells / 8, rounded up) uint64
         Room for the states of the skeleton, eight cells a word, a byte each.
     """
@@ -105,7 +105,7 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
 
 
 def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
-    """Keep a set of arrays, no longer in use, as the only spare one; `shape` is its padded shape."""
+    """Keep a set of arrays, `buffers`, no longer in use, as the only spare one; `shape` is its padded shape."""
     SPARE_BUFFERS.clear()
     SPARE_BUFFERS[shape] = buffers
 

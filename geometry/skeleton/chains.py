@@ -77,7 +77,7 @@ def fill_cells(
     Parameters
     ----------
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node : (n,) int32

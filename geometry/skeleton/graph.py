@@ -53,7 +53,7 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. That bit, HALT, of
@@ -95,7 +95,7 @@ def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGra
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
         States of the skeleton, flat; cells with HALT are the first cells of rings.
     width : int
@@ -138,9 +138,9 @@ def walk_rings(
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node : (n,) int32
@@ -172,7 +172,7 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
         States of the skeleton, flat; changed.
     width : int
@@ -201,7 +201,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
     saddle : int
         Flat index of a saddle that is no node.
     heights, states : (cells,)
-        Squared clearances in half squares, and states of the skeleton, flat.
+        Squared clearances in squared half squares, and states of the skeleton, flat.
     width : int
         Width of the padded screen.
     """
@@ -219,7 +219,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Return whether a cell of this state (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
+    """Return whether a cell of the state `here` (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
 
     It is when flagged HALT, or with links or flags but not two links. State 0, off the skeleton, is none.
     """
@@ -250,9 +250,9 @@ def walk_chains(
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     words : (cells / 8, rounded up) int64
         The memory of ``states`` by eights.
     width : int
@@ -309,7 +309,7 @@ def walk_chain(
         Flat index of the first node, and the direction (0 east, 1 north, 2 west, 3 south) of the link by which the
         chain leaves it.
     heights, states : (cells,)
-        Squared clearances in half squares, and states of the skeleton, flat.
+        Squared clearances in squared half squares, and states of the skeleton, flat.
     width : int
         Width of the padded screen.
     notes : (size,) int32

@@ -36,7 +36,7 @@ def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> 
     ----------
     notes : (size,) int32, the cells of the chain that may be its lowest, its ends and saddles; the first one as ~cell.
     first, last : where the notes of this chain begin, and the index behind its last; at least one.
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     """
     lowest = int(~notes[first])
     low = heights[lowest]
@@ -61,7 +61,7 @@ def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances
         by chain; the first one of each chain as ~cell, which is negative.
     values : (size,) int32, scratch: their squared clearances.
     noted : how many of ``notes`` are in use; 0 fills nothing.
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     chain : the number of the first of these chains.
     neck : (m,) int32, output at the numbers of these chains; all else is left alone.
     """

@@ -108,7 +108,7 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2, with a blocked frame.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2, with a blocked frame.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
@@ -171,9 +171,9 @@ def fill_arrays(
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares of the padded screen, flat.
+        Squared clearances in squared half squares of the padded screen, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node, port, lowest, steps : int32
@@ -203,7 +203,7 @@ def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearanc
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares of the padded screen, flat.
+        Squared clearances in squared half squares of the padded screen, flat.
     width : int
         Width of the padded screen.
     node : (n,) int32
@@ -240,7 +240,7 @@ def fill_points(
     Parameters
     ----------
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node, port, lowest : int32
