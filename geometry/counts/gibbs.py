@@ -153,7 +153,7 @@ def costs(
 
     Parameters
     ----------
-    images : (m, rows, columns) int8, 1 where occupied, as sampled.
+    images : (m, rows, columns) int8, 1 where a square is occupied, 0 elsewhere, row 0 in the south.
     ground : (rows, columns) int8, FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE, row 0 in the south; as they were sampled.
     counts : the fields and their least and greatest counts, of squares of the ground.
     edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall

@@ -72,7 +72,7 @@ def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, 
     Lengths and distances are in squares. Words are of signed portals (index plus 1, negative when crossed southwards).
     The arcs out of node v, to the east, north, west and south, stand in row v of `head`, `arc` and `step`: node led to,
     code, length.
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -105,7 +105,8 @@ def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints
     """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row.
 
     A signed portal is a portal's index plus 1, negative when it is crossed southwards. A cell's index is (row + 1) *
-    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph (whose nodes are the junctions and
+    ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -139,9 +140,9 @@ def measure_chains(
 ) -> None:
     """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
 
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
-    with its cells. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips
-    (rows of free squares) in neighbouring rows.
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands
+    next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -173,7 +174,7 @@ def measure_chains(
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
     """Fill the arcs out of every node. A chain from a node back to itself gives no arc.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -283,7 +284,7 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
 
     It holds the number of the chain (-1 at a node without chains), the position, from 0, of the cell on it, the number
     of the node (-1 inside a chain), and the cell.
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -336,8 +337,8 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
 
-    A chain is an edge of the pathgraph, with its cells. A portal is the overlap of two strips (rows of free squares) in
-    neighbouring rows.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------

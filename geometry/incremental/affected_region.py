@@ -44,6 +44,8 @@ def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
 def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
     """Fill the boxes around changed cells, one for each tile with such cells, and return their number.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     cells : (k,) int32, flat indices of changed cells in the padded screen.

@@ -50,6 +50,8 @@ class Splice(NamedTuple):
 def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
     """Return the nodes of a stretch that stay merged with new ones, and how the numbers of old nodes change.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     old : (n,) int32
@@ -85,6 +87,8 @@ def splice_chains(
     heights: Heights, states: Flags, width: int, bones: SkeletonGraph, splice: Splice, open_ends: Flags, seeds: Ints
 ) -> SkeletonGraph:
     """Return the graph after a change: new chains walked from the seeds, merged with the chains that stay.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -195,7 +199,8 @@ def merge_chains(
     """Fill ``port``, ``neck`` and ``steps`` with the old chains of a stretch that stay and the new ones, in order.
 
     Returns their number. Ends are coded as 4 times the number of the node plus the direction (0 east to 3 south) in
-    which the chain leaves it; cells are flat indices into the padded screen.
+    which the chain leaves it; cells are flat indices into the padded screen. Flat indices are row * width + column in
+    the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

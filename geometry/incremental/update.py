@@ -188,7 +188,8 @@ def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west
 def narrow(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
     """Narrow the bounds, in place, to the cells that differ, and fill their third column.
 
-    That is the flat index in ``fresh`` of the first such cell of a row.
+    That is the flat index in ``fresh`` of the first such cell of a row. Flat indices are row * width + column in the
+    screen padded by one blocked cell on each side.
 
     Parameters
     ----------

@@ -25,6 +25,8 @@ NODE_GONE = 31  # open ends of a node that is no longer one, or has changed: all
 def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLog) -> SkeletonGraph:
     """Return the graph after a change of the skeleton.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
@@ -72,10 +74,13 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
 def find_changed(journal: ChangeLog, keys: Longs) -> int:
     """Mark the touched cells that differ as JOINED, list them in ``keys``, and return their number.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     journal : ChangeLog
-        The cells that may have changed, with their states before; its marks are changed.
+        The cells that may have changed (`touched`, of which size[0] are listed), with their states before; its marks
+        are changed: JOINED (4) is set where a cell's chain is to be joined again.
     keys : (touched,) int64
         Filled from index 0 on with 256 times the cell (flat index) plus its state before, for each cell whose state or
         clearance differs.
@@ -97,7 +102,7 @@ def find_open(
     """Set ``open_ends``: for each old node the bits of the ends of all chains on which a changed cell lay.
 
     Returns the numbers of the first node with such an end and of the one behind the last; the number of nodes and 0
-    when there is none.
+    when there is none. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -144,7 +149,8 @@ def find_open(
 def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
     """Flag the first cell of every ring without a junction on which a changed cell lies; return the number of rings.
 
-    Each chain is followed only from changed cells that no earlier walk passed.
+    Each chain is followed only from changed cells that no earlier walk passed. HALT (128 in a state) makes a cell a
+    node. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -183,7 +189,8 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
 def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
     """Fill ``seeds`` with the ends where new chains may start, and return their number.
 
-    An end is 4 times the new number of the node plus the direction (0 east to 3 south). They are not sorted.
+    An end is 4 times the new number of the node plus the direction (0 east to 3 south). They are not sorted. Flat
+    indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

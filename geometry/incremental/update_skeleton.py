@@ -66,6 +66,8 @@ def regrow(
 ) -> ChangeLog:
     """Set new clearances, grow the skeleton again where they differ, and return the log of what may have changed.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
@@ -121,7 +123,10 @@ def find_columns_about(bounds: Ints, width: int, about: Ints) -> None:
 
 @bare
 def touch(journal: ChangeLog, cell: int) -> None:
-    """Log a cell (flat index) and its state in `journal` before the state changes; later calls for it do nothing."""
+    """Log a cell (flat index) and its state in `journal` before the state changes; later calls for it do nothing.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+    """
     if not journal.mark[cell] & TOUCHED:
         journal.mark[cell] |= TOUCHED
         k = journal.size[0]
@@ -133,7 +138,8 @@ def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None
     """Remove the links that lead up from the cells within ``about``, and the ascents that depend on them.
 
     An ascent goes from each cell to its highest edge neighbour, from a saddle on (a cell whose higher neighbours form
-    two groups or more). Nothing is returned.
+    two groups or more). Nothing is returned. Flat indices are row * width + column in the screen padded by one blocked
+    cell on each side.
 
     Parameters
     ----------
@@ -164,7 +170,8 @@ def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None
 def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
     """Remove the link from `cell` to `other`, its neighbour in a direction (0 east to 3 south), and log both first.
 
-    Both are flat indices. In the states of `journal` the bit of the link is cleared in both cells.
+    Both are flat indices. In the states of `journal` the bit of the link is cleared in both cells. Flat indices are row
+    * width + column in the screen padded by one blocked cell on each side.
     """
     touch(journal, cell)
     touch(journal, other)
@@ -177,7 +184,8 @@ def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, 
     """Remove the ascent from a cell outside ``about`` up to where another ascent still leads into it.
 
     An ascent goes from each cell to its highest edge neighbour. What is removed also ends at saddles, summits and cells
-    within ``about``, which are pruned otherwise.
+    within ``about``, which are pruned otherwise. Flat indices are row * width + column in the screen padded by one
+    blocked cell on each side.
 
     Parameters
     ----------
@@ -215,6 +223,8 @@ def set_clearances(
     heights: Heights, width: int, bounds: Ints, fresh: SquaredDistances, about: Ints, flags: Flags, journal: ChangeLog
 ) -> None:
     """Set the new clearances, and the flags SADDLE and SUMMIT of the cells within ``about``.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -273,7 +283,7 @@ def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
     """Climb again from the saddles within ``about``, and from where ascents from outside lead into it.
 
     An ascent goes from each cell to its highest edge neighbour; from a saddle one goes up in each group of higher
-    cells.
+    cells. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -303,6 +313,8 @@ def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
 @bare
 def climb(cell: int, direction: int, heights: Heights, width: int, journal: ChangeLog) -> None:
     """Link a cell to a higher neighbour, ascend until a saddle, a summit or an earlier ascent, and log every cell.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, o
 
     Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
     arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal. A
-    chain is an edge of the pathgraph, with its cells.
+    chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
     handing it on, costs more than the arc for which it is used.
@@ -194,7 +194,8 @@ def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search,
     """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
 
     Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity. The second entry of
-    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph, with its cells.
+    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph (whose nodes are
+    the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------

@@ -69,7 +69,8 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    passages : those along whose mouths the floor is cut; with none, only what is not connected is told apart.
+    passages : those along whose mouths (straight lines from wall to wall) the floor is cut; with none, only what is not
+        connected is told apart.
     """
     label, closed = cut_floor(layer.square >= level, passages)
     width, states = layer.square.shape[1], layer.state.reshape(-1)
@@ -84,8 +85,8 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
 def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
     """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it.
 
-    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph, with its
-    cells.
+    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph (whose nodes
+    are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------

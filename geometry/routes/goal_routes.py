@@ -207,8 +207,9 @@ class GoalArea:
 
         Its points (x, y), from the south-west corner of the screen, and its length are in squares, its signature names
         its class. Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A
-        chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its negative.
-        A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+        chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------

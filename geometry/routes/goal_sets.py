@@ -59,7 +59,7 @@ class GoalRegion(NamedTuple):
 def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int]) -> Bools | None:
     """Return the squares of a goal set, (rows, columns) bool, or None when the goal is a point.
 
-    The values of a point are not checked.
+    The values of a point are not checked. An array of bool is returned itself, not a copy.
 
     Parameters
     ----------

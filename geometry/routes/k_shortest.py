@@ -58,8 +58,8 @@ def k_shortest_paths(
     """Fill the store with up to `wanted` shortest paths from start to goal, and return their number.
 
     It is 0 when there is none. The paths stand in the store's order, shortest first. When one path is wanted and the
-    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK. A chain is an edge of the pathgraph,
-    with its cells.
+    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def add_deviations(
     That is the number of all in the store, taken ones and candidates, at most `wanted`.
 
     A deviation follows the path up to a node and leaves it there by an arc by which no path taken so far leaves. A
-    chain is an edge of the pathgraph, with its cells.
+    chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def add_deviations(
 def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, nodes: Ints) -> None:
     """Write to `nodes` the node from which each arc of a path comes.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, s
 def count_common_arcs(arcs: Ints, size: Ints, row: int, other: int) -> int:
     """Return how many first arcs two paths have in common, before they differ or one ends.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def deviation_bound(landmarks: Landmarks, query: RouteQuery, search: Search, ori
     """Return a lower bound of the length from a node to the goal over an arc that is not banned, in squares.
 
     It is infinite when there is no such arc, or none that leads to the goal within the limit of the distances. A chain
-    is an edge of the pathgraph, with its cells.
+    is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def record_path(
 ) -> None:
     """Write the path just found, from a node on, behind its first `fork` arcs; the arcs go from there to the goal.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -295,7 +295,7 @@ def record_path(
 def arc_tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
     """Return the number of the node from which an arc comes.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------

@@ -86,8 +86,8 @@ def build_layer(square: SquaredDistances, level: int, body: bool, state: States,
     It holds the arguments `square`, `state`, `chains` and `body`, not copied, the strips and portals of the cells at
     the level, and the words (signed portals), lengths (squares) and landmark distances of the chains.
 
-    A chain is an edge of the pathgraph, with its cells. A portal is the overlap of two strips (rows of free squares) in
-    neighbouring rows.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------

@@ -128,7 +128,7 @@ def lift_word(
 
     Return how many numbers these are (the clearance first, then the numbers of the chains in order), or TRAIL_OVERFLOW
     when there is no room. A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an
-    edge of the pathgraph, with its cells.
+    edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     width : columns of the padded grid.
-    trail : written.
+    trail : the linked list, written: the cell of each link, the links before and after it, and the queue.
     """
     cell, before, after, queue, queued, counts = trail
     left, right = strips.left, strips.right
@@ -236,7 +236,7 @@ def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     width : columns of the padded grid.
-    trail : the path, with all its links queued; changed, its queue is empty afterwards.
+    trail : the path as a linked list of cells, with all its links queued; changed, its queue is empty afterwards.
     """
     cell, before, after, queue, queued, counts = trail
     while counts[1] > 0:
@@ -269,7 +269,7 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     width : columns of the padded grid.
-    trail : the path; links are inserted and queued.
+    trail : the path as a linked list of cells; links are inserted and queued.
     link, next_link : numbers of two links that follow each other.
     forward : whether `next_link` comes after `link` on the path.
     """
@@ -309,7 +309,7 @@ def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: boo
 
     Parameters
     ----------
-    trail : the path; changed.
+    trail : the path as a linked list of cells; changed.
     cell : index in the flat padded grid, (row + 1) * width + column + 1.
     last, next_link : numbers of the two links.
     forward : whether `next_link` comes after `last` on the path.

@@ -1,6 +1,7 @@
 """Loops: closed paths over the pathgraph that wind once about given blocked squares.
 
-A chain is an edge of the pathgraph, with its cells; a position on it is the index of a cell, from 0 at its first.
+A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells; a position
+on it is the index of a cell, from 0 at its first.
 
 # Strategy: a ray from one of those squares to the screen's edge is crossed by some chains. A closed path winds as often
 as it crosses the ray, so the search runs on nodes times windings. Paths that never turn back on a chain are the classes
@@ -105,8 +106,8 @@ def ray_crossings(layer: Layer, around: Bools) -> Ints:
 
     The ray goes north from the last of the squares `around` (the eastern one of the northernmost row), between its
     column and the column to the west. Crossings from east to west count 1, those from west to east -1. The sum goes on
-    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph,
-    with its cells.
+    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -160,7 +161,7 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
 def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[int, int], two: tuple[int, int]) -> None:
     """Add a stretch of a chain to `arcs`, in both directions.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -208,7 +209,8 @@ def cells_of_path(chains: Chains, path: list[Arc]) -> list[int]:
     """Return the padded cells of a path, from its origin back to it: indices in the flat padded grid.
 
     The first and the last cell are the same. An empty path gives an empty list. A cell's index is (row + 1) * width +
-    column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+    column + 1, with width = columns + 2. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of
+    the skeleton), with its cells.
 
     Parameters
     ----------

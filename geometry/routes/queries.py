@@ -135,7 +135,8 @@ class LayerQueries:
         """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number.
 
         The routes stand in `answers` of the buffers, in the order of their paths over the pathgraph; the next search
-        overwrites them. A chain is an edge of the pathgraph, with its cells.
+        overwrites them. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton),
+        with its cells.
 
         Parameters
         ----------
@@ -197,7 +198,8 @@ class LayerQueries:
     def _avoiding(self, start: XY, goal: XY, k: int, barrier: Barrier) -> list[Route]:
         """Return at most k routes between two points that lead through no passage of a barrier, shortest first.
 
-        The list is empty when the barrier separates the points.
+        The list is empty when the barrier separates the points. Points, lengths and clearances are in squares; each
+        route is the shortest of its class.
 
         Parameters
         ----------
@@ -235,8 +237,9 @@ class LayerQueries:
 
         Its points (from the screen's south-west corner), length and clearance are in squares; it is the shortest of its
         class, which the word names.
-        A chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its
-        negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -274,7 +277,8 @@ class LayerQueries:
 
         Its points (x, y) and its length are in squares, its signature names its class.
         Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares from
-        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph, with its cells.
+        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph (whose nodes are the
+        junctions and ends of the skeleton), with its cells.
         """
         length = self.shortest_length(start, goal)
         return None if length == inf else self._polyanya_route(length, None)
@@ -283,7 +287,7 @@ class LayerQueries:
         """Return the route left in the scratch by the last search for the shortest path, with its points in squares.
 
         It is lifted to the skeleton when its ends are given: it then has the clearance (squares) and the chains there.
-        A chain is an edge of the pathgraph, with its cells.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
         Parameters
         ----------
@@ -305,8 +309,9 @@ class LayerQueries:
         """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
 
         The clearance (`lowest`) is in squared half squares, the chains are numbers in the order of the path.
-        A chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its
-        negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -387,7 +392,8 @@ class LayerQueries:
         """Return a body's route extended to its true ends, if they are not centres of squares; else the route itself.
 
         Within one square it becomes the straight line if that leaves room for the body. The length is that of the whole
-        line; clearance, signature and chains stay. A chain is an edge of the pathgraph, with its cells.
+        line; clearance, signature and chains stay. A chain is an edge of the pathgraph (whose nodes are the junctions
+        and ends of the skeleton), with its cells.
 
         Parameters
         ----------

@@ -75,8 +75,8 @@ def new_router_buffers(
     It holds the arcs that the query adds to the pathgraph, scratch of the searches, the paths found, words of signed
     portals, and the routes found as arrays (corners in squares, crossing numbers, chains, lengths).
 
-    A chain is an edge of the pathgraph, with its cells. A portal is the overlap of two strips (rows of free squares) in
-    neighbouring rows.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -218,8 +218,8 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
     """Close the chains that start and goal split (flag 2), or open them again (flag 0).
 
-    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph,
-    with its cells.
+    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
     from the last node of the goal's chain to the goal, and arc 4 from the start to the goal along a chain that both
     share. An end that lies at a node has its first arc, to that node, of length 0, and no second. When both lie on one
     chain, the arcs that would pass the other end are closed; when both lie in one cell, arc 4 of length 0 alone is
-    left. A chain is an edge of the pathgraph, with its cells.
+    left. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -305,7 +305,7 @@ def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int,
 
     It is 0 from a position to itself.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ def write_stretches(
 ) -> int:
     """Write the chains that a path follows and the positions between which, and return their number.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -389,7 +389,7 @@ def write_stretches(
 def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
     """Return whether a path follows the same chains, in the same order, as one of the routes written.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -414,8 +414,8 @@ def lowest_square_on(
 ) -> int:
     """Return the least squared clearance on a path, at most `lowest`, in squared half squares.
 
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
-    with its cells.
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -452,9 +452,9 @@ def write_word(
 ) -> int:
     """Write the reduced word of a path from start to goal, and return its size.
 
-    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph, with
-    its cells. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows
-    of free squares) in neighbouring rows.
+    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph (whose
+    nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands next to
+    its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -491,7 +491,7 @@ def write_route(
 ) -> bool:
     """Pull a word tight and write it as the k-th route; return False when there is no room.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------

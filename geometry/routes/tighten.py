@@ -17,8 +17,9 @@ def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: 
 
     Its points are (x, y) in squares from the screen's south-west corner, both ends included; its length is in squares,
     its signature made of the crossing numbers of the word.
-    A chain is an edge of the pathgraph, with its cells. A word is reduced when no symbol stands next to its negative. A
-    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A word
+    is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares)
+    in neighbouring rows.
 
     Parameters
     ----------

@@ -109,6 +109,8 @@ def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> 
 def node_number(cell: int, words: Eights, base: Ints, since: ByteFlags) -> int:
     """Return the number of nodes before a cell; when the cell is a node itself, that is its own number.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     cell : flat index into the padded screen.

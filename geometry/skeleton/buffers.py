@@ -114,7 +114,8 @@ def take_scratch(cells: int) -> Scratch:
     """Return scratch for a screen of so many padded cells: that of the last change if it was of that size, else new.
 
     It holds an array ``mark`` of marks of cells, all 0, and room for a list of touched cells and for their states
-    before the change, both arbitrary. Cells are flat indices. It is no longer spare until ``keep_scratch``.
+    before the change, both arbitrary. Cells are flat indices. It is no longer spare until ``keep_scratch``. Flat
+    indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     scratch = SPARE_SCRATCH.pop(cells, None)
     if scratch is None:
@@ -123,7 +124,10 @@ def take_scratch(cells: int) -> Scratch:
 
 
 def keep_scratch(scratch: Scratch) -> None:
-    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one."""
+    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one.
+
+    Scratch holds marks of cells, room for a list of touched cells, and for their states before a change.
+    """
     SPARE_SCRATCH.clear()
     SPARE_SCRATCH[len(scratch.mark)] = scratch
 

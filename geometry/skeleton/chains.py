@@ -43,6 +43,8 @@ class Chains(NamedTuple):
 def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     """Return a graph with the cells of its chains, found by walking them.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     bones : SkeletonGraph
@@ -72,7 +74,8 @@ def fill_cells(
 ) -> None:
     """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave``.
 
-    Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+    Cells are flat indices into the padded screen; n is the number of nodes, m of chains. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

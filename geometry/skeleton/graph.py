@@ -50,6 +50,8 @@ class SkeletonGraph(NamedTuple):
 def contract(square: SquaredDistances, state: States, words: Words, min_notes: int = MIN_NOTES) -> SkeletonGraph:
     """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
@@ -90,7 +92,8 @@ def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGra
 
     A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends. New nodes
     and chains are inserted where the order of cells puts them, so the numbers of old ones behind them grow. The graph
-    holds the cells of nodes, and of each chain its two ends, its lowest cell and its number of steps.
+    holds the cells of nodes, and of each chain its two ends, its lowest cell and its number of steps. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -135,6 +138,8 @@ def walk_rings(
 ) -> None:
     """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
@@ -167,7 +172,8 @@ def walk_rings(
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
     """Set HALT in the state of the first cell of every ring that has no junction.
 
-    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index.
+    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -194,7 +200,8 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
     """Return the first cell (least flat index) of the ring on which a saddle lies and is the lowest cell.
 
-    -1 when the ring has a node or a lower saddle.
+    -1 when the ring has a node or a lower saddle. Flat indices are row * width + column in the screen padded by one
+    blocked cell on each side.
 
     Parameters
     ----------
@@ -246,6 +253,7 @@ def walk_chains(
 
     Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache. Rings
     without a node are not walked. Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -301,7 +309,8 @@ def walk_chain(
     """Walk one chain from a node; return its last cell, the direction back from there, its steps, and the notes so far.
 
     That is: the flat index of the node at its other end, the direction (0 to 3) in which the chain leaves that node,
-    the number of steps from square to square, and how many of ``notes`` are in use now.
+    the number of steps from square to square, and how many of ``notes`` are in use now. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -366,6 +375,8 @@ def first_direction(here: int) -> int:
 @bare
 def find(node: Ints, cell: int) -> int:
     """Return the number of the first node at or after a cell, by bisection; the number of nodes when there is none.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     `node` : (n,) cells of nodes (flat indices), ascending. `cell` : a flat index.
     """

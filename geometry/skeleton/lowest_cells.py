@@ -30,7 +30,8 @@ def new_notes(cells: int, min_notes: int = MIN_NOTES) -> Notes:
 def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> int:
     """Return the lowest cell (flat index) of one chain, by its notes ``first <= k < last``.
 
-    Lower is the cell of less clearance and, of two with the same, that of the lower index.
+    Lower is the cell of less clearance and, of two with the same, that of the lower index. Flat indices are row * width
+    + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -53,7 +54,8 @@ def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances
     """Fill ``neck`` with the lowest cells of successive chains, from number ``chain`` on, by their notes.
 
     Lower is the cell of less clearance and, of two with the same, that of the lower index. The loop has no branches,
-    because none could be predicted.
+    because none could be predicted. Flat indices are row * width + column in the screen padded by one blocked cell on
+    each side.
 
     Parameters
     ----------

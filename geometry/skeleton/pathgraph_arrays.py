@@ -166,7 +166,8 @@ def fill_arrays(
 ) -> None:
     """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``.
 
-    n is the number of nodes, m of edges, which are the chains.
+    n is the number of nodes, m of edges, which are the chains. Flat indices are row * width + column in the screen
+    padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -199,6 +200,8 @@ def fill_arrays(
 @bare
 def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearances: Floats) -> None:
     """Fill places and clearances of nodes.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -236,6 +239,8 @@ def fill_points(
     narrowest: Ints,
 ) -> None:
     """Walk every chain from its first end and fill ``points`` and ``narrowest``.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

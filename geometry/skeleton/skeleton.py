@@ -153,7 +153,8 @@ def grow(
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
     """Clear the states of a row and set SADDLE or SUMMIT in those of its saddles and summits.
 
-    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more.
+    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -178,7 +179,8 @@ def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flag
     """Fill ``flags`` for as many cells of a row from ``first`` on: SADDLE, SUMMIT or 0.
 
     A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more.
-    Cells lower than ``level`` get 0.
+    Cells lower than ``level`` get 0. Flat indices are row * width + column in the screen padded by one blocked cell on
+    each side.
 
     Parameters
     ----------
@@ -204,7 +206,7 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 
     Higher is the cell of greater clearance and, of two with the same, that of the greater flat index. The cell, a flat
     index, does not lie on the frame of the padded screen; `heights` are squared clearances, flat, `width` is that of
-    the screen.
+    the screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     own = heights[cell]
     higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
@@ -217,7 +219,8 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
     """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest among some edge neighbours of a cell.
 
-    Without branches, because at saddles none could be predicted.
+    Without branches, because at saddles none could be predicted. Flat indices are row * width + column in the screen
+    padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -244,7 +247,7 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 
     With branches, which along a chain are predictable. Of equal neighbours that of the greater flat index counts as
     higher. `cell` is a flat index, not on the frame; `heights` are squared clearances, flat; `width` is that of the
-    padded screen.
+    padded screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
     if (north if north >= east else east) >= (west if west >= south else south):
@@ -258,7 +261,7 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
 
     An ascent goes from each cell to its highest edge neighbour; CLIMBED marks the cells that one has passed.
     Returns -1 when the ascent has ended, or the cell (flat index) from which it leads on to a cell before ``first``,
-    where it has to wait.
+    where it has to wait. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -284,7 +287,8 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
 def link(cell: int, other: int, direction: int, states: Flags) -> None:
     """Set the two link bits between edge neighbours in ``states``.
 
-    ``direction`` (0 east, 1 north, 2 west, 3 south) leads from ``cell`` to ``other``, both flat indices.
+    ``direction`` (0 east, 1 north, 2 west, 3 south) leads from ``cell`` to ``other``, both flat indices. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
     """
     states[cell] |= 1 << direction
     states[other] |= 1 << (direction ^ 2)
@@ -295,7 +299,8 @@ def steepest(cell: int, heights: Heights, width: int) -> int:
     """Return the highest edge neighbour (flat index) of a cell that is no summit; of equal ones the greater index.
 
     `heights` : (cells,) squared clearances in squared half squares, flat. `width` : that of the padded screen. For a
-    summit, which has no higher neighbour, the highest of the lower ones is returned.
+    summit, which has no higher neighbour, the highest of the lower ones is returned. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
     """
     return int(cell + stride(highest(cell, heights, width), width))
 
@@ -304,7 +309,8 @@ def steepest(cell: int, heights: Heights, width: int) -> int:
 def above(cell: int, other: int, heights: Heights) -> bool:
     """Return whether `cell` is above `other` in the total order: by clearance, then by flat index.
 
-    A cell is not above itself. `heights` : (cells,) squared clearances in squared half squares, flat.
+    A cell is not above itself. `heights` : (cells,) squared clearances in squared half squares, flat. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
     """
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
@@ -313,7 +319,8 @@ def above(cell: int, other: int, heights: Heights) -> bool:
 def stride(direction: int, width: int) -> int:
     """Return the difference of flat indices of one step in a direction (0 east, 1 north, 2 west, 3 south).
 
-    `width` is that of the padded screen: 1 east, width north, -1 west, -width south.
+    `width` is that of the padded screen: 1 east, width north, -1 west, -width south. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
     """
     return (1 - (direction & 2)) * (width if direction & 1 else 1)
 
@@ -322,7 +329,8 @@ def stride(direction: int, width: int) -> int:
 def beside(k: int, width: int) -> int:
     """Return the difference of flat indices to the k-th of the eight neighbours, from the east counter-clockwise.
 
-    0 is east, 1 north-east, 2 north and so on; k counts modulo 8. `width` is that of the padded screen.
+    0 is east, 1 north-east, 2 north and so on; k counts modulo 8. `width` is that of the padded screen. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
     """
     k %= 8
     if k < 4:

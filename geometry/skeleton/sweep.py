@@ -78,6 +78,8 @@ def sweep(
 ) -> None:
     """Measure, classify and climb bands of ``band`` rows from the north to the south.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32

@@ -43,6 +43,8 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
     """Set ``reached`` for all cells off the line that the seeds reach by sides and corners.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     line : (rows + 2, columns + 2) bool, the cells of the skeleton, which the flood does not enter.
