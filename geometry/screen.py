@@ -540,8 +540,10 @@ class Screen:
 
         Returns
         -------
-        The states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the nodes and
-        chains by cells, which are flat indices into the padded screen.
+        The states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the east, north, west, south; 0 off the
+        skeleton), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes, ascending, and
+        of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest cell and its
+        number of steps; cells are flat indices, row * width + column in the padded screen.
         """
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
@@ -549,6 +551,11 @@ class Screen:
 
     def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
         """Return the skeleton (by cells, by words) and its graph with some squares changed, all measured anew.
+
+        That is: the states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the graph:
+        the cells of the nodes, ascending, and of each chain its two ends (4 times the node plus the direction, 0 east
+        to 3 south), its lowest cell and its number of steps; cells are flat indices, row * width + column in the padded
+        screen.
 
         Parameters
         ----------
@@ -566,8 +573,10 @@ class Screen:
         """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
 
         ``level`` is in half squares squared, from 1 (all free squares: for a point) on: the higher, the larger the
-        body and the less floor. Returned are the states by cells and by words of eight, and the nodes and chains, as by
-        ``_survey``.
+        body and the less floor. Returned are the states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the
+        east, north, west, south), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes,
+        ascending, and of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest
+        cell and its number of steps; cells are flat indices, row * width + column in the padded screen.
         """
         found = self._skeletons.get(level)
         if found is None:

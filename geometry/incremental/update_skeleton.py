@@ -271,7 +271,7 @@ def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
 
 @bare
 def differ(states: Flags, flags: Flags) -> bool:
-    """Return whether any of some states (n,) has other flags (SADDLE, SUMMIT) than given in ``flags`` (n,)."""
+    """Return whether any of some states (n,) has other flags (SADDLE 32, SUMMIT 64) than given in ``flags`` (n,)."""
     other = np.uint8(0)
     for k in range(states.shape[0]):
         other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)

@@ -73,7 +73,8 @@ class Passage(NamedTuple):
     def shifted(self, columns: int, rows: int) -> "Passage":
         """Return the same passage in a frame whose origin lies that many squares further west and south; a new one.
 
-        Its width and its sides stay. `columns` is added to every x and column, `rows` to every y and row.
+        Its width and its sides stay; mouths, gates and the squares between are moved. `columns` is added to every x and
+        column, `rows` to every y and row.
         """
 
         def there(point: XY) -> XY:
@@ -213,8 +214,9 @@ def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
 def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
     """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor.
 
-    Each pair is (mouths, numbers of the parts). Clusters with fewer than two mouths are left out. A mouth is a neck
-    seen from floor that is wide; a part of the narrower floor is given by its representative in `floor`.
+    Each pair is (mouths, numbers of the parts); the order of pairs and of mouths has no meaning. Clusters with fewer
+    than two mouths are left out. A mouth is a neck seen from floor that is wide; a part of the narrower floor is given
+    by its representative in `floor`.
 
     Parameters
     ----------

@@ -90,7 +90,8 @@ class GoalArea:
         """Return the route to the nearest square of all as a list of one; an empty list when none can be reached.
 
         The entry is (route, number of the part of the set in which it ends, last cell). Of squares as near that tried
-        first counts. The length is in squares; clearance and chains may not be known (nan, empty).
+        first counts. The route's points (x, y), from the south-west corner of the screen, and its length are in
+        squares; clearance and chains may not be known (nan, empty).
 
         Squares are tried in the order of their straight distances, as long as these are less than the best length.
         """
@@ -122,7 +123,7 @@ class GoalArea:
 
         The representative of a part is its cell of greatest clearance. Each entry is (route, number of the part of the
         set, last cell); the routes stand part by part, not by length, and several may be of one class. Empty when no
-        part can be reached. Clearances are nan and chains empty.
+        part can be reached. Points and lengths are in squares, clearances are nan and chains empty.
 
         Parameters
         ----------
@@ -186,8 +187,9 @@ class GoalArea:
     def moved_end(self, word: Ints, cell: int, step: int) -> tuple[Route, Ints, int] | None:
         """Return the route, word and cell with the end moved by a step; None when the end may not move so.
 
-        The new cell must be in the set, and the step must not be cut. A word is reduced when no symbol stands next to
-        its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+        The route's points and length are in squares, its clearance is nan and its chains are empty; the word is
+        reduced. The new cell must be in the set, and the step must not be cut. A word is reduced when no symbol stands
+        next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------

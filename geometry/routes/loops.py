@@ -92,6 +92,9 @@ def turns_back(last: Arc, arc: Arc) -> bool:
 def arcs_of_trail(trail: tuple[Arc, object] | None) -> list[Arc]:
     """Return the arcs of a trail, first to last; a trail is the last arc and the trail before it.
 
+    An arc is a chain or a part of one, walked in one direction: node led to, length in squares, crossings of the ray,
+    chain, and the positions at which it begins and ends.
+
     None is the trail without arcs, and gives an empty list.
     """
     path: list[Arc] = []

@@ -178,8 +178,8 @@ class LayerQueries:
     def with_skeleton_path(self, route: Route) -> Route:
         """Return a copy of a route with the clearance and the chains of its class's path over the skeleton.
 
-        Points, length and signature stay. The clearance is in squares; the chains are numbers of edges of the
-        pathgraph, in the order of the route.
+        Points (x, y in squares), length and signature stay; the points must lie in free space. The clearance is in
+        squares; the chains are numbers of edges of the pathgraph, in the order of the route.
         """
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
         found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
