@@ -470,7 +470,8 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int: 
         by flat index; flat steps to the eight neighbours.
     image : (size,) the flat framed raster, 1 where occupied.
     k : the number of the square, among those that are drawn (sampled).
-    random : a random number; its lowest 11 bits are used.
+    random : a random number; of its lowest 11 bits, which are used, the first two are the side (0 south, 1 north, 2
+        west, 3 east). It is not advanced.
     flipped : written from index 0 on: numbers of drawn squares, k first, then those on its edge to one side, to the
         other, then those of the outline opposite if it moves too.
     """
@@ -533,8 +534,9 @@ def count_error_change(k, more, ends, field, share, limits, counts) -> int:  # t
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share, limits : attributes of `_Raster`: the fields of each drawn square and how often each counts it,
-        and the least and greatest count of each field.
+    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
+        how often each counts it stands at the same place in `share`.
+    limits : (fields, 2) the least and the greatest count of each field.
     counts : (fields,) the count of occupied squares under each field; not changed.
     """
     worse = 0
@@ -557,7 +559,8 @@ def update_counts(k, more, ends, field, share, counts) -> None:  # type: ignore[
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : attributes of `_Raster`: the fields of each drawn square, and how often each counts it.
+    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
+        how often each counts it stands at the same place in `share`.
     counts : (fields,) the count of occupied squares under each field; changed.
     """
     for i in range(ends[k], ends[k + 1]):

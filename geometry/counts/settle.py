@@ -78,7 +78,7 @@ def misfits(
     state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
     where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
     low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    wrong : (n,) bool, written.
+    wrong : (n,) bool, written: True for fields that cannot have their counts.
     """
     found = 0
     for i in range(where.shape[0]):

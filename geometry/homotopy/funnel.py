@@ -65,9 +65,8 @@ def tighten_word(
 
     Parameters
     ----------
-    lefts, rights, lines : (p,) `left`, `right` and `line` of the portals: first and last column, and the row below (see
-        strips.py).
-    body : True for a body, False for a point.
+    lefts, rights, lines : (p,) of the portals: the first and the last column, included, and the row below.
+    body : True for a body, whose path keeps to the lines between centres of squares; False for a point.
     word : signed portals (index plus 1, negative when crossed southwards); the first `size` are read. Must be reduced,
         and lead from the start's strip to the goal's.
     size : the number of symbols of the word; 0 for a straight line.

@@ -107,7 +107,8 @@ def find_open(
     Parameters
     ----------
     states, mark : (cells,) uint8
-        States of the skeleton after the change, in which HALT is cleared on changed rings, and marks (JOINED: changed).
+        States of the skeleton after the change, in which HALT is cleared on changed rings, and marks
+        (JOINED, 4: changed).
     width : int
         Width of the padded screen.
     cells, before : (k,) int32 and uint8

@@ -19,7 +19,7 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
     ----------
     walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
     passage : the passage from which the floor is followed, found on these walls: its width and its two mouths count.
-    spare : in squares.
+    spare : how much longer than the passage is wide a line may be, in squares.
 
     Returns
     -------

@@ -170,7 +170,11 @@ class _Floor:
     """
 
     def __init__(self, walls: Walls) -> None:
-        """Join the triangles of `walls` over all edges that are no necks."""
+        """Join the triangles of `walls` over all edges that are no necks.
+
+        `walls` is the floor as triangles between the corners of its walls. A neck is a straight line from wall to wall
+        that is shorter than all beside it.
+        """
         number = len(walls.triangles)
         self._parent = list(range(number))
         self.members = [[k] for k in range(number)]

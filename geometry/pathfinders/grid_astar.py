@@ -76,7 +76,7 @@ def points_of_path(
     Parameters
     ----------
     came_from : by square (column, row), the square before it on its path; the first square is missing.
-    square : the last square.
+    square : the last square of the path, (column, row).
     start, goal : (x, y) in squares from the screen's south-west corner.
     """
     squares = [square]

@@ -119,7 +119,7 @@ def shortest_line(
     nodes, funnel : scratch; changed.
     word : written: the reduced word of the path, of which the first sizes[0] symbols count.
     line : (n, 2) written: the corners (x, y) of the path in squares, of which the first sizes[1] count.
-    sizes : (2,) written.
+    sizes : (2,) written: the number of symbols (or NO_PATH, -1, or SEARCH_OVERFLOW, -2), and the number of corners.
     """
     size = shortest_word(strips, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > funnel.x.shape[0]:
@@ -191,7 +191,7 @@ def mark_dead_ends_to_goal(exits: Ints, lower: Ints, upper: Ints, goal: int, ent
     exits : (strips,) the signed portal by which every path out of a dead-end strip leaves it, 0 for other strips.
     lower, upper : (portals,) the strips below and above each portal.
     goal : the number of the goal's strip.
-    enter : (strips,) written.
+    enter : (strips,) written: the stamp on strips that may be entered; other entries stay.
     stamp : the number of the present search.
     """
     strip = goal
@@ -371,7 +371,7 @@ def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float
         changed.
     stamp : the number of the present search.
     corner : 2 portal for a portal's west end, 2 portal + 1 for its east end.
-    length : in squares.
+    length : of the path to the corner, in squares.
     """
     if seen[corner] != stamp:
         best[corner], seen[corner] = length, stamp

@@ -162,7 +162,7 @@ def add_deviations(
 
 @bare
 def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, nodes: Ints) -> None:
-    """Write to `nodes` the node from which each arc of a path comes.
+    """Write to `nodes` the node from which each arc of a path comes, the start first, in the order of the path.
 
     A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 

@@ -261,7 +261,7 @@ class LayerQueries:
         Parameters
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, in free squares.
-        limit : in squares.
+        limit : a length in squares from which on a path is of no interest; infinite for none.
         """
         strips = self.layer.runs
         if self._polyanya is None:

@@ -166,7 +166,7 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 
     Parameters
     ----------
-    data : the layer's arrays.
+    data : the layer's arrays: clearances, states of the skeleton, chains, strips and landmarks.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     wanted : how many routes at most, at least 1; the number for which the buffers were made.
     buffers : scratch; the routes are left in `buffers.answers`.
@@ -226,7 +226,7 @@ def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> 
     closed : (m,) of the query, by chain; changed.
     start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
         chain), and cell.
-    flag : 2 or 0.
+    flag : 2 to close, 0 to open.
     """
     if start.node < 0:
         closed[start.chain] = closed[start.chain] & 1 | flag
