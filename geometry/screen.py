@@ -104,7 +104,7 @@ class Screen:
         Returns
         -------
         Screen
-            This screen.
+            This screen itself, changed; no copy.
 
         Raises
         ------
@@ -208,15 +208,23 @@ class Screen:
 
     @cached_property
     def pathgraph_arrays(self) -> PathgraphArrays:
-        """The pathgraph as arrays of nodes, edges, points and adjacency (see ``PathgraphArrays``).
+        """The pathgraph of a point as arrays: the network of lines midway between the walls.
 
-        Read-only, in squares, in the frame of the screen: x to the east, y to the north, (0, 0) at the south-west
-        corner.
+        Nodes are its n junctions and ends, edges the m chains of squares between them, which have p squares in all. The
+        arrays are ``nodes`` (n, 2) and ``node_clearances`` (n,), ``edges`` (m, 2), the nodes at both ends, ``lengths``
+        and ``edge_clearances`` (m,), ``points`` (p, 2), edge by edge, of which those of edge e are ``offsets[e]`` to
+        ``offsets[e + 1]``, ``narrowest`` (m,), a row of ``points``, and ``adjacency_offsets``, ``incident_edges`` and
+        ``neighbours``, which list the edges at each node. Read-only; places (x, y), lengths and clearances in squares,
+        in the frame of the screen: x to the east, y to the north, (0, 0) at the south-west corner. Made when first
+        asked for, and kept until the screen is changed.
         """
         return self.pathgraph_arrays_for(0.0)
 
     def pathgraph_arrays_for(self, radius: float) -> PathgraphArrays:
         """Return the pathgraph of a round body as arrays.
+
+        Nodes are the junctions and ends of the skeleton (places and clearances), edges the chains of squares between
+        them (end nodes, lengths, least clearances, points); further arrays tell which edges meet at each node.
 
         Parameters
         ----------
@@ -243,6 +251,7 @@ class Screen:
     def _new_arrays(self, radius: float) -> PathgraphArrays:
         """Return the pathgraph of a body of that radius (squares; 0 for a point) in new, writable arrays.
 
+        They hold places, clearances, end nodes, lengths and points of its nodes and edges, in squares, screen frame.
         Raises ValueError when the radius is negative or no finite number.
         """
         state, _, bones = self._skeleton_at(least_squared_clearance(radius))
@@ -286,7 +295,9 @@ class Screen:
         Returns
         -------
         list of Route
-            Empty when there is no route. Points, lengths and clearances are in squares.
+            Empty when there is no route. Each has ``points`` ((n, 2) corners (x, y) from start to goal, squares, frame
+            of the screen), ``length`` and ``clearance`` in squares, ``signature`` (the crossing numbers that name its
+            class) and ``chains`` (numbers of the edges of the pathgraph that it follows).
 
         Raises
         ------
@@ -337,8 +348,9 @@ class Screen:
         Returns
         -------
         Route or None
-            None when there is no route. Its points and length are in squares. The ``clearance`` of the route is nan and
-            its ``chains`` are empty; ``tighten`` finds both.
+            None when there is no route. Its ``points``, corners (x, y) from start to goal in the frame of the screen,
+            and its ``length`` are in squares; its ``signature`` names its class. Of several as short one is returned.
+            The ``clearance`` of the route is nan and its ``chains`` are empty; ``tighten`` finds both.
 
         Raises
         ------
@@ -360,14 +372,14 @@ class Screen:
         k : int
             How many loops at most, no two of one class.
         radius : float
-            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            Radius of a round body, in squares: it moves from centre to centre of squares whose
             clearance is at least the radius. 0 for a point.
 
         Returns
         -------
         list of Route
-            Empty when there is no loop, or no room for the body at the start. The first and the last point are the
-            start.
+            Empty when there is no loop, or no room for the body at the start. Each has ``points`` (x, y), of which the
+            first and the last are the start, ``length`` and ``clearance`` in squares, ``signature`` and ``chains``.
 
         Raises
         ------
@@ -402,13 +414,14 @@ class Screen:
         route : Route
             Any polyline over free space; only its ``points`` count, (x, y) in squares in the frame of this screen.
         radius : float
-            Radius of a round body, in squares, as for ``routes``: it moves from centre to centre of squares whose
+            Radius of a round body, in squares: it moves from centre to centre of squares whose
             clearance is at least the radius. 0 for a point.
 
         Returns
         -------
         Route
-            With its length, clearance, signature and chains.
+            New: ``points``, corners (x, y) in squares in the frame of this screen, ``length`` and ``clearance`` in
+            squares, ``signature`` (crossing numbers that name the class) and ``chains`` (edges of the pathgraph).
 
         Raises
         ------
@@ -424,7 +437,7 @@ class Screen:
     def passages(self, pinch: float = DOOR_RATIO) -> list[Passage]:
         """Return the necks of free space, ordered by place: by row from the south, then by column from the west.
 
-        A neck is a straight line from wall to wall that is shorter than all near it (see necks.py).
+        A neck is a straight line from wall to wall that is shorter than all near it.
 
         Parameters
         ----------
@@ -435,7 +448,9 @@ class Screen:
         Returns
         -------
         list of Passage
-            All measures and places in squares, in the frame of the screen; empty when there is none.
+            All measures and places in squares, in the frame of the screen; empty when there is none. Each has its
+            ``width``, the greatest clearance on either side (``sides``), the lines from wall to wall where it opens
+            (``mouths``), a free square's centre beyond each (``gates``), and the squares ``between`` the mouths.
         """
         return find_passages(self._walls, pinch)
 
@@ -445,7 +460,7 @@ class Screen:
         Parameters
         ----------
         passage : Passage
-            One of ``passages()`` since the last change of the screen.
+            One of ``passages()`` since the last change of the screen; for another the set is empty or means nothing.
         spare : float
             How much longer than the width of the passage a line from wall to wall may be, in squares; 0 or more.
 
@@ -459,7 +474,11 @@ class Screen:
 
     @cached_property
     def _walls(self) -> Walls:
-        """The triangulated floor between the corners of its walls, found when it is first asked for (see walls.py)."""
+        """The floor as triangles between the corners of its walls, found when it is first asked for.
+
+        It holds the corners (x, y) in squares from the south-west corner of the screen, the triangles, and the edges
+        that two triangles share, with their squared lengths and whether each is a neck (shorter than all beside it).
+        """
         return find_walls(self.free)
 
     def parts(self, passages: Iterable[Passage]) -> Labels:
@@ -470,7 +489,8 @@ class Screen:
         Parameters
         ----------
         passages : iterable of Passage
-            Mostly some of ``passages()``; without any, parts are the components by shared edges.
+            Mostly some of ``passages()``, in the frame of the screen; their ``mouths`` are the cuts. Without any, parts
+            are the components by shared edges.
 
         Returns
         -------
@@ -503,8 +523,8 @@ class Screen:
     def _rent(self, kind: type[np.int16] | type[np.int32]) -> None:
         """Take memory for squared clearances of that type of integers, and for the states of the skeleton.
 
-        Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word, both with arbitrary values.
-        ``_tenant`` keeps them from being used again as long as the screen lives.
+        ``kind`` is np.int16 or np.int32. Sets ``_square``, (rows + 2, columns + 2), and ``_words``, eight cells a word,
+        both with arbitrary values. ``_tenant`` keeps them from being used again as long as the screen lives.
         """
         self._tenant = Tenant()
         self._square, self._words = take_buffers(self._tenant, (self.shape[0] + 2, self.shape[1] + 2), kind)
@@ -520,8 +540,10 @@ class Screen:
 
         Returns
         -------
-        The states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the nodes and
-        chains by cells, which are flat indices into the padded screen.
+        The states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the east, north, west, south; 0 off the
+        skeleton), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes, ascending, and
+        of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest cell and its
+        number of steps; cells are flat indices, row * width + column in the padded screen.
         """
         state, words = new_state(self._square.shape, self._words)
         survey(grid, self._square, state, words)
@@ -529,6 +551,11 @@ class Screen:
 
     def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
         """Return the skeleton (by cells, by words) and its graph with some squares changed, all measured anew.
+
+        That is: the states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the graph:
+        the cells of the nodes, ascending, and of each chain its two ends (4 times the node plus the direction, 0 east
+        to 3 south), its lowest cell and its number of steps; cells are flat indices, row * width + column in the padded
+        screen.
 
         Parameters
         ----------
@@ -545,9 +572,11 @@ class Screen:
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
         """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
 
-        ``level`` is in half squares squared, from 1 (all free squares, as for a point) on: the higher, the larger the
-        body and the less floor. Returned are the states by cells and by words of eight, and the nodes and chains, as by
-        ``_survey``.
+        ``level`` is in half squares squared, from 1 (all free squares: for a point) on: the higher, the larger the
+        body and the less floor. Returned are the states (rows + 2, columns + 2) uint8 (bits 1, 2, 4, 8: links to the
+        east, north, west, south), the same memory as uint64 of eight cells each, and the graph: the cells of the nodes,
+        ascending, and of each chain its two ends (4 times the node plus the direction, 0 east to 3 south), its lowest
+        cell and its number of steps; cells are flat indices, row * width + column in the padded screen.
         """
         found = self._skeletons.get(level)
         if found is None:
@@ -559,6 +588,9 @@ class Screen:
     def _chains_at(self, level: int) -> Chains:
         """Return the graph of that level with the cells of its chains (flat indices, padded); keep it.
 
+        It has the cell of each node, the chains that leave each node, and for each chain its two nodes, its cells and
+        its lowest cell.
+
         ``level`` is the least squared clearance, in half squares, of a square where the body may be.
         """
         found = self._chains.get(level)
@@ -569,6 +601,9 @@ class Screen:
 
     def _ask(self, radius: float) -> LayerQueries:
         """Return the object that answers questions for a body of that radius (squares; 0 for a point); keep it.
+
+        It holds the layer (the free space of that body: skeleton, chains, strips, landmarks), the least squared
+        clearance of its squares, and the scratch of its searches.
 
         Raises ValueError when the radius is negative or no finite number.
         """
@@ -619,7 +654,8 @@ def checked_squares(
 
     Returns
     -------
-    (m,) int32, (m,) int32, (m,) bool; m is 0 when nothing is given.
+    (m,) int32, (m,) int32, (m,) bool, in the order given, a repeated square where it stands first; m is 0 when nothing
+    is given.
 
     Raises
     ------

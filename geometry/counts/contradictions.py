@@ -32,10 +32,11 @@ def total_contradictions(
     ----------
     columns, rows, weight : (fields, entries), the squares that the fields sample, in columns and rows east and north of
         the square of the observation, and how often each counts, 0 for padding.
-    slack : (fields,) samples that do not count.
+    slack : (fields,) samples of each field that need not agree: its least count is taken lower by so many.
     corners : (observations, 2), column and row of the square of each observation, map frame.
     ranges : (observations, fields, 2), least and greatest counts of occupied squares, by weight.
-    exempt : (n, 3), x, y (map frame) and radius, in squares, of discs in which observations need not agree.
+    exempt : (n, 3), x, y (map frame) and radius, in squares, of discs in which observations need not agree; what is
+        said of squares with their centres there does not count. n may be 0.
     """
     west, south = corners[:, 0].min() - SIGHT_RADIUS, corners[:, 1].min() - SIGHT_RADIUS
     width = corners[:, 0].max() - west + SIGHT_RADIUS + 1

@@ -72,7 +72,8 @@ class Counts(NamedTuple):
     def of(self, fields: NDArray[np.int64]) -> "Counts":
         """Return the counts of some of the fields, given by number (index), in the order of these; new arrays.
 
-        A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+        Of each field it holds the flat squares, how often each counts, and the least and the greatest count. A field is
+        a set of squares that the robot sees as one; its count is that of its occupied squares.
         """
         return Counts(self.where[fields], self.weight[fields], self.low[fields], self.high[fields])
 
@@ -113,8 +114,8 @@ def pictures(
 ) -> NDArray[np.int8]:
     """Return sampled rasters that agree with counts, (m, rows, columns) int8, 1 where a square is occupied, else 0.
 
-    They agree as well as the sampling brings them; some counts may stay wrong. A field is a set of squares that the
-    robot sees as one; its count is that of its occupied squares.
+    There is one for each of `first`, in that order. They agree as well as the sampling brings them; some counts may
+    stay wrong. A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -152,8 +153,9 @@ def costs(
 
     Parameters
     ----------
-    images : (m, rows, columns) int8, 1 where occupied, as sampled.
-    ground, counts : those with which they were sampled.
+    images : (m, rows, columns) int8, 1 where a square is occupied, 0 elsewhere, row 0 in the south.
+    ground : (rows, columns) int8, FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE, row 0 in the south; as they were sampled.
+    counts : the fields and their least and greatest counts, of squares of the ground.
     edge_cost : the cost of an edge. It is 0 where rasters of grounds of different sizes are compared, because a wall
         that goes on straight is what is to be expected.
     """
@@ -172,7 +174,10 @@ def costs(
 def _raster(framed: NDArray[np.int8], counts: Counts) -> _Raster:
     """Return the squares of a framed ground that are drawn (sampled), with their neighbours and fields, as arrays.
 
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+    The result holds the flat indices of these squares in the framed raster, ascending, the number of each by flat
+    index, the corners of each that count (bits), flat steps to the neighbours, the fields of each square and how often
+    each counts it, and of each field its squares and its least and greatest count. A field is a set of squares that the
+    robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
@@ -271,16 +276,20 @@ def _thresholds() -> NDArray[np.float32]:
 
 
 @bare
-def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed):  # type: ignore[no-untyped-def]
-    """Change rasters, in place, until they are simple and agree with the counts.
+def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipped, inverse_temperatures, seed) -> None:  # type: ignore[no-untyped-def]
+    """Change rasters, in place, until they are simple and agree with the counts; nothing is returned.
 
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+    Changed are `images`, `neighbours` and `counts`; some counts may stay wrong. A field is a set of squares that the
+    robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
-    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
-    flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
-    thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
+    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
+        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
+    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
+        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
+    thresholds : (THRESHOLD_COUNT,) float32, equally likely rises of the cost that are allowed at inverse temperature 1;
+        for each change bits of the random number are the index, and the entry is divided by the inverse temperature.
     images : (m, size) int8, 1 where occupied, flat framed rasters; changed at drawn squares.
     neighbours : (m, n) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
         neighbour n of NEIGHBOUR_STEPS).
@@ -306,16 +315,20 @@ def sample_all(raster, flip_costs, thresholds, images, neighbours, counts, flipp
 
 
 @bare
-def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random):  # type: ignore[no-untyped-def]
-    """Change one raster, in place, square by square, in one sweep for each inverse temperature.
+def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, inverse_temperatures, random) -> None:  # type: ignore[no-untyped-def]
+    """Change one raster, in place, square by square, in one sweep for each inverse temperature; nothing is returned.
 
-    A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
+    Changed are `image`, `neighbours` and `counts`. The random state goes on within and is not handed back. A field is a
+    set of squares that the robot sees as one; its count is that of its occupied squares.
 
     Parameters
     ----------
-    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
-    flip_costs : (8192,) float32, as of `_flip_costs`: the change of the cost when a square flips.
-    thresholds : (THRESHOLD_COUNT,) float32, as of `_thresholds`: rises of the cost allowed at inverse temperature 1.
+    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
+        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
+    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
+        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
+    thresholds : (THRESHOLD_COUNT,) float32, equally likely rises of the cost that are allowed at inverse temperature 1;
+        for each change bits of the random number are the index, and the entry is divided by the inverse temperature.
     image : (size,) int8, 1 where occupied, the flat framed raster; changed at drawn squares.
     neighbours : (n,) int32, 0 at first, written: the occupied neighbours of each drawn square, as bits (bit n for
         neighbour n of NEIGHBOUR_STEPS).
@@ -378,14 +391,19 @@ def sample(raster, flip_costs, thresholds, image, neighbours, counts, flipped, i
 
 
 @bare
-def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other):  # type: ignore[no-untyped-def]
+def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbours, k, other) -> float:  # type: ignore[no-untyped-def]
     """Return the change of the cost, counts left out, when two squares flip; nothing is changed.
+
+    A cost is a negative log probability at the inverse temperature 1, without unit; negative: the raster gets cheaper.
+    The squares may be neighbours of each other.
 
     Parameters
     ----------
     squares, shown_corners, around : attributes of `_Raster`: flat indices of the drawn squares; the corners of each
-        about which all was seen, as bits; flat steps to the eight neighbours.
-    flip_costs : (8192,) float32, as of `_flip_costs`.
+        about which all was seen, as bits (1 north-east, 2 north-west, 4 south-east, 8 south-west); flat steps to the
+        eight neighbours.
+    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
+        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
     image, neighbours : the flat framed raster, and the occupied neighbours of each drawn square, as bits (bit n for
         neighbour n of NEIGHBOUR_STEPS).
     k, other : numbers of the two drawn squares.
@@ -394,11 +412,11 @@ def cost_of_two_flips(squares, shown_corners, around, flip_costs, image, neighbo
     for n in range(8):
         other_neighbours ^= (squares[k] + around[n] == squares[other]) << (7 - n)
     cost = flip_costs[(shown_corners[k] << 9) + (neighbours[k] << 1) + image[squares[k]]]
-    return cost + flip_costs[(shown_corners[other] << 9) + (other_neighbours << 1) + image[squares[other]]]
+    return cost + flip_costs[(shown_corners[other] << 9) + (other_neighbours << 1) + image[squares[other]]]  # type: ignore[no-any-return]
 
 
 @bare
-def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number):  # type: ignore[no-untyped-def]
+def try_flips(raster, flip_costs, image, neighbours, counts, count_error, threshold, flipped, number) -> int:  # type: ignore[no-untyped-def]
     """Flip the first `number` squares of `flipped` together, if the cost does not rise above the threshold.
 
     Return by how many squares more the counts are wrong then (negative: fewer); 0 when the squares are left as they
@@ -406,8 +424,10 @@ def try_flips(raster, flip_costs, image, neighbours, counts, count_error, thresh
 
     Parameters
     ----------
-    raster : the squares that are sampled and their fields, in arrays (`_Raster`).
-    flip_costs : (8192,) float32, as of `_flip_costs`.
+    raster : a `_Raster`, the squares that are sampled: their flat indices, the number of each by flat index, their
+        corners that count (bits), steps to their neighbours, the fields of each, and the limits of each field's count.
+    flip_costs : (8192,) float32, the change of the cost when a square flips, counts left out; the entry is at (shown
+        corners << 9) + (occupied neighbours << 1) + state before, all as bits of that square.
     image : (size,) the flat framed raster, 1 where occupied; changed when the squares flip, as are the next two.
     neighbours : (n,) the occupied neighbours of each drawn square, as bits (bit n for neighbour n of NEIGHBOUR_STEPS).
     counts : (fields,) the count of occupied squares under each field.
@@ -437,7 +457,7 @@ def try_flips(raster, flip_costs, image, neighbours, counts, count_error, thresh
 
 
 @bare
-def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type: ignore[no-untyped-def]
+def collect_edge_move(squares, rank, around, image, k, random, flipped) -> int:  # type: ignore[no-untyped-def]
     """List the squares that flip when the edge on one side of square k is moved beyond it; return how many they are.
 
     The random number decides which side, whether the whole edge moves or a piece, with the outline opposite or without.
@@ -450,8 +470,10 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type
         by flat index; flat steps to the eight neighbours.
     image : (size,) the flat framed raster, 1 where occupied.
     k : the number of the square, among those that are drawn (sampled).
-    random : a random number; its lowest 11 bits are used.
-    flipped : written from index 0 on: numbers of drawn squares, k first.
+    random : a random number; of its lowest 11 bits, which are used, the first two are the side (0 south, 1 north, 2
+        west, 3 east). It is not advanced.
+    flipped : written from index 0 on: numbers of drawn squares, k first, then those on its edge to one side, to the
+        other, then those of the outline opposite if it moves too.
     """
     side, here = random & 3, squares[k]
     across, along, look = around[ACROSS[side]], around[ALONG_EDGE[side]], image[here]
@@ -482,7 +504,7 @@ def collect_edge_move(squares, rank, around, image, k, random, flipped):  # type
 
 
 @bare
-def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-def]
+def flip(square, rank, around, image, neighbours) -> None:  # type: ignore[no-untyped-def]
     """Flip a square in the raster and in its neighbours' bits, but not in the counts.
 
     Parameters
@@ -502,7 +524,7 @@ def flip(square, rank, around, image, neighbours):  # type: ignore[no-untyped-de
 
 
 @bare
-def count_error_change(k, more, ends, field, share, limits, counts):  # type: ignore[no-untyped-def]
+def count_error_change(k, more, ends, field, share, limits, counts) -> int:  # type: ignore[no-untyped-def]
     """Return by how many squares more the counts are wrong when a square is counted once more, or once less.
 
     It is negative where they are wrong by fewer. A field is a set of squares that the robot sees as one; its count is
@@ -512,8 +534,9 @@ def count_error_change(k, more, ends, field, share, limits, counts):  # type: ig
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share, limits : attributes of `_Raster`: the fields of each drawn square and how often each counts it,
-        and the least and greatest count of each field.
+    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
+        how often each counts it stands at the same place in `share`.
+    limits : (fields, 2) the least and the greatest count of each field.
     counts : (fields,) the count of occupied squares under each field; not changed.
     """
     worse = 0
@@ -527,7 +550,7 @@ def count_error_change(k, more, ends, field, share, limits, counts):  # type: ig
 
 
 @bare
-def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyped-def]
+def update_counts(k, more, ends, field, share, counts) -> None:  # type: ignore[no-untyped-def]
     """Count a square once more, or once less, under each of its fields: as often as the field samples it.
 
     A field is a set of squares that the robot sees as one; its count is that of its occupied squares.
@@ -536,7 +559,8 @@ def update_counts(k, more, ends, field, share, counts):  # type: ignore[no-untyp
     ----------
     k : the number of the square, among those that are drawn (sampled).
     more : 1 when it becomes occupied, -1 when it becomes free.
-    ends, field, share : attributes of `_Raster`: the fields of each drawn square, and how often each counts it.
+    ends, field, share : (n + 1,), (entries,) and (entries,): the fields of square k are field[ends[k]:ends[k + 1]], and
+        how often each counts it stands at the same place in `share`.
     counts : (fields,) the count of occupied squares under each field; changed.
     """
     for i in range(ends[k], ends[k + 1]):

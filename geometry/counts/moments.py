@@ -35,13 +35,18 @@ class Blobs(NamedTuple):
 
 
 def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
-    """Return the edge-connected occupied parts of one raster; without any, arrays of length 0.
+    """Return the edge-connected occupied parts of one raster, in the order of their first squares, row by row.
+
+    They are parallel arrays with an entry for each part, of length 0 without any: `area` in squares, `outward`, the
+    number of sides of its squares beyond which nothing was seen, `spread`, how far it extends for its area (1/6 for a
+    square, more for a longer or looser part; no unit), and `lengthy`, 0 for as wide as long to nearly 1 for a line.
+    `labels` gives for each square the number of its part, from 1, or 0.
 
     Parameters
     ----------
     image : (rows, columns) int8, 1 where a square is occupied.
-    ground : (rows, columns) int8, as for `geometry.counts.gibbs.pictures`: what is known of each square; only
-        UNSEEN_SQUARE matters. Squares beyond the array count as unseen.
+    ground : (rows, columns) int8, what is known of each square (FREE, OCCUPIED, DRAWN or UNSEEN_SQUARE of gibbs.py);
+        only UNSEEN_SQUARE matters. Squares beyond the array count as unseen.
 
     Examples
     --------
@@ -65,7 +70,7 @@ def blobs(image: NDArray[np.int8], ground: NDArray[np.int8]) -> Blobs:
 
 
 @compiled
-def _label_parts(image, ground, labels, sums):  # type: ignore[no-untyped-def]
+def _label_parts(image, ground, labels, sums) -> int:  # type: ignore[no-untyped-def]
     """Write the number of each square's edge-connected occupied part, sum up the parts, and return how many there are.
 
     Parameters

@@ -78,7 +78,7 @@ def misfits(
     state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
     where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
     low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
-    wrong : (n,) bool, written.
+    wrong : (n,) bool, written: True for fields that cannot have their counts.
     """
     found = 0
     for i in range(where.shape[0]):
@@ -117,7 +117,7 @@ def settle(
     where, weight : (n, m) flat squares of each of n fields, and how often each counts, 0 for padding.
     low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
     fresh : (n,) bool, the fields not compared yet; all False afterwards, unless the rounds ran out.
-    impression : the number of the present impression, written to `settled_by`.
+    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
     """
     verdicts, newly_settled = np.zeros(where.size, np.int8), np.zeros(len(state), np.bool_)
     for _ in range(MAX_ROUNDS):
@@ -162,7 +162,7 @@ def _settle_by_single_fields(
     low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
     verdicts : (n * m,) int8, scratch.
     newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
-    impression : the number of the present impression, written to `settled_by`.
+    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
     """
     fields, entries = where.shape
     found = False
@@ -222,7 +222,7 @@ def _settle_by_pairs(
     low, high : (n,) the least and the greatest count of occupied squares of each field, by weight.
     fresh : (n,) bool, the fields not compared yet; all False afterwards.
     newly_settled : (squares,) bool, set True at squares that are settled, else unchanged.
-    impression : the number of the present impression, written to `settled_by`.
+    impression : the number of the present impression (one observation of the surroundings), written to `settled_by`.
     """
     fields, entries = where.shape
     open_weight, low_left, high_left = (
@@ -308,7 +308,7 @@ def _fields_by_square(
 
     Parameters
     ----------
-    state : (squares,) int8, by flat square.
+    state : (squares,) int8, OPEN, FREE or OCCUPIED, by flat square.
     where, weight : (n, m) flat squares of each field, and how often each counts, 0 for padding.
     open_weight : (n,) fields where this is 0 are left out.
     chosen : (n,) bool, which fields to list.
@@ -317,7 +317,7 @@ def _fields_by_square(
     Returns
     -------
     first : (squares + 2,) int64, indices into `on`.
-    on : (entries,) int64, numbers of fields.
+    on : (entries,) int64, numbers of fields, by square, ascending on each; arbitrary behind the last.
     """
     first, on = np.zeros(len(state) + 2, np.int64), np.empty(entries, np.int64)
     for i in range(where.shape[0]):

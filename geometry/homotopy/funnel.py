@@ -39,7 +39,9 @@ class Funnel(NamedTuple):
 def new_funnel(portals: int) -> Funnel:
     """Return scratch, not initialised, for words of at most `portals` signed portals.
 
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    It holds room for the corners (the ends of the portals): x, y, the corner before each, and the funnel.
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
     """
     size = 4 * portals + 8
     return Funnel(
@@ -58,13 +60,13 @@ def tighten_word(
 
     A point may use whole squares. A body moves on the lines between the centres of its squares and in the meshes of
     four, so each portal counts twice: where the path leaves the lower line of centres and where it meets the upper one.
-    It is then inset: half a square shorter at each end.
+    It is then inset: half a square shorter at each end. A word is reduced when no symbol stands next to its negative. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
-    lefts, rights, lines : (p,) `left`, `right` and `line` of the portals: first and last column, and the row below (see
-        strips.py).
-    body : True for a body, False for a point.
+    lefts, rights, lines : (p,) of the portals: the first and the last column, included, and the row below.
+    body : True for a body, whose path keeps to the lines between centres of squares; False for a point.
     word : signed portals (index plus 1, negative when crossed southwards); the first `size` are read. Must be reduced,
         and lead from the start's strip to the goal's.
     size : the number of symbols of the word; 0 for a straight line.
@@ -108,7 +110,8 @@ def pull_tight(xs: Floats, ys: Floats, via: Ints, queue: Ints, last: int) -> Non
 
     Corner 0 is the start, then come the left and right ends of the portals in turn, as seen along the path (left ones
     have odd numbers), and `last` is the goal. `queue` holds the funnel: its entries from `left` to `apex` are the left
-    chain, those from `apex` to `right` the right one.
+    chain, those from `apex` to `right` the right one. A portal is the overlap of two strips (rows of free squares) in
+    neighbouring rows.
 
     Parameters
     ----------

@@ -69,13 +69,17 @@ class Anchor(NamedTuple):
 def compute_landmarks(square: SquaredDistances, chains: Chains, strips: Strips, body: bool) -> Landmarks:
     """Return what routing precomputes on a pathgraph: words, lengths and arcs of its chains, and landmark distances.
 
-    A chain is an edge of the pathgraph, with its cells.
+    Lengths and distances are in squares. Words are of signed portals (index plus 1, negative when crossed southwards).
+    The arcs out of node v, to the east, north, west and south, stand in row v of `head`, `arc` and `step`: node led to,
+    code, length.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares; only the shape is read.
-    chains : the chains of the pathgraph.
-    strips : the strips of the same free space.
+    chains : the edges of the pathgraph, with their nodes and cells.
+    strips : the strips of the same free space (maximal horizontal rows), and the portals between those of neighbouring
+        rows.
     body : True for a body, whose centre keeps to the lines between centres of squares; False for a point.
     """
     width = square.shape[1]
@@ -101,13 +105,15 @@ def find_chain_symbols(start: Ints, cells: Ints, row: Ints, up: Ints, left: Ints
     """Fill `symbol` with the signed portal between each chain cell and the next of its chain; 0 within a row.
 
     A signed portal is a portal's index plus 1, negative when it is crossed southwards. A cell's index is (row + 1) *
-    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+    width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph (whose nodes are the junctions and
+    ends of the skeleton), with its cells.
 
     Parameters
     ----------
-    start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
-    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
-        first column of each portal.
+    start, cells : (m + 1,) and (cells,): the cells of chain c are cells[start[c]] to cells[start[c + 1] - 1], flat
+        padded indices.
+    row, up, left : of the strips: the first strip of each row, the first portal of each strip upwards, the first
+        column of each portal (maximal horizontal rows of free squares; their overlaps with the next row).
     width : columns of the padded screen.
     symbol : (cells,) written, but for the last cell of each chain.
     """
@@ -134,14 +140,16 @@ def measure_chains(
 ) -> None:
     """Fill the reduced words (`words`, `spelt`) and the tight lengths of all chains, in squares.
 
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
-    with its cells.
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands
+    next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
-    start, cells : those of the chains: where the cells of each chain begin, and cells as flat padded indices.
+    start, cells : (m + 1,) and (cells,): the cells of chain c are cells[start[c]] to cells[start[c + 1] - 1], flat
+        padded indices.
     symbol : (cells,) the signed portal after each cell, 0 for none.
-    left, right, line : those of the strips' portals.
+    left, right, line : (p,) the first and the last column of each portal, included, and the row below it.
     body : True for a body, which keeps to the lines between centres of squares; False for a point.
     width : columns of the padded screen.
     length : (m,) written, in squares.
@@ -166,7 +174,7 @@ def measure_chains(
 def find_arcs(leave: Ints, ends: Ints, length: Floats, head: Ints, arc: Ints, step: Floats) -> None:
     """Fill the arcs out of every node. A chain from a node back to itself gives no arc.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -243,14 +251,16 @@ def ascend(
 ) -> tuple[int, int]:
     """Climb from a cell to the skeleton along the steepest ascent, writing the portals crossed to `word`.
 
+    A word is reduced when no symbol stands next to its negative.
+
     Parameters
     ----------
     cell : the index, in the flat padded screen, (row + 1) * width + column + 1, of a cell where the body may be.
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) the skeleton's states, 0 off the skeleton.
     width : columns of the padded screen.
-    row, up, left : attributes of `Strips`: the first strip of each row, the first portal of each strip upwards, the
-        first column of each portal.
+    row, up, left : of the strips: the first strip of each row, the first portal of each strip upwards, the first
+        column of each portal (maximal horizontal rows of free squares; their overlaps with the next row).
     word : written from index 0 on: the reduced word of signed portals (index plus 1, negative when crossed southwards)
         from the cell to the skeleton.
 
@@ -272,7 +282,9 @@ def ascend(
 def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """Return the anchor of a skeleton cell: its chain and position on the pathgraph, or its node.
 
-    A chain is an edge of the pathgraph, with its cells.
+    It holds the number of the chain (-1 at a node without chains), the position, from 0, of the cell on it, the number
+    of the node (-1 inside a chain), and the cell.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -301,6 +313,8 @@ def locate(cell: int, states: Flags, width: int, node: Ints, leave: Ints, start:
 def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) -> Anchor:
     """Return the anchor of a node's cell: an end of one of its chains if it has any.
 
+    It holds that chain, the position of its end (0, or the index of its last cell), the number of the node, and the
+    cell.
     Of several chains that of the last direction counts, of east, north, west, south. Without chains the anchor's chain
     is -1 and its position 0.
 
@@ -323,7 +337,8 @@ def locate_node(cell: int, node: Ints, leave: Ints, start: Ints, cells: Ints) ->
 def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word: Ints, size: int) -> int:
     """Append the portals along a chain, from position `begin` to `end` in either direction; return the word's size.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -348,11 +363,13 @@ def add_chain(start: Ints, symbol: Ints, chain: int, begin: int, end: int, word:
 def add_word(other: Ints, first: int, last: int, backwards: bool, word: Ints, size: int) -> int:
     """Append part of a reduced word, or its inverse, to a reduced word; return the new size.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     other : the word to append, signed portals (index plus 1, negative when crossed southwards); its entries from
         `first` up to `last`, excluded, are used.
-    first, last : see `other`.
+    first, last : the index of the first entry that is used, and the one behind the last.
     backwards : whether to append the inverse: the entries in reverse order, with their signs changed.
     word : the word that is extended; changed.
     size : the number of its symbols before. When it has no room, the returned size equals the length of its array.

@@ -15,7 +15,8 @@ def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     """Return the reduced word of a polyline: the signed portals that it crosses, (n,) int32, in order.
 
     It is empty when the line stays in one strip. The line may touch walls and their corners. A signed portal is a
-    portal's index plus 1, negative when it is crossed southwards.
+    portal's index plus 1, negative when it is crossed southwards. A word is reduced when no symbol stands next to its
+    negative.
 
     Parameters
     ----------
@@ -132,7 +133,8 @@ def leave_point(strips: Strips, strip: int, row: int, p: XY, q: XY) -> XY | None
 def best_portal(strips: Strips, strip: int, row: int, p: XY, q: XY) -> int:
     """Return the signed portal at p, on the edge of a strip, through which the segment p-q gets furthest.
 
-    It is positive when the portal leads to the row above, negative when to the row below. A signed portal is a portal's
+    It is positive when the portal leads to the row above, negative when to the row below. Of several as good the
+    greatest number is returned. A signed portal is a portal's
     index plus 1, negative when it is crossed southwards.
 
     Parameters
@@ -165,7 +167,8 @@ def join_words(*words: Ints) -> Ints:
     """Return the words one after the other, as one reduced word: (n,) int32 of signed portals, a new array.
 
     A signed portal followed by its negative is left out. Without words, or when all cancel, the result is empty. A
-    signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
     """
     whole = np.empty(sum(len(word) for word in words) + 1, np.int32)
     size = 0
@@ -179,7 +182,8 @@ def crossings_of(strips: Strips, word: Ints) -> tuple[int, ...]:
     """Return the signed crossing numbers of a reduced word, in its order: the signature of its class.
 
     Portals of the spanning forest have no number and are left out. A number is negative where the portal is crossed
-    southwards. Words with the same ends are of one class exactly when their signatures are equal.
+    southwards. Words with the same ends are of one class exactly when their signatures are equal. A word is reduced
+    when no symbol stands next to its negative.
 
     Parameters
     ----------

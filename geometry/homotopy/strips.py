@@ -58,6 +58,8 @@ class Strips(NamedTuple):
 def find_strips(square: SquaredDistances, level: int) -> Strips:
     """Return the strips and portals of the cells whose squared clearance is at least a level.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares, padded by one cell on each side.
@@ -66,7 +68,9 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
     Returns
     -------
     Strips
-        In unpadded rows and columns; without strips and portals when no cell is free.
+        In unpadded rows and columns; without strips and portals when no cell is free. Strips are numbered by (row,
+        column): first and last column of each, its portals to the row above and below. Portals are numbered by (lower
+        row, column): first and last column, the strips below and above, the crossing number (0 for none).
     """
     row = np.zeros(square.shape[0] - 1, np.int32)
     count = count_strips(square, level, row)
@@ -92,7 +96,7 @@ def find_strips(square: SquaredDistances, level: int) -> Strips:
 
 
 def copy_first(size: int, a: Ints, b: Ints, c: Ints) -> tuple[Ints, Ints, Ints]:
-    """Return copies of the first `size` entries of three one-dimensional arrays, in the order given."""
+    """Return copies of the first `size` entries of three one-dimensional arrays `a`, `b` and `c`, in that order."""
     return a[:size].copy(), b[:size].copy(), c[:size].copy()
 
 
@@ -152,12 +156,15 @@ def fill_portals(
 ) -> int:
     """Fill the portals between each row and the next, and return their number.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
-    row, low, high : attributes of `Strips`, read.
-    up, down : (n + 1,) zero at first, written: the attributes of that name of `Strips`.
-    left, right, lower, upper, line : written in their first entries: the attributes of that name of `Strips`. Twice as
-        many entries as there are strips are enough.
+    row : (rows + 1,) the number of the first strip of each row; read, as are the next two.
+    low, high : (n,) the first and the last column of each strip.
+    up, down : (n + 1,) zero at first, written: the first portal from each strip to the row above, and to the row below.
+    left, right, lower, upper, line : written in their first entries: of each portal the first and the last column, the
+        strips below and above, and the row below. Twice as many entries as there are strips are enough.
     """
     found = 0
     for i in range(row.shape[0] - 2):
@@ -183,6 +190,8 @@ def fill_portals(
 def number_crossings(lower: Ints, upper: Ints, parent: Ints, crossing: Ints) -> None:
     """Give crossing numbers, from 1 in the order of the portals, to the portals that close a ring of strips.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     lower, upper : (p,) the strips below and above each portal.
@@ -204,11 +213,13 @@ def find_exits(up: Ints, down: Ints, lower: Ints, upper: Ints, exits: Ints, degr
     """Fill `exits` for the dead ends of free space: remove strips with one portal left until there are none.
 
     A dead end is a part of free space, without rings, that one portal joins to the rest. A signed portal is a portal's
-    index plus 1, negative when it is crossed southwards.
+    index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips (rows of free squares)
+    in neighbouring rows.
 
     Parameters
     ----------
-    up, down, lower, upper : attributes of `Strips`, read.
+    up, down : (n + 1,) the first portal from each strip to the row above, and to the row below.
+    lower, upper : (p,) the strips below and above each portal.
     exits : (n,) zero at first, written: the signed portal that leads out of a dead-end strip; it stays 0 elsewhere.
     degree : (n,) the number of portals of each strip; used up.
     queue : (n,) scratch.
@@ -276,7 +287,8 @@ def symbol_between(rows: Ints, up: Ints, left: Ints, cell: int, other: int, widt
     """Return the signed portal crossed between two cells that share an edge; 0 when both are in one row.
 
     Positive when `other` is the northern cell, negative when it is the southern. Both cells must be free. A signed
-    portal is a portal's index plus 1, negative when it is crossed southwards.
+    portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips
+    (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -305,7 +317,8 @@ def append_symbol(word: Ints, size: int, symbol: int) -> int:
     """Append a signed portal to a reduced word and return the word's new size; an inverse cancels the last symbol.
 
     A symbol of 0 changes nothing. A word that fills its array is not changed any more: the caller sees by a size equal
-    to the array's length that it needs a larger one.
+    to the array's length that it needs a larger one. A portal is the overlap of two strips (rows of free squares) in
+    neighbouring rows.
 
     Parameters
     ----------

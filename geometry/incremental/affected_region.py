@@ -44,6 +44,8 @@ def boxes_of(cells: Ints, shape: tuple[int, ...]) -> Ints:
 def fill_boxes(cells: Ints, width: int, slot: Ints, boxes: Ints) -> int:
     """Fill the boxes around changed cells, one for each tile with such cells, and return their number.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     cells : (k,) int32, flat indices of changed cells in the padded screen.
@@ -74,7 +76,7 @@ def find_affected(square: SquaredDistances, boxes: Ints, bounds: Ints) -> None:
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares before the change.
+        Squared clearances in squared half squares before the change.
     boxes : (n, 4) int32
         First and last row, first and last column of the boxes around changed cells, padded.
     bounds : (rows + 2, 2 or more) int32
@@ -104,7 +106,7 @@ def widen(square: SquaredDistances, boxes: Ints, k: int, row: int, bounds: Ints)
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares before the change.
+        Squared clearances in squared half squares before the change.
     boxes : (n, 4) int32
         First and last row, first and last column of each box, padded.
     k, row : int

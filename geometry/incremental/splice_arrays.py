@@ -50,6 +50,8 @@ class Splice(NamedTuple):
 def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) -> Splice:
     """Return the nodes of a stretch that stay merged with new ones, and how the numbers of old nodes change.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     old : (n,) int32
@@ -65,6 +67,8 @@ def splice_nodes(old: Ints, low: int, high: int, open_ends: Flags, grown: Ints) 
     Returns
     -------
     Splice
+        The cells of all nodes after the change, ascending; `low` and `high`; the new number of each old node between
+        them (-1 when it is gone); and by how much the numbers of nodes from `high` on grow.
     """
     stretch, stays = old[low:high], open_ends[low:high] < 16
     merged = np.concatenate([stretch[stays], grown])
@@ -84,6 +88,8 @@ def splice_chains(
 ) -> SkeletonGraph:
     """Return the graph after a change: new chains walked from the seeds, merged with the chains that stay.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights, states, width
@@ -91,7 +97,7 @@ def splice_chains(
     bones : SkeletonGraph
         The graph before the change; its arrays are reused where they have room, so that it no longer holds.
     splice : Splice
-        The nodes after the change.
+        The cells of the nodes after the change, and how the numbers of old nodes change.
     open_ends : (n,) uint8
         For each old node the bits (by direction, 0 east to 3 south) of the ends whose chains are gone.
     seeds : (k,) int32
@@ -100,7 +106,8 @@ def splice_chains(
     Returns
     -------
     SkeletonGraph
-        In the order that graph.py would give it: equal to that of a new screen.
+        The cells of the nodes, and of each chain its two ends (4 times the node plus direction), its lowest cell and
+        its number of steps. In the order that graph.py would give it: equal to that of a new screen.
     """
     old, (node, low, high, number, shift) = len(bones.port), splice
     first, last = (bisect_left(bones.port[:, 0], 4 * n) for n in (low, high))
@@ -192,12 +199,13 @@ def merge_chains(
     """Fill ``port``, ``neck`` and ``steps`` with the old chains of a stretch that stay and the new ones, in order.
 
     Returns their number. Ends are coded as 4 times the number of the node plus the direction (0 east to 3 south) in
-    which the chain leaves it; cells are flat indices into the padded screen.
+    which the chain leaves it; cells are flat indices into the padded screen. Flat indices are row * width + column in
+    the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     heights, states : (cells,)
-        Squared clearances in half squares and states of the skeleton, after the change, flat.
+        Squared clearances in squared half squares and states of the skeleton, after the change, flat.
     width : int
         Width of the padded screen.
     ahead : (a, 2) int32
@@ -208,7 +216,8 @@ def merge_chains(
     open_ends : (n,) uint8
         For each old node the bits (by direction) of the ends whose chains are gone.
     low, high, number, shift
-        How the numbers of old nodes change (see ``Splice``).
+        How the numbers of old nodes change: those before `low` stay, those below `high` become ``number[k - low]`` (-1
+        for gone), the others grow by `shift`.
     seeds : (k,) int32
         Ends, by new numbers and ascending, from which new chains are walked; a chain that is met from both ends counts
         once.
@@ -217,7 +226,7 @@ def merge_chains(
     port, neck, steps : (s + k, 2), (s + k,), (s + k,) int32
         Filled from index 0 on: ends by new numbers, lowest cell, number of steps from square to square.
     notes : (size,) int32
-        Scratch (see lowest_cells.py).
+        Scratch for cells that may be the lowest of their chain.
     """
     size, k = 0, 0
     for chain in range(ahead.shape[0]):

@@ -38,7 +38,7 @@ def change_squares(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
@@ -54,9 +54,9 @@ def change_squares(
     Returns
     -------
     SkeletonGraph or None
-        Equal to that of a new screen; ``bones`` itself when no square changes. None when the change may alter more of
-        the screen, or ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed
-        anew.
+        The cells of the nodes, and the ends, lowest cells and numbers of steps of the chains. Equal to that of a new
+        screen; ``bones`` itself when no square changes. None when the change may alter more of the screen, or
+        ``square`` is of a type too small for it. Nothing is changed then, and all has to be computed anew.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def clearances_in(
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares before the change.
+        Squared clearances in squared half squares before the change.
     block : (int, int, int, int)
         First and last row, first and last column, padded, included.
     bounds : (rows + 2, 2 or more) int32
@@ -138,7 +138,7 @@ def block_about(square: SquaredDistances, bounds: Ints) -> Block:
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    square : (rows + 2, columns + 2) squared clearances in squared half squares before the change.
     bounds : (rows + 2, 2 or more) first and last column of each row whose clearance may change; last -1 for none, but
         some row must have one.
     """
@@ -160,7 +160,7 @@ def block_about(square: SquaredDistances, bounds: Ints) -> Block:
 def reach_of(square: SquaredDistances, row: int, column: int) -> int:
     """Return a whole number of squares greater than a cell's clearance.
 
-    `square` : (rows + 2, columns + 2) squared clearances in half squares; `row` and `column` are padded.
+    `square` : (rows + 2, columns + 2) squared clearances in squared half squares; `row` and `column` are padded.
     """
     return int(0.5 * np.sqrt(float(square[row, column])) + 2.0)
 
@@ -171,7 +171,7 @@ def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    square : (rows + 2, columns + 2) squared clearances in squared half squares before the change.
     fresh : squared clearances of a part of the screen; its row 0 and column 0 are row ``low`` and column ``west``,
         padded.
     bounds : (rows + 2, 2 or more) first and last column of each padded row; last -1 for none.
@@ -188,11 +188,12 @@ def keep_lower(square: SquaredDistances, fresh: SquaredDistances, low: int, west
 def narrow(square: SquaredDistances, fresh: SquaredDistances, low: int, west: int, bounds: Ints) -> None:
     """Narrow the bounds, in place, to the cells that differ, and fill their third column.
 
-    That is the flat index in ``fresh`` of the first such cell of a row.
+    That is the flat index in ``fresh`` of the first such cell of a row. Flat indices are row * width + column in the
+    screen padded by one blocked cell on each side.
 
     Parameters
     ----------
-    square : (rows + 2, columns + 2) squared clearances in half squares before the change.
+    square : (rows + 2, columns + 2) squared clearances in squared half squares before the change.
     fresh : those after it, of a part of the screen; its row 0 and column 0 are row ``low`` and column ``west``, padded.
     bounds : (rows + 2, 3) int32, first and last column of each padded row. Where no cell differs they become the width
         of the padded screen and -1.

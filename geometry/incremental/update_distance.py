@@ -40,8 +40,8 @@ def measure_within(
     low, west : int
         Padded row and column of the screen that are row 0 and column 0 of ``square``.
     square : (rows + 2, columns + 2) int16 or int32
-        Filled within the bounds with squared clearances in half squares (capped when the type does not hold them),
-        arbitrary elsewhere.
+        Filled within the bounds with squared clearances in squared half squares (capped when the type does not hold
+        them), arbitrary elsewhere.
     sites : (int, int)
         First and last column of ``square`` between which walls count; ``ALL_SITES`` when all may count.
     """
@@ -76,7 +76,8 @@ def measure_parts(
     low, west : int
         Padded row and column of the screen that are row 0 and column 0 of ``square``.
     square : (rows + 2, columns + 2) int16 or int32
-        Filled within the bounds with squared clearances in half squares, capped at the greatest value of the type.
+        Filled within the bounds with squared clearances in squared half squares, capped at the greatest value of the
+        type.
     first, last : int
         The columns of ``square`` between which walls count; when ``first`` is greater, all may count.
     gap : (width,) int16

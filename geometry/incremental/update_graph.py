@@ -25,10 +25,12 @@ NODE_GONE = 31  # open ends of a node that is no longer one, or has changed: all
 def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLog) -> SkeletonGraph:
     """Return the graph after a change of the skeleton.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares after the change, flat.
+        Squared clearances in squared half squares after the change, flat.
     width : int
         Width of the padded screen.
     bones : SkeletonGraph
@@ -40,7 +42,8 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
     Returns
     -------
     SkeletonGraph
-        Equal to that of a new screen; ``bones`` itself when nothing in it has changed.
+        The cells of the nodes, and the ends, lowest cells and numbers of steps of the chains. Equal to that of a new
+        screen; ``bones`` itself when nothing in it has changed.
     """
     states, mark = journal.states, journal.mark
     keys = np.empty(int(journal.size[0]), np.int64)
@@ -71,10 +74,13 @@ def rejoin(heights: Heights, width: int, bones: SkeletonGraph, journal: ChangeLo
 def find_changed(journal: ChangeLog, keys: Longs) -> int:
     """Mark the touched cells that differ as JOINED, list them in ``keys``, and return their number.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     journal : ChangeLog
-        The cells that may have changed, with their states before; its marks are changed.
+        The cells that may have changed (`touched`, of which size[0] are listed), with their states before; its marks
+        are changed: JOINED (4) is set where a cell's chain is to be joined again.
     keys : (touched,) int64
         Filled from index 0 on with 256 times the cell (flat index) plus its state before, for each cell whose state or
         clearance differs.
@@ -96,12 +102,13 @@ def find_open(
     """Set ``open_ends``: for each old node the bits of the ends of all chains on which a changed cell lay.
 
     Returns the numbers of the first node with such an end and of the one behind the last; the number of nodes and 0
-    when there is none.
+    when there is none. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     states, mark : (cells,) uint8
-        States of the skeleton after the change, in which HALT is cleared on changed rings, and marks (JOINED: changed).
+        States of the skeleton after the change, in which HALT is cleared on changed rings, and marks
+        (JOINED, 4: changed).
     width : int
         Width of the padded screen.
     cells, before : (k,) int32 and uint8
@@ -143,7 +150,8 @@ def find_open(
 def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints) -> int:
     """Flag the first cell of every ring without a junction on which a changed cell lies; return the number of rings.
 
-    Each chain is followed only from changed cells that no earlier walk passed.
+    Each chain is followed only from changed cells that no earlier walk passed. HALT (128 in a state) makes a cell a
+    node. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -182,7 +190,8 @@ def find_rings(states: Flags, mark: Flags, width: int, cells: Ints, bases: Ints)
 def find_seeds(states: Flags, node: Ints, grown: Ints, low: int, number: Longs, open_ends: Flags, seeds: Ints) -> int:
     """Fill ``seeds`` with the ends where new chains may start, and return their number.
 
-    An end is 4 times the new number of the node plus the direction (0 east to 3 south). They are not sorted.
+    An end is 4 times the new number of the node plus the direction (0 east to 3 south). They are not sorted. Flat
+    indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

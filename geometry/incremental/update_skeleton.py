@@ -66,10 +66,12 @@ def regrow(
 ) -> ChangeLog:
     """Set new clearances, grow the skeleton again where they differ, and return the log of what may have changed.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2; changed in place.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2; changed in place.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. Changed in place.
@@ -77,14 +79,15 @@ def regrow(
         For each row the first and last column that change, and the index in ``fresh`` of the value of the first. The
         last is -1 in rows where none does.
     fresh : (n,) int16 or int32
-        New squared clearances in half squares, flat, of a part of the screen.
+        New squared clearances in squared half squares, flat, of a part of the screen.
     scratch : Scratch
         Becomes part of the log; its marks are 0 before and have to be cleared by the caller.
 
     Returns
     -------
     ChangeLog
-        The states, and the cells touched with their states before.
+        The states, changed; marks of cells (logged, other clearance); and the touched cells (flat indices), in the
+        order in which they were first touched, with their states before.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), square.shape[1]
     journal = ChangeLog(states, *scratch, np.zeros(1, np.int32))
@@ -120,7 +123,10 @@ def find_columns_about(bounds: Ints, width: int, about: Ints) -> None:
 
 @bare
 def touch(journal: ChangeLog, cell: int) -> None:
-    """Log a cell (flat index) and its state before the state changes, once; later calls for it do nothing."""
+    """Log a cell (flat index) and its state in `journal` before the state changes; later calls for it do nothing.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+    """
     if not journal.mark[cell] & TOUCHED:
         journal.mark[cell] |= TOUCHED
         k = journal.size[0]
@@ -131,10 +137,14 @@ def touch(journal: ChangeLog, cell: int) -> None:
 def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
     """Remove the links that lead up from the cells within ``about``, and the ascents that depend on them.
 
+    An ascent goes from each cell to its highest edge neighbour, from a saddle on (a cell whose higher neighbours form
+    two groups or more). Nothing is returned. Flat indices are row * width + column in the screen padded by one blocked
+    cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares before the change, flat.
+        Squared clearances in squared half squares before the change, flat.
     width : int
         Width of the padded screen.
     about : (rows + 2, 2) int32
@@ -158,7 +168,11 @@ def prune(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None
 
 @bare
 def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
-    """Remove the link from a cell to another, its neighbour in a direction (0 east to 3 south); log both."""
+    """Remove the link from `cell` to `other`, its neighbour in a direction (0 east to 3 south), and log both first.
+
+    Both are flat indices. In the states of `journal` the bit of the link is cleared in both cells. Flat indices are row
+    * width + column in the screen padded by one blocked cell on each side.
+    """
     touch(journal, cell)
     touch(journal, other)
     journal.states[cell] &= 255 - (1 << direction)
@@ -169,12 +183,18 @@ def unlink(journal: ChangeLog, cell: int, other: int, direction: int) -> None:
 def prune_ascent(heights: Heights, width: int, about: Ints, journal: ChangeLog, cell: int) -> None:
     """Remove the ascent from a cell outside ``about`` up to where another ascent still leads into it.
 
-    It also ends at saddles, summits and cells within ``about``, which are pruned otherwise.
+    An ascent goes from each cell to its highest edge neighbour. What is removed also ends at saddles, summits and cells
+    within ``about``, which are pruned otherwise. Flat indices are row * width + column in the screen padded by one
+    blocked cell on each side.
 
     Parameters
     ----------
-    heights, width, about, journal
-        As for ``prune``: old squared clearances, flat; width of the padded screen; columns of each row; states and log.
+    heights, width : (cells,) and int
+        Squared clearances (half squares) before the change, flat, and the width of the padded screen.
+    about : (rows + 2, 2) int32
+        First and last column of each padded row at or next to a changed cell; the last is -1 for none.
+    journal : ChangeLog
+        Its states are changed, and every cell that is touched is logged.
     cell : int
         Flat index of the cell from which a link below was removed.
     """
@@ -204,16 +224,18 @@ def set_clearances(
 ) -> None:
     """Set the new clearances, and the flags SADDLE and SUMMIT of the cells within ``about``.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat; changed.
+        Squared clearances in squared half squares, flat; changed.
     width : int
         Width of the padded screen.
     bounds : (rows + 2, 3) int32
         For each padded row the first and last column that change, and the index in ``fresh`` of the value of the first.
     fresh : (n,) int16 or int32
-        New squared clearances in half squares.
+        New squared clearances in squared half squares.
     about : (rows + 2, 2) int32
         First and last column of each padded row at or next to a changed cell.
     flags : (width,) uint8
@@ -249,7 +271,7 @@ def replace(heights: Heights, fresh: Heights, mark: Flags) -> None:
 
 @bare
 def differ(states: Flags, flags: Flags) -> bool:
-    """Return whether any of some states (n,) has other flags (SADDLE, SUMMIT) than given in ``flags`` (n,)."""
+    """Return whether any of some states (n,) has other flags (SADDLE 32, SUMMIT 64) than given in ``flags`` (n,)."""
     other = np.uint8(0)
     for k in range(states.shape[0]):
         other |= flags[k] ^ states[k] & np.uint8(SADDLE | SUMMIT)
@@ -260,10 +282,13 @@ def differ(states: Flags, flags: Flags) -> bool:
 def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
     """Climb again from the saddles within ``about``, and from where ascents from outside lead into it.
 
+    An ascent goes from each cell to its highest edge neighbour; from a saddle one goes up in each group of higher
+    cells. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares after the change, flat.
+        Squared clearances in squared half squares after the change, flat.
     width : int
         Width of the padded screen.
     about : (rows + 2, 2) int32
@@ -289,12 +314,14 @@ def grow(heights: Heights, width: int, about: Ints, journal: ChangeLog) -> None:
 def climb(cell: int, direction: int, heights: Heights, width: int, journal: ChangeLog) -> None:
     """Link a cell to a higher neighbour, ascend until a saddle, a summit or an earlier ascent, and log every cell.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     cell, direction : int
         Flat index of the cell, and the direction (0 east, 1 north, 2 west, 3 south) of the neighbour.
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     width : int
         Width of the padded screen.
     journal : ChangeLog

@@ -17,9 +17,9 @@ def narrow_squares(walls: Walls, passage: Passage, spare: float) -> set[tuple[in
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
-    passage : the passage from which the floor is followed.
-    spare : in squares.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
+    passage : the passage from which the floor is followed, found on these walls: its width and its two mouths count.
+    spare : how much longer than the passage is wide a line may be, in squares.
 
     Returns
     -------

@@ -71,9 +71,10 @@ class Passage(NamedTuple):
         return _halfway(self.a, self.b)
 
     def shifted(self, columns: int, rows: int) -> "Passage":
-        """Return the same passage in a frame whose origin lies that many squares further west and south.
+        """Return the same passage in a frame whose origin lies that many squares further west and south; a new one.
 
-        `columns` is added to every x and column, `rows` to every y and row.
+        Its width and its sides stay; mouths, gates and the squares between are moved. `columns` is added to every x and
+        column, `rows` to every y and row.
         """
 
         def there(point: XY) -> XY:
@@ -87,7 +88,7 @@ class Passage(NamedTuple):
 
 
 def _halfway(one: XY, other: XY) -> XY:
-    """Return the midpoint of two points (x, y)."""
+    """Return the midpoint of two points, `one` and `other`, (x, y), in their unit and frame."""
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2
 
 
@@ -128,12 +129,16 @@ class _Doorway(NamedTuple):
 def find_passages(walls: Walls, pinch: float = DOOR_RATIO) -> list[Passage]:
     """Return all passages, ordered by place: row (from the south), then column; an empty list when there are none.
 
+    Each holds its width, the greatest clearance of the floor on either side (`sides`), the lines from wall to wall
+    where it opens (`mouths`), a free square's centre beyond each (`gates`), and the squares (column, row) `between`
+    them; all in squares from the screen's south-west corner.
+
     A passage is a neck, a straight line from wall to wall that is shorter than all beside it, or several equally narrow
     necks with no wide floor between. Only those are returned with wide floor on both sides.
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
     pinch : how many times as wide as the neck the floor must be on both sides of it; more than 1. The default gives
         doors.
     """
@@ -165,7 +170,11 @@ class _Floor:
     """
 
     def __init__(self, walls: Walls) -> None:
-        """Join the triangles of `walls` over all edges that are no necks."""
+        """Join the triangles of `walls` over all edges that are no necks.
+
+        `walls` is the floor as triangles between the corners of its walls. A neck is a straight line from wall to wall
+        that is shorter than all beside it.
+        """
         number = len(walls.triangles)
         self._parent = list(range(number))
         self.members = [[k] for k in range(number)]
@@ -209,13 +218,15 @@ def _necks_by_width(walls: Walls) -> Iterator[list[int]]:
 def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> Iterator[tuple[list[_Mouth], set[int]]]:
     """Yield the necks of one width that hang together through narrower floor: mouths, and parts of that floor.
 
-    Clusters with fewer than two mouths are left out. A mouth is a neck seen from floor that is wide; a part of the
-    narrower floor is given by its representative in `floor`.
+    Each pair is (mouths, numbers of the parts); the order of pairs and of mouths has no meaning. Clusters with fewer
+    than two mouths are left out. A mouth is a neck seen from floor that is wide; a part of the narrower floor is given
+    by its representative in `floor`.
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
-    floor : its parts, while these necks and all narrower ones are still closed.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
+    floor : its parts (sets of triangles, with the squared width of each), while these necks and all narrower ones are
+        still closed.
     edges : numbers of the necks, all of one width.
     least : the squared width from which on floor counts as wide, in square squares.
     """
@@ -245,14 +256,16 @@ def _clusters(walls: Walls, floor: _Floor, edges: list[int], least: float) -> It
 
 
 def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int], ...]) -> Iterator[_Doorway]:
-    """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each.
+    """Yield the doorway of two mouths; of more mouths, a doorway of no depth in each, in the order of `mouths`.
 
+    A doorway holds two mouths and the squares (column, row) between; a mouth is a neck (a straight line from wall to
+    wall that is shorter than all beside it), with the side on which the floor is wide, and that floor.
     Where three or more meet, the floor between them is floor like any other.
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
-    mouths : two or more, of necks of one width.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
+    mouths : two or more, of necks of one width that hang together.
     between : the squares (column, row) whose centres lie on the narrower floor between them.
     """
     if len(mouths) == 2:
@@ -268,9 +281,12 @@ def _doorways(walls: Walls, mouths: list[_Mouth], between: tuple[tuple[int, int]
 def _passage(walls: Walls, doorway: _Doorway, taken: set[tuple[int, int]]) -> Passage:
     """Return the passage of a doorway, with the side whose gate is further south, then west, as the first.
 
+    Its width, the clearances on both sides, mouths, gates (centres of free squares beyond the mouths) and the squares
+    between are in squares from the screen's south-west corner.
+
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
     doorway : two mouths, and the squares between them.
     taken : the squares (column, row) between the mouths of any doorway: no gate lies there.
     """
@@ -306,8 +322,8 @@ def _gate(walls: Walls, mouth: _Mouth, taken: set[tuple[int, int]]) -> XY:
 
     Parameters
     ----------
-    walls : the floor as a triangulation of its walls' corners.
-    mouth : the mouth.
+    walls : the floor as triangles between the corners of its walls: corners (x, y) in squares, triangles, edges.
+    mouth : a neck, the side on which it opens to wide floor, and that floor.
     taken : squares (column, row) that are no gates: those between the mouths of any doorway.
     """
     (ax, ay), (bx, by) = _mouth_ends(walls, mouth)

@@ -19,7 +19,8 @@ def find_parts(free: Bools, passages: Iterable[Passage]) -> Labels:
     Parameters
     ----------
     free : (rows, columns) bool, row 0 in the south.
-    passages : the passages along whose mouths the floor is cut, in the frame of `free`; they may reach beyond it.
+    passages : the passages along whose mouths (straight lines from wall to wall) the floor is cut, in the frame of
+        `free`; they may reach beyond it.
     """
     some = list(passages)
     label = cut_floor(np.pad(free, 1), some)[0]
@@ -43,8 +44,8 @@ def cut_floor(floor: Bools, passages: Iterable[Passage]) -> tuple[Labels, Bools]
     Parameters
     ----------
     floor : (rows + 2, columns + 2) bool, with a frame that is not floor.
-    passages : the passages along whose mouths the floor is cut, in squares from the south-west corner of the floor
-        without its frame.
+    passages : the passages along whose mouths (straight lines from wall to wall) the floor is cut, in squares from the
+        south-west corner of the floor without its frame; may be empty.
 
     Returns
     -------
@@ -116,7 +117,7 @@ def close_crossed_steps(closed: Bools, line: Floats) -> None:
 def segments_cross(ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float) -> bool:
     """Return whether the segments a-b and p-q cross; an end that lies on the other's line counts as right of it.
 
-    The numbers are x and y of the four ends, in one unit. Segments on one line do not cross.
+    The numbers are x and y of the four ends (`ax`, `ay` those of a), in one unit. Segments on one line do not cross.
     """
     apart = (orientation(ax, ay, bx, by, px, py) > 0) != (orientation(ax, ay, bx, by, qx, qy) > 0)
     return apart and (orientation(px, py, qx, qy, ax, ay) > 0) != (orientation(px, py, qx, qy, bx, by) > 0)

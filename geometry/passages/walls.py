@@ -62,6 +62,10 @@ class Walls(NamedTuple):
 def find_walls(free: Bools) -> Walls:
     """Return the triangulated free squares of a screen; everything outside it is blocked.
 
+    It holds the corners of walls, (x, y) in squares from the screen's south-west corner, the triangles (numbers of
+    corners) with the squared width of the floor about each, and the edges that two triangles share: their ends, these
+    triangles, squared lengths (square squares), and whether each is a neck, shorter than all lines beside it.
+
     Parameters
     ----------
     free : (rows, columns) bool, row 0 in the south; at least one True.
@@ -87,7 +91,7 @@ def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
     Returns
     -------
     corners : (n, 2) int64, (x, y) in squares from the south-west corner of the squares without the frame, by row.
-    triangles : (m, 3) int64, numbers of corners.
+    triangles : (m, 3) int64, numbers of corners, in no particular order.
     """
     around = [floor[:-1, :-1], floor[:-1, 1:], floor[1:, :-1], floor[1:, 1:]]
     on_wall = np.logical_or.reduce(around) & ~np.logical_and.reduce(around)
@@ -104,7 +108,7 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
 
     `triangles` are (m, 3) numbers of corners. The three arrays returned are (k, 2) int64: the two corners at each
     edge's ends, ascending; the numbers of its two triangles, ascending; and the third corners of these, in the same
-    order.
+    order. Edges are sorted by their two corners.
     """
     ends = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
     owner, tip = np.tile(np.arange(len(triangles)), 3), np.concatenate([triangles[:, k] for k in (2, 0, 1)])
@@ -134,6 +138,6 @@ def _widths(points: Longs) -> Floats:
 
 
 def _dot(u: Longs, v: Longs) -> Longs:
-    """Return the inner products of (n, 2) vectors, pair by pair, (n,) int64."""
+    """Return the inner products of the (n, 2) vectors `u` and `v`, row by row, (n,) int64."""
     product: Longs = u[:, 0] * v[:, 0] + u[:, 1] * v[:, 1]
     return product

@@ -60,7 +60,7 @@ def grid_path(free: Bools, start: tuple[float, float], goal: tuple[float, float]
 def octile_distance(a: Square, b: Square) -> float:
     """Return the length of the shortest path between two squares on an empty grid, in squares.
 
-    Steps lead to the eight neighbours, a diagonal one is the root of 2 long. Squares are (column, row).
+    Steps lead to the eight neighbours, a diagonal one is the root of 2 long. The squares `a` and `b` are (column, row).
     """
     dx, dy = abs(a[0] - b[0]), abs(a[1] - b[1])
     return max(dx, dy) + (DIAGONAL - 1.0) * min(dx, dy)
@@ -76,7 +76,7 @@ def points_of_path(
     Parameters
     ----------
     came_from : by square (column, row), the square before it on its path; the first square is missing.
-    square : the last square.
+    square : the last square of the path, (column, row).
     start, goal : (x, y) in squares from the screen's south-west corner.
     """
     squares = [square]

@@ -77,7 +77,12 @@ class PolyanyaSearch(NamedTuple):
 
 
 def new_polyanya_search(room: int, strips: Strips) -> PolyanyaSearch:
-    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room."""
+    """Return scratch for at most `room` nodes on those strips; words of up to `room` // 8 symbols have room.
+
+    It holds the search nodes, and room for the result of a search: its word (signed portals), the corners of its path
+    (squares), and their numbers. A search node is an interval of a portal that is visible from the last corner of a
+    path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+    """
     portals = len(strips.left)
     nodes = Nodes(
         np.empty((room, 3)),
@@ -103,14 +108,18 @@ def shortest_line(
 
     The path's corners are left in `line`. The numbers of its symbols (signed portals: index plus 1, negative when
     crossed southwards) and corners are written to `sizes`; the first is NO_PATH or SEARCH_OVERFLOW when none is found.
-    No path as long as `limit` or longer is found, unless start and goal lie in one strip.
+    No path as long as `limit` or longer is found, unless start and goal lie in one strip. A word is reduced when no
+    symbol stands next to its negative.
 
     Parameters
     ----------
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; infinite for none.
-    nodes, word, funnel, line, sizes : the attributes of a `PolyanyaSearch`; all changed.
+    nodes, funnel : scratch; changed.
+    word : written: the reduced word of the path, of which the first sizes[0] symbols count.
+    line : (n, 2) written: the corners (x, y) of the path in squares, of which the first sizes[1] count.
+    sizes : (2,) written: the number of symbols (or NO_PATH, -1, or SEARCH_OVERFLOW, -2), and the number of corners.
     """
     size = shortest_word(strips, ends, limit, nodes, word)
     if size == word.shape[0] or 4 * size + 8 > funnel.x.shape[0]:
@@ -126,14 +135,14 @@ def shortest_line(
 def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: Ints) -> int:
     """Write the reduced word of the shortest path and return its size, or NO_PATH, or SEARCH_OVERFLOW without room.
 
-    The size is 0 when start and goal lie in one strip.
+    The size is 0 when start and goal lie in one strip. A word is reduced when no symbol stands next to its negative.
 
     Parameters
     ----------
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     limit : in squares; paths as long or longer are not found.
-    nodes : scratch.
+    nodes : scratch: intervals of portals, each visible from the last corner of a path; changed.
     word : written from index 0 on: signed portals, negative when crossed southwards. A size equal to its length says
         that there was not enough room.
     """
@@ -174,14 +183,15 @@ def shortest_word(strips: Strips, ends: Ends, limit: float, nodes: Nodes, word: 
 def mark_dead_ends_to_goal(exits: Ints, lower: Ints, upper: Ints, goal: int, enter: Ints, stamp: int) -> None:
     """Mark with the stamp the strips of the dead end in which the goal's strip lies, if it lies in one.
 
-    A signed portal is a portal's index plus 1, negative when it is crossed southwards.
+    A signed portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
     exits : (strips,) the signed portal by which every path out of a dead-end strip leaves it, 0 for other strips.
     lower, upper : (portals,) the strips below and above each portal.
     goal : the number of the goal's strip.
-    enter : (strips,) written.
+    enter : (strips,) written: the stamp on strips that may be entered; other entries stay.
     stamp : the number of the present search.
     """
     strip = goal
@@ -206,7 +216,8 @@ def add_start_nodes(
     """Add a node for every portal of the start's strip.
 
     Where the start lies on the strip's southern edge beside a portal there, the portal's nearer end is the root. A node
-    is an interval of a portal that is visible from its root, the last corner of a path.
+    is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap of two
+    strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -251,7 +262,7 @@ def add_successors(
     """Add the nodes that follow a node which enters a strip: what its root sees of the other portals, and bends.
 
     Dead ends are left out, but for those marked in `enter`. A node is an interval of a portal that is visible from its
-    root, the last corner of a path.
+    root, the last corner of a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -321,6 +332,8 @@ def add_successors(
 def first_beyond(right: Ints, x: float, first: int, last: int) -> int:
     """Return the first of a strip's portals, numbered `first` to `last` - 1, that ends east of x; `last` if none does.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     right : (portals,) the last column of each portal, included; its east end lies one square further.
@@ -350,13 +363,15 @@ def snap_to_corner(x: float) -> float:
 def update_best(best: Floats, seen: Ints, stamp: int, corner: int, length: float) -> bool:
     """Record the length of a path to a corner, and return whether no shorter one is known.
 
+    A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
+
     Parameters
     ----------
     best, seen : attributes of `Nodes`: by corner, the length of the shortest path and the search that found it;
         changed.
     stamp : the number of the present search.
     corner : 2 portal for a portal's west end, 2 portal + 1 for its east end.
-    length : in squares.
+    length : of the path to the corner, in squares.
     """
     if seen[corner] != stamp:
         best[corner], seen[corner] = length, stamp
@@ -373,7 +388,8 @@ def add_node(
     """Write a node, without putting it on the heap, and return its number.
 
     A signed portal is a portal's index plus 1, negative when it is crossed southwards. A node is an interval of a
-    portal that is visible from its root, the last corner of a path.
+    portal that is visible from its root, the last corner of a path. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -409,15 +425,16 @@ def enqueue(
 ) -> int:
     """Put the nodes from number `first` on the heap, but return the best one instead when it comes next.
 
-    Left out are bends, nodes beyond the limit, and nodes whose root has a shorter path. In open space the best new node
-    nearly always comes next. Return NO_PATH when it does not. A node is an interval of a portal that is visible from
-    its root, the last corner of a path.
+    The best is the one of the least length of a path through it. Its number is returned. Left out are bends, nodes
+    beyond the limit, and nodes whose root has a shorter path. In open space the best new node nearly always comes next.
+    Return NO_PATH when it does not. A node is an interval of a portal that is visible from its root, the last corner of
+    a path. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
     left, right, line : attributes of `Strips`: the first and last column and the lower row of each portal.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    limit : in squares.
+    limit : in squares; nodes whose paths are as long or longer are left out.
     span, link : attributes of `Nodes`: interval and length of each node, and its portal, root and parent; read.
     key, heap, best, seen, counters : attributes of `Nodes`: the heap, the shortest path to each corner, numbers of
         nodes; changed.
@@ -463,7 +480,8 @@ def add_goal_node(
 ) -> None:
     """Add the goal as a node, if it is reached from a node's root within the strip that the node enters.
 
-    A node is an interval of a portal that is visible from its root, the last corner of a path.
+    A node is an interval of a portal that is visible from its root, the last corner of a path. A portal is the overlap
+    of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -493,7 +511,9 @@ def add_goal_node(
 def spell_word(link: Ints, node: int, word: Ints) -> int:
     """Write the reduced word of the portals on the path to a node, and return its size.
 
-    A node is an interval of a portal that is visible from its root, the last corner of a path.
+    A node is an interval of a portal that is visible from its root, the last corner of a path. A word is reduced when
+    no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring
+    rows.
 
     Parameters
     ----------

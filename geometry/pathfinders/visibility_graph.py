@@ -31,6 +31,9 @@ def extreme_points(free: Bools) -> Floats:
 def visibility_path(free: Bools, start: XY, goal: XY) -> Floats | None:
     """Return the shortest path along open lines between start, extreme points and goal; None when there is none.
 
+    A line is open when it stays in free space; extreme points are the corners of blocked squares that stick out into
+    it.
+
     Parameters
     ----------
     free : (rows, columns) bool, True where a point may be; row 0 in the south.

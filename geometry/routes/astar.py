@@ -74,7 +74,11 @@ class Search(NamedTuple):
 
 
 def new_search(nodes: int, chains: int) -> Search:
-    """Return scratch for a pathgraph of that many nodes and chains (its edges)."""
+    """Return scratch for searches on a pathgraph of that many nodes and chains (its edges), without any search yet.
+
+    It holds, by node, the cost of the best path so far and the arc by which that arrives, bans of nodes and arcs, exact
+    distances to the goal, and a heap. Marks and stamp are 0, all else is arbitrary.
+    """
     return Search(
         np.empty(nodes + 2),
         np.empty(nodes + 2, np.int32),
@@ -93,17 +97,23 @@ def new_search(nodes: int, chains: int) -> Search:
 def find_path_to_goal(landmarks: Landmarks, query: RouteQuery, search: Search, origin: int) -> bool:
     """Search a path from a node to the goal (A*), and return whether there is one; it is left in `search.arrival`.
 
+    Read it backwards: at each node, from the goal (n + 1) on, stands the arc by which the path arrives. An arc is a
+    chain walked in one direction, coded 2 chain, plus 1 when walked backwards; codes from 2m on (m chains) are those
+    that the query adds.
+
     Nodes and arcs banned under the current stamp are left out. The path is the shortest, unless the query's line makes
     arcs costlier: then its cost is at most PATH_SLACK times the least. Its cost is left in `search.best` at the goal. A
-    chain is an edge of the pathgraph, with its cells.
+    chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     This is one loop without calls that pass many arrays, all of them local names: taking an array out of a tuple, or
     handing it on, costs more than the arc for which it is used.
 
     Parameters
     ----------
-    landmarks : the arcs of the pathgraph and the distances from its landmarks.
-    query : the start's and the goal's arcs, the bias, and which chains are closed.
+    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
+        nodes chosen in advance, in squares.
+    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, the line by whose
+        distance arcs get costlier, and which chains are closed.
     search : `best`, `arrival`, `seen` and `node_ban` are written, the heap is scratch.
     origin : the number of the node from which to search; the number of nodes, n, is the start.
     """
@@ -184,12 +194,15 @@ def fill_goal_distances(landmarks: Landmarks, query: RouteQuery, search: Search,
     """Fill `search.goal_distance` with exact distances to the goal in squares, by Dijkstra's algorithm backwards.
 
     Nodes that no path from start to goal of at most `limit` squares can pass are left at infinity. The second entry of
-    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph, with its cells.
+    `search.stamp` is set, so that searches use these distances. A chain is an edge of the pathgraph (whose nodes are
+    the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
-    landmarks : the arcs of the pathgraph and the distances from its landmarks.
-    query : the start's and the goal's arcs, and which chains are closed.
+    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
+        nodes chosen in advance, in squares.
+    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, and which chains
+        are closed.
     search : changed; its heap is scratch.
     limit : in squares; infinite for all nodes.
     """

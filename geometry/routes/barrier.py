@@ -43,7 +43,7 @@ class Barrier(NamedTuple):
     def separates(self, one: int, other: int) -> bool:
         """Return whether two cells (indices in the flat padded grid) lie in different parts, or one on a cut.
 
-        A cell is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
+        `one` is never separated from itself. A cell's index is (row + 1) * width + column + 1, with width = columns +
         2.
         """
         label = self.label.reshape(-1)
@@ -52,7 +52,7 @@ class Barrier(NamedTuple):
     def is_closed(self, cell: int, other: int) -> bool:
         """Return whether the step between two edge neighbours is cut, in either direction.
 
-        Both are indices in the flat padded grid, (row + 1) * width + column + 1.
+        `cell` and `other` are indices in the flat padded grid, (row + 1) * width + column + 1.
         """
         low = min(cell, other)
         return bool(self.closed[int(abs(cell - other) > 1)].reshape(-1)[low])
@@ -61,11 +61,16 @@ class Barrier(NamedTuple):
 def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barrier:
     """Return the floor of a layer, cut along the necks of passages.
 
+    It holds `label`, (rows + 2, columns + 2), the number of the part of each padded cell, from 1 (0 on a cut and off
+    the floor); `closed`, (2, rows + 2, columns + 2) bool, whether the step from a cell to the east (0) or north (1) is
+    cut; and `closed_steps`, (b, 2), chain and position of the steps of the pathgraph that are cut.
+
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    passages : those along whose mouths the floor is cut; with none, only what is not connected is told apart.
+    passages : those along whose mouths (straight lines from wall to wall) the floor is cut; with none, only what is not
+        connected is told apart.
     """
     label, closed = cut_floor(layer.square >= level, passages)
     width, states = layer.square.shape[1], layer.state.reshape(-1)
@@ -80,8 +85,8 @@ def build_barrier(layer: Layer, level: int, passages: Iterable[Passage]) -> Barr
 def chain_step_of(layer: Layer, cell: int, other: int) -> tuple[int, int]:
     """Return the chain of a step of the skeleton between two cells, and the lower of the two positions on it.
 
-    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph, with its
-    cells.
+    Positions count the cells of the chain from 0 at its first cell. A chain is an edge of the pathgraph (whose nodes
+    are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -110,7 +115,7 @@ def path_to_skeleton(layer: Layer, level: int, barrier: Barrier, cell: int) -> l
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : which steps are cut.
+    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
     cell : a cell where the body may be.
     """
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
@@ -133,7 +138,7 @@ def path_over_cells(layer: Layer, level: int, barrier: Barrier, cell: int, goal:
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    barrier : which steps are cut.
+    barrier : the floor cut along passages: the part of each cell, and which steps between cells are cut.
     cell : the cell at which the path begins.
     goal : (cells,) bool, True at goal cells, flat over the padded grid.
     """

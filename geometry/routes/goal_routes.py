@@ -19,11 +19,15 @@ def routes_to_area(
 ) -> list[Route]:
     """Return at most k routes to squares of a set, each the shortest of its class, shortest first.
 
+    Routes are of one class when one can be deformed into the other while its end moves within the set. A route holds
+    its corners (x, y) in squares from the screen's south-west corner, both ends included, its length and clearance in
+    squares, its signature (the crossing numbers that name its class), and the chains that it follows.
+
     Empty when the body cannot be at the start, or no square of the set can be reached.
 
     Parameters
     ----------
-    queries : the layer that is asked.
+    queries : what answers for the layer: the free space of a body of one radius, with its pathgraph and strips.
     start : (x, y) in squares from the screen's south-west corner.
     goal : (rows, columns) bool, True on squares of the set, row 0 in the south. Squares in which the body cannot be do
         not count.
@@ -53,8 +57,8 @@ class GoalArea:
 
     Attributes
     ----------
-    queries : the layer that is asked.
-    layer : the same, without the scratch of searches.
+    queries : what answers for the layer: the free space of a body of one radius, with its pathgraph and strips.
+    layer : that free space alone, without the scratch of searches.
     width : columns of the padded grid.
     start : (x, y) in squares.
     avoid : passages through which no route may lead.
@@ -69,7 +73,7 @@ class GoalArea:
 
         Parameters
         ----------
-        queries : the layer that is asked.
+        queries : what answers for the layer: the free space of a body of one radius, with its pathgraph and strips.
         start : (x, y) in squares from the screen's south-west corner.
         goal : (rows, columns) bool, True on squares of the set; those in which the body cannot be do not count.
         avoid : passages through which no route may lead; may be empty.
@@ -84,6 +88,10 @@ class GoalArea:
 
     def to_nearest_square(self) -> list[SetRoute]:
         """Return the route to the nearest square of all as a list of one; an empty list when none can be reached.
+
+        The entry is (route, number of the part of the set in which it ends, last cell). Of squares as near that tried
+        first counts. The route's points (x, y), from the south-west corner of the screen, and its length are in
+        squares; clearance and chains may not be known (nan, empty).
 
         Squares are tried in the order of their straight distances, as long as these are less than the best length.
         """
@@ -113,8 +121,9 @@ class GoalArea:
     def to_representatives(self, k: int) -> list[SetRoute]:
         """Return routes to the representatives of all parts, cut where they enter the set, and then shortened.
 
-        The representative of a part is its cell of greatest clearance. The routes stand part by part, not by length;
-        several may be of one class.
+        The representative of a part is its cell of greatest clearance. Each entry is (route, number of the part of the
+        set, last cell); the routes stand part by part, not by length, and several may be of one class. Empty when no
+        part can be reached. Points and lengths are in squares, clearances are nan and chains empty.
 
         Parameters
         ----------
@@ -131,12 +140,13 @@ class GoalArea:
         """Return the word of a route to a representative up to the first cell of the set, and that cell.
 
         The whole word, and the representative, are returned where the path from square to square, unlike the route,
-        leads through a passage to avoid.
+        leads through a passage to avoid. A word is reduced when no symbol stands next to its negative. A portal is the
+        overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
-        route : a route from the start to the representative of the part.
-        region : the part of the set.
+        route : a route from the start to the representative of the part; its points alone count.
+        region : the part of the set: its representative, and the vertex and steps of its cells.
 
         Returns
         -------
@@ -155,7 +165,10 @@ class GoalArea:
     def shortened(self, word: Ints, cell: int) -> SetRoute:
         """Return the route of a word to a cell, with its end moved on within the set as long as that shortens it.
 
-        The end moves from square to square. With the route come the number of the part of the set and the last cell.
+        The end moves from square to square, to the edge neighbour that shortens it most. Returned is (route, number of
+        the part of the set, last cell); the route's points and length are in squares, its clearance is nan and its
+        chains are empty. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two
+        strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -174,7 +187,9 @@ class GoalArea:
     def moved_end(self, word: Ints, cell: int, step: int) -> tuple[Route, Ints, int] | None:
         """Return the route, word and cell with the end moved by a step; None when the end may not move so.
 
-        The new cell must be in the set, and the step must not be cut.
+        The route's points and length are in squares, its clearance is nan and its chains are empty; the word is
+        reduced. The new cell must be in the set, and the step must not be cut. A word is reduced when no symbol stands
+        next to its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -192,8 +207,11 @@ class GoalArea:
     def to_cell(self, word: Ints, cell: int) -> Route:
         """Return the tight route from the start to the centre of a cell, of the class of a word.
 
-        Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A chain is an
-        edge of the pathgraph, with its cells.
+        Its points (x, y), from the south-west corner of the screen, and its length are in squares, its signature names
+        its class. Its clearance is nan and its chains are empty, since its path over the skeleton is not looked for. A
+        chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------

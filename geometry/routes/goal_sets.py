@@ -40,7 +40,8 @@ class GoalRegion(NamedTuple):
         """Return a name for the class of a reduced word to one of the cells, whose end may be moved within the part.
 
         Names are equal exactly when the classes are: first a vertex, then what is left of the word. They hold within
-        one part.
+        one part. A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips
+        (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -58,7 +59,7 @@ class GoalRegion(NamedTuple):
 def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int]) -> Bools | None:
     """Return the squares of a goal set, (rows, columns) bool, or None when the goal is a point.
 
-    The values of a point are not checked.
+    The values of a point are not checked. An array of bool is returned itself, not a copy.
 
     Parameters
     ----------
@@ -92,7 +93,8 @@ def checked_goal(goal: ArrayLike | set[tuple[int, int]], shape: tuple[int, int])
 def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Bools) -> list[GoalRegion]:
     """Return the parts of a goal set where a body may be, connected over edges; an empty list when there is none.
 
-    They are ordered by their first cell, row by row from the south-west.
+    They are ordered by their first cell, row by row from the south-west. Each holds its representative, the padded cell
+    of greatest clearance, and its folded cells: the vertex of each, and the steps between vertices over portals.
 
     Parameters
     ----------
@@ -110,8 +112,10 @@ def goal_regions(square: SquaredDistances, level: int, strips: Strips, goal: Boo
 
 
 def goal_region(square: SquaredDistances, strips: Strips, label: Labels, number: int) -> GoalRegion:
-    """Return the part with a number in `label`, folded.
+    """Return the part with a number in `label`, folded: cells that one word reaches are made one vertex.
 
+    It holds the padded cell of greatest clearance (of several the last), by cell the number of its vertex, and by
+    (vertex, signed portal) the vertex beyond. A signed portal is its index plus 1, negative when crossed southwards.
     A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
     Parameters
@@ -142,7 +146,8 @@ def fold(edges: list[tuple[int, int, int]], count: int) -> tuple[list[int], dict
     """Return the vertex that stands for each one, and the steps, once no two steps of one name lead apart.
 
     Where two steps from one vertex with the same signed portal lead to two vertices, these are made one. A signed
-    portal is a portal's index plus 1, negative when it is crossed southwards.
+    portal is a portal's index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips
+    (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -188,8 +193,8 @@ def candidate_cells(square: SquaredDistances, level: int, goal: Bools, start: in
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
-    goal : (rows, columns) bool, the squares of the set.
-    start : the padded cell of the start.
+    goal : (rows, columns) bool, the squares of the set, row 0 in the south; those below the level do not count.
+    start : the padded cell of the start; listed only when it lies in the set.
     """
     inside, free = np.pad(goal, 1), square >= level
     outside = free & ~inside

@@ -43,7 +43,10 @@ class PathStore(NamedTuple):
 
 
 def new_path_store(room: int, longest: int) -> PathStore:
-    """Return room, not initialised, for at most `room` paths of at most `longest` arcs."""
+    """Return room, not initialised, for at most `room` paths of at most `longest` arcs.
+
+    It holds, by path, its arcs (codes), their number, its cost in squares, and where it forks from another.
+    """
     place, size, fork, shared = (np.empty(room, np.int32) for _ in range(4))
     return PathStore(place, np.empty(room), np.empty((room, longest), np.int32), size, fork, shared)
 
@@ -55,15 +58,18 @@ def k_shortest_paths(
     """Fill the store with up to `wanted` shortest paths from start to goal, and return their number.
 
     It is 0 when there is none. The paths stand in the store's order, shortest first. When one path is wanted and the
-    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK. A chain is an edge of the pathgraph,
-    with its cells.
+    query is biased, it is the cheapest path instead, up to a factor of PATH_SLACK. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
-    landmarks : arcs of the pathgraph and distances from landmarks.
-    query : the start's and the goal's arcs, and what is closed.
-    search, store : scratch, and the paths found; both changed.
+    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
+        nodes chosen in advance, in squares.
+    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, and which chains
+        and steps are closed.
+    search : scratch; changed.
+    store : written: path k stands in row place[k] of `arcs` and `size`, its cost in cost[k].
     wanted : how many paths at most; at least 1, at most the store's room.
     """
     start = landmarks.head.shape[0]
@@ -101,15 +107,19 @@ def add_deviations(
 ) -> int:
     """Add the best deviations from a taken path, at each of its arcs from its fork on; return the number of paths.
 
+    That is the number of all in the store, taken ones and candidates, at most `wanted`.
+
     A deviation follows the path up to a node and leaves it there by an arc by which no path taken so far leaves. A
-    chain is an edge of the pathgraph, with its cells.
+    chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
-    landmarks : arcs of the pathgraph and distances from landmarks.
-    query : the start's and the goal's arcs, and what is closed.
-    search : scratch, with the distances to the goal.
+    landmarks : arcs out of each node (node led to, code, length in squares), and the nodes' distances from landmarks,
+        nodes chosen in advance, in squares.
+    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, and which chains
+        and steps are closed.
+    search : scratch; changed, but for its distances to the goal, which must be filled.
     store : the paths; candidates are added, and the worst replaced when there are as many as wanted.
     path : the index of the taken path in the store's order.
     have : the number of paths in the store, at most `wanted`.
@@ -152,14 +162,14 @@ def add_deviations(
 
 @bare
 def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, start: int, nodes: Ints) -> None:
-    """Write to `nodes` the node from which each arc of a path comes.
+    """Write to `nodes` the node from which each arc of a path comes, the start first, in the order of the path.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
-    joint : (4,) the nodes of the query's arcs.
+    joint : (4,) the nodes to which the two arcs out of the start lead, and those from which the two into the goal come.
     arcs, size : (room, longest) arc codes (2 chain, plus 1 when walked backwards), and (room,) numbers of arcs, of the
         store.
     row : the path's row in them.
@@ -176,7 +186,7 @@ def fill_path_nodes(ends: Ints, joint: Ints, arcs: Ints, size: Ints, row: int, s
 def count_common_arcs(arcs: Ints, size: Ints, row: int, other: int) -> int:
     """Return how many first arcs two paths have in common, before they differ or one ends.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -195,12 +205,13 @@ def deviation_bound(landmarks: Landmarks, query: RouteQuery, search: Search, ori
     """Return a lower bound of the length from a node to the goal over an arc that is not banned, in squares.
 
     It is infinite when there is no such arc, or none that leads to the goal within the limit of the distances. A chain
-    is an edge of the pathgraph, with its cells.
+    is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
-    landmarks : arcs of the pathgraph.
-    query : the start's and the goal's arcs, and which chains are closed.
+    landmarks : arcs out of each node: node led to, code, length in squares.
+    query : the nodes and lengths (squares) of the arcs that join start and goal to the pathgraph, and which chains
+        are closed.
     search : the bans under the current stamp, and the distances to the goal, which must be filled.
     origin : the number of the node.
     """
@@ -228,7 +239,9 @@ def deviation_bound(landmarks: Landmarks, query: RouteQuery, search: Search, ori
 def insert_path(place: Ints, cost: Floats, path: int, have: int, wanted: int, total: float) -> int:
     """Make room among the candidates for a path of cost `total`, and return the row for its arcs.
 
-    When there are as many paths as wanted, the row is that of the most expensive, which is dropped.
+    The row is one of `arcs`, `size` and `fork` of the store; rows of other paths stay where they are, only the order
+    changes. It comes behind candidates of the same cost. When there are as many paths as wanted, the row is that of the
+    most expensive, which is dropped.
 
     Parameters
     ----------
@@ -236,7 +249,7 @@ def insert_path(place: Ints, cost: Floats, path: int, have: int, wanted: int, to
     path : the index, in the store's order, of the last path taken; candidates begin behind it.
     have : the number of paths in the store.
     wanted : how many paths are wanted.
-    total : in squares, or as the query's bias makes it.
+    total : the cost of the path: its length in squares, more where the query's bias makes arcs costlier.
     """
     at = have if have < wanted else wanted - 1
     row = have if have < wanted else 0 + place[at]
@@ -251,14 +264,14 @@ def insert_path(place: Ints, cost: Floats, path: int, have: int, wanted: int, to
 def record_path(
     ends: Ints, joint: Ints, arrival: Ints, arcs: Ints, size: Ints, row: int, fork: int, origin: int
 ) -> None:
-    """Write the path just found, from a node on, behind its first `fork` arcs.
+    """Write the path just found, from a node on, behind its first `fork` arcs; the arcs go from there to the goal.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
-    joint : (4,) the nodes of the query's arcs.
+    joint : (4,) the nodes to which the two arcs out of the start lead, and those from which the two into the goal come.
     arrival : (n + 2,) the code of the arc by which the path arrives at each node.
     arcs, size : (room, longest) arc codes (2 chain, plus 1 when walked backwards), and (room,) numbers of arcs, of the
         store; both written at `row`.
@@ -282,12 +295,12 @@ def record_path(
 def arc_tail(ends: Ints, joint: Ints, first: int, goal: int, code: int) -> int:
     """Return the number of the node from which an arc comes.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     ends : (m, 2) the first and the last node of each chain.
-    joint : (4,) the nodes of the query's arcs.
+    joint : (4,) the nodes to which the two arcs out of the start lead, and those from which the two into the goal come.
     first : the least code of an arc that the query adds, 2m.
     goal : the number of the goal's node; the start's is one less.
     code : the code of the arc: 2 chain, plus 1 when walked backwards; 2m and more for those of the query (see

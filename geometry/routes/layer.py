@@ -64,6 +64,8 @@ def new_state(shape: tuple[int, ...], words: Words | None = None) -> tuple[State
 def find_pathgraph(square: SquaredDistances, level: int, state: States, words: Words) -> SkeletonGraph:
     """Return the pathgraph of the cells whose squared clearance is at least `level`; fill `state`.
 
+    It holds the cells of the nodes (flat padded indices, ascending), and for each chain its two ends (4 times the node
+    plus the direction in which it leaves), its lowest cell and its number of steps from square to square.
     The pathgraph has the junctions and ends of the skeleton as nodes, and the chains of cells between them, which never
     branch, as edges. A chain is such an edge. Without a cell at that level there are none.
 
@@ -81,14 +83,19 @@ def find_pathgraph(square: SquaredDistances, level: int, state: States, words: W
 def build_layer(square: SquaredDistances, level: int, body: bool, state: States, chains: Chains) -> Layer:
     """Return the layer of a pathgraph: find its strips and landmarks.
 
-    A chain is an edge of the pathgraph, with its cells.
+    It holds the arguments `square`, `state`, `chains` and `body`, not copied, the strips and portals of the cells at
+    the level, and the words (signed portals), lengths (squares) and landmark distances of the chains.
+
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
     square : (rows + 2, columns + 2) int, squared clearances in squared half squares.
     level : the least squared clearance of a cell where the body may be, in squared half squares.
     body : True for a body, False for a point.
-    state, chains : the skeleton (as of `find_pathgraph`) and the chains of its pathgraph.
+    state : (rows + 2, columns + 2) uint8, links and flags of the skeleton of the cells at that level, 0 off it.
+    chains : the edges of the pathgraph of that skeleton, with their nodes and cells.
     """
     runs = find_strips(square, level)
     return Layer(square, state, chains, runs, compute_landmarks(square, chains, runs, body), body)

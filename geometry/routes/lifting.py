@@ -65,13 +65,16 @@ class Trail(NamedTuple):
 
 
 def new_trail(room: int) -> Trail:
-    """Return scratch for a path of at most `room` links."""
+    """Return scratch for a path of at most `room` links, which are entries of a linked list of cells; it holds none."""
     cell, before, after, queue = (np.empty(room, np.int32) for _ in range(4))
     return Trail(cell, before, after, queue, np.zeros(room, np.int32), np.zeros(2, np.int32))
 
 
 def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None = None) -> tuple[Lifted, Trail]:
     """Return the one path over the skeleton, without turning back, of the class of a reduced word.
+
+    A word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -84,7 +87,9 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
     Returns
     -------
     (Lifted, Trail)
-        The path, and the scratch that was used.
+        The path: its least squared clearance, in squared half squares, ends included, and the numbers of the chains
+        (edges of the pathgraph) that it follows, in order. Then the scratch that was used, to be given to the next
+        call.
     """
     trail = trail or new_trail(4 * len(word) + 1024)
     heights, states, width = layer.square.reshape(-1), layer.state.reshape(-1), layer.square.shape[1]
@@ -97,7 +102,9 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
 def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
     """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal.
 
-    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last.
+    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last. A
+    word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+    squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -121,14 +128,15 @@ def lift_word(
 
     Return how many numbers these are (the clearance first, then the numbers of the chains in order), or TRAIL_OVERFLOW
     when there is no room. A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an
-    edge of the pathgraph, with its cells.
+    edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) links and flags of the skeleton, 0 off it.
     width : columns of the padded grid.
-    chains, strips : those of the layer.
+    chains : the edges of the pathgraph, with their nodes and cells.
+    strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     trail : scratch; the answer stands at the beginning of its `queue`.
@@ -172,8 +180,8 @@ def direction_of(step: int) -> int:
 def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trail: Trail) -> int:
     """Write the cells of a path with this word as a linked list, and return the number of links.
 
-    The path goes along each strip to the nearest square of the next portal. Return TRAIL_OVERFLOW when there is no
-    room. All links are queued.
+    The path goes along each strip to the nearest square of the next portal. Link 0 is the start, link 1 the goal; those
+    between are numbered from 2 in order. Return TRAIL_OVERFLOW (-1) when there is no room. All links are queued.
 
     Parameters
     ----------
@@ -181,7 +189,7 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
     word : (n,) signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's.
     width : columns of the padded grid.
-    trail : written.
+    trail : the linked list, written: the cell of each link, the links before and after it, and the queue.
     """
     cell, before, after, queue, queued, counts = trail
     left, right = strips.left, strips.right
@@ -220,13 +228,15 @@ def write_cells_of_word(strips: Strips, ends: Ends, word: Ints, width: int, trai
 def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
     """Raise a path to the skeleton and return the number of links made, or TRAIL_OVERFLOW without room for more.
 
+    All links ever made count, dropped ones too. The path is read from link 0 along `after`.
+
     A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
 
     Parameters
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     width : columns of the padded grid.
-    trail : the path, with all its links queued; changed, its queue is empty afterwards.
+    trail : the path as a linked list of cells, with all its links queued; changed, its queue is empty afterwards.
     """
     cell, before, after, queue, queued, counts = trail
     while counts[1] > 0:
@@ -250,7 +260,8 @@ def raise_to_skeleton(heights: Heights, width: int, trail: Trail) -> int:
 def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link: int, forward: bool) -> None:
     """Lead the step from a link to a higher one over the highest edge neighbour of its group.
 
-    A group is a connected part of the higher cells on the ring of a cell's eight neighbours. Nothing changes when the
+    A group is a connected part of the higher cells on the ring of a cell's eight neighbours; a cell is higher when its
+    clearance is greater, or as great and its index greater. Nothing changes when the
     other link is not higher, or is that highest neighbour. A cell's index is (row + 1) * width + column + 1, with width
     = columns + 2.
 
@@ -258,7 +269,7 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
     ----------
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     width : columns of the padded grid.
-    trail : the path; links are inserted and queued.
+    trail : the path as a linked list of cells; links are inserted and queued.
     link, next_link : numbers of two links that follow each other.
     forward : whether `next_link` comes after `link` on the path.
     """
@@ -294,9 +305,11 @@ def raise_step(heights: Heights, width: int, trail: Trail, link: int, next_link:
 def insert_link(trail: Trail, cell: int, last: int, next_link: int, forward: bool) -> int:
     """Put a cell between two links of a path, queue it, and return the number of its link.
 
+    It gets the next free number; the numbers of other links stay as they are.
+
     Parameters
     ----------
-    trail : the path; changed.
+    trail : the path as a linked list of cells; changed.
     cell : index in the flat padded grid, (row + 1) * width + column + 1.
     last, next_link : numbers of the two links.
     forward : whether `next_link` comes after `last` on the path.

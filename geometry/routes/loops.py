@@ -1,6 +1,7 @@
 """Loops: closed paths over the pathgraph that wind once about given blocked squares.
 
-A chain is an edge of the pathgraph, with its cells; a position on it is the index of a cell, from 0 at its first.
+A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells; a position
+on it is the index of a cell, from 0 at its first.
 
 # Strategy: a ray from one of those squares to the screen's edge is crossed by some chains. A closed path winds as often
 as it crosses the ray, so the search runs on nodes times windings. Paths that never turn back on a chain are the classes
@@ -51,14 +52,17 @@ def closed_paths(layer: Layer, start: Anchor, around: Bools, wanted: int) -> lis
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
+    start : the anchor of the start, where the steepest ascent from it meets the pathgraph: a chain and the position of
+        a cell on it, the node there (-1 inside a chain), and the cell.
     around : (rows, columns) bool, the blocked squares of one object, row 0 in the south; at least one.
     wanted : how many paths at most.
 
     Returns
     -------
     list of list of Arc
-        The arcs of each path, in the order in which they are walked; shortest path first. Empty when there is none.
+        The arcs of each path, in the order in which they are walked; shortest path first. An arc is a chain, or a part
+        of one, walked in one direction: its chain, the positions at which it begins and ends, the node to which it
+        leads, its length in squares. Empty when there is none.
     """
     arcs, origin = build_arcs(layer, start, ray_crossings(layer, around))
     to_origin = distances_to_origin(arcs, origin)
@@ -88,6 +92,9 @@ def turns_back(last: Arc, arc: Arc) -> bool:
 def arcs_of_trail(trail: tuple[Arc, object] | None) -> list[Arc]:
     """Return the arcs of a trail, first to last; a trail is the last arc and the trail before it.
 
+    An arc is a chain or a part of one, walked in one direction: node led to, length in squares, crossings of the ray,
+    chain, and the positions at which it begins and ends.
+
     None is the trail without arcs, and gives an empty list.
     """
     path: list[Arc] = []
@@ -102,8 +109,8 @@ def ray_crossings(layer: Layer, around: Bools) -> Ints:
 
     The ray goes north from the last of the squares `around` (the eastern one of the northernmost row), between its
     column and the column to the west. Crossings from east to west count 1, those from west to east -1. The sum goes on
-    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph,
-    with its cells.
+    from one chain to the next: only differences within a chain mean something. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -130,12 +137,15 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
     Parameters
     ----------
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    start : the anchor of the start: where the steepest ascent from it meets the pathgraph.
-    crossings : (cells,) as of `ray_crossings`: for each chain cell, crossings of the ray up to there.
+    start : the anchor of the start, where the steepest ascent from it meets the pathgraph: a chain and the position of
+        a cell on it, the node there (-1 inside a chain), and the cell.
+    crossings : (cells,) for each chain cell how often its chain has crossed the ray up to there, westwards less
+        eastwards.
 
     Returns
     -------
-    arcs : by node, the list of arcs that leave it.
+    arcs : by node, the list of arcs that leave it, in the order of the chains; empty for a node without chains. A chain
+        is in it once for each direction.
     origin : the number of the start's node.
     """
     chains, origin = layer.chains, start.node
@@ -154,13 +164,14 @@ def build_arcs(layer: Layer, start: Anchor, crossings: Ints) -> tuple[Arcs, int]
 def add_arcs(arcs: Arcs, layer: Layer, crossings: Ints, chain: int, one: tuple[int, int], two: tuple[int, int]) -> None:
     """Add a stretch of a chain to `arcs`, in both directions.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     arcs : by node, the arcs that leave it; extended.
     layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    crossings : (cells,) for each chain cell, crossings of the ray up to there.
+    crossings : (cells,) for each chain cell how often its chain has crossed the ray up to there, westwards less
+        eastwards.
     chain : the number of the chain.
     one, two : the stretch's ends, each a node and its position on the chain; that of `one` is the lower.
     """
@@ -201,12 +212,13 @@ def cells_of_path(chains: Chains, path: list[Arc]) -> list[int]:
     """Return the padded cells of a path, from its origin back to it: indices in the flat padded grid.
 
     The first and the last cell are the same. An empty path gives an empty list. A cell's index is (row + 1) * width +
-    column + 1, with width = columns + 2. A chain is an edge of the pathgraph, with its cells.
+    column + 1, with width = columns + 2. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of
+    the skeleton), with its cells.
 
     Parameters
     ----------
     chains : the chains of the pathgraph.
-    path : arcs, in the order in which they are walked.
+    path : arcs (a chain, and the positions at which each begins and ends), in the order in which they are walked.
     """
     cells: list[int] = []
     for arc in path:

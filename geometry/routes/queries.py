@@ -105,6 +105,10 @@ class LayerQueries:
     def to_point(self, start: XY, goal: XY, k: int, avoid: tuple[Passage, ...] = ()) -> list[Route]:
         """Return at most k routes between two points, shortest first; an empty list when they are not connected.
 
+        A route holds its corners (x, y) in squares from the screen's south-west corner, both ends included, its length
+        and clearance in squares, its signature (the crossing numbers that name its class), and the chains that it
+        follows. Each is the shortest of its class.
+
         Parameters
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
@@ -131,7 +135,8 @@ class LayerQueries:
         """Find the best paths over the pathgraph, pulled tight; return the buffers that hold them, and their number.
 
         The routes stand in `answers` of the buffers, in the order of their paths over the pathgraph; the next search
-        overwrites them. A chain is an edge of the pathgraph, with its cells.
+        overwrites them. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton),
+        with its cells.
 
         Parameters
         ----------
@@ -156,6 +161,8 @@ class LayerQueries:
     def _with_shortest(self, routes: list[Route], start: XY, goal: XY, k: int) -> list[Route]:
         """Return at most k routes: those given, preceded by the shortest path of all if none of them is of its class.
 
+        When one of them is, they are returned as they are, however many there are.
+
         Parameters
         ----------
         routes : routes from start to goal, shortest first; at least one.
@@ -169,9 +176,10 @@ class LayerQueries:
         return routes if length >= first else [self._polyanya_route(length, (*start, *goal)), *routes][:k]
 
     def with_skeleton_path(self, route: Route) -> Route:
-        """Return the same route with the clearance and the chains of its class's path over the skeleton.
+        """Return a copy of a route with the clearance and the chains of its class's path over the skeleton.
 
-        The clearance is in squares; the chains are numbers of edges of the pathgraph, in the order of the route.
+        Points (x, y in squares), length and signature stay; the points must lie in free space. The clearance is in
+        squares; the chains are numbers of edges of the pathgraph, in the order of the route.
         """
         ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
         found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
@@ -180,6 +188,7 @@ class LayerQueries:
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
         """Return the floor cut along some passages, so that no route leads through them.
 
+        It holds the part of each padded cell, which steps between edge neighbours are cut, and which steps of chains.
         The last barrier is kept, and returned again when `avoid`, the passages, is the same.
         """
         if self._barrier is None or self._barrier[0] != avoid:
@@ -189,13 +198,14 @@ class LayerQueries:
     def _avoiding(self, start: XY, goal: XY, k: int, barrier: Barrier) -> list[Route]:
         """Return at most k routes between two points that lead through no passage of a barrier, shortest first.
 
-        The list is empty when the barrier separates the points.
+        The list is empty when the barrier separates the points. Points, lengths and clearances are in squares; each
+        route is the shortest of its class.
 
         Parameters
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, where `admits` holds.
         k : how many routes at most.
-        barrier : the floor cut along the passages.
+        barrier : the floor cut along the passages: the part of each cell, and which steps between cells are cut.
         """
         first, last = self.cell(start), self.cell(goal)
         if barrier.separates(first, last):
@@ -225,7 +235,11 @@ class LayerQueries:
     def of_word(self, start: XY, goal: XY, word: Ints) -> Route:
         """Return the tight route of a reduced word between two points, with its clearance and chains.
 
-        A chain is an edge of the pathgraph, with its cells.
+        Its points (from the screen's south-west corner), length and clearance are in squares; it is the shortest of its
+        class, which the word names.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -247,7 +261,7 @@ class LayerQueries:
         Parameters
         ----------
         start, goal : (x, y) in squares from the screen's south-west corner, in free squares.
-        limit : in squares.
+        limit : a length in squares from which on a path is of no interest; infinite for none.
         """
         strips = self.layer.runs
         if self._polyanya is None:
@@ -261,16 +275,19 @@ class LayerQueries:
     def shortest(self, start: XY, goal: XY) -> Route | None:
         """Return the shortest route of all, at any angle; None when start and goal are not connected.
 
+        Its points (x, y) and its length are in squares, its signature names its class.
         Its clearance is nan and its chains are empty: they are not known. `start` and `goal` are (x, y) in squares from
-        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph, with its cells.
+        the screen's south-west corner, in free squares. A chain is an edge of the pathgraph (whose nodes are the
+        junctions and ends of the skeleton), with its cells.
         """
         length = self.shortest_length(start, goal)
         return None if length == inf else self._polyanya_route(length, None)
 
     def _polyanya_route(self, length: float, ends: Ends | None) -> Route:
-        """Return the route left in the scratch, lifted to the skeleton when its ends are given.
+        """Return the route left in the scratch by the last search for the shortest path, with its points in squares.
 
-        A chain is an edge of the pathgraph, with its cells.
+        It is lifted to the skeleton when its ends are given: it then has the clearance (squares) and the chains there.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
         Parameters
         ----------
@@ -291,7 +308,10 @@ class LayerQueries:
     def _lifted(self, ends: Ends, word: Ints) -> Lifted:
         """Return the path over the skeleton of a reduced word: its least squared clearance and its chains.
 
-        A chain is an edge of the pathgraph, with its cells.
+        The clearance (`lowest`) is in squared half squares, the chains are numbers in the order of the path.
+        A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+        word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
 
         Parameters
         ----------
@@ -305,7 +325,8 @@ class LayerQueries:
     def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
         """Return at most k closed tight routes that wind once, counter-clockwise, about blocked squares.
 
-        They stand shortest first; the list is empty when there are none.
+        They stand shortest first; the list is empty when there are none. Each begins and ends at the start; its points,
+        length and clearance are in squares.
 
         Parameters
         ----------
@@ -324,13 +345,16 @@ class LayerQueries:
         return sorted(routes, key=lambda route: route.length)[:k]
 
     def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
-        """Return the tight loop of a closed path over the pathgraph.
+        """Return the tight loop of a closed path over the pathgraph: points, length and clearance in squares, chains.
+
+        A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
         Parameters
         ----------
         start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
         rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
-        path : the arcs of the closed path, in the order in which they are walked.
+        path : the arcs of the closed path (chains or parts of chains, with a direction), in the order in which they
+            are walked; at least one.
         """
         cells = cells_of_path(self.layer.chains, path)
         word = join_words(rise, word_of_cells(self.layer.runs, cells, self._width), -rise[::-1])
@@ -343,8 +367,10 @@ class LayerQueries:
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
         """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
 
+        It holds the arcs that a query adds, scratch of the searches, and the routes found, as arrays.
         It is kept for each number of routes, and made anew when it has too little room. A signed portal is a portal's
-        index plus 1, negative when it is crossed southwards.
+        index plus 1, negative when it is crossed southwards. A portal is the overlap of two strips (rows of free
+        squares) in neighbouring rows.
         """
         buffers = self._buffers_of.get(wanted)
         if buffers is None or len(buffers.start) < room:
@@ -363,14 +389,15 @@ class LayerQueries:
         return (int(point[0]) + 0.5, int(point[1]) + 0.5) if self.layer.body else point
 
     def with_ends(self, route: Route, start: XY, goal: XY) -> Route:
-        """Return a body's route extended to its true ends, if they are not centres of squares.
+        """Return a body's route extended to its true ends, if they are not centres of squares; else the route itself.
 
         Within one square it becomes the straight line if that leaves room for the body. The length is that of the whole
-        line; clearance, signature and chains stay. A chain is an edge of the pathgraph, with its cells.
+        line; clearance, signature and chains stay. A chain is an edge of the pathgraph (whose nodes are the junctions
+        and ends of the skeleton), with its cells.
 
         Parameters
         ----------
-        route : a route between the centres of the ends' squares.
+        route : a route between the centres of the ends' squares; not changed.
         start, goal : the true ends, (x, y) in squares from the screen's south-west corner.
         """
         line = [(x, y) for x, y in route.points.tolist()]

@@ -22,8 +22,8 @@ class Route:
     length : in squares.
     clearance : the radius of the largest body that can follow this route over the skeleton, from square to square, in
         squares; nan when the path over the skeleton is not known (from `shortest` alone).
-    signature : signed crossing numbers of the portals crossed, from start to goal, negative when crossed southwards
-        (see strips.py); empty for the class without any.
+    signature : signed crossing numbers of the portals crossed, from start to goal, negative when crossed southwards;
+        empty for the class without any.
     chains : the numbers of the chains (edges of the pathgraph) that the route follows, in order (its ends may lie
         inside the first and last); empty when not known.
     """
@@ -38,9 +38,14 @@ class Route:
 def routes_of_answers(answers: RouteAnswers, found: int, most: int) -> list[Route]:
     """Return at most `most` of the first `found` routes in a router's answers, shortest first.
 
+    A route holds its corners (x, y) in squares from the screen's south-west corner, both ends included, its length and
+    clearance in squares, its signature (the crossing numbers that name its class), and the chains that it follows.
+    Of routes of one length that found first comes first.
+
     Parameters
     ----------
-    answers : the routes as arrays, in the order in which they were found.
+    answers : the routes as arrays, in the order in which they were found: corners and lengths in squares, crossing
+        numbers, chains, and least squared clearances in squared half squares.
     found : how many of them are filled in.
     most : how many routes to return at most.
     """

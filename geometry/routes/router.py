@@ -24,7 +24,7 @@ class RouteAnswers(NamedTuple):
     bounds : (room + 1, 3) bounds in `corners`, `crossings` and `chains`: those of route k are from bounds[k] to
         bounds[k + 1], excluded.
     corners : (size, 2) corners (x, y) of the routes, in squares from the screen's south-west corner.
-    crossings : (size,) signed crossing numbers (see strips.py).
+    crossings : (size,) signed crossing numbers of the portals that the routes cross, negative when crossed southwards.
     chains : (size,) numbers of the chains of the pathgraph.
     length : (room,) of each route, in squares.
     lowest : (room,) the least squared clearance on each route's path over the skeleton, in squared half squares.
@@ -70,9 +70,13 @@ class RouterBuffers(NamedTuple):
 def new_router_buffers(
     nodes: int, chains: int, landmark_count: int, wanted: int, room: int, closed_steps: Ints
 ) -> RouterBuffers:
-    """Return scratch for a query.
+    """Return scratch for a query, with room for its answers; no chain is closed in it.
 
-    A chain is an edge of the pathgraph, with its cells.
+    It holds the arcs that the query adds to the pathgraph, scratch of the searches, the paths found, words of signed
+    portals, and the routes found as arrays (corners in squares, crossing numbers, chains, lengths).
+
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A
+    portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
@@ -127,7 +131,10 @@ class RoutingData(NamedTuple):
     heights : (cells,) squared clearances in squared half squares, flat and padded.
     states : (cells,) links and flags of the skeleton, 0 off it.
     width : columns of the padded grid; a cell's index is (row + 1) * width + column + 1.
-    chains, strips, landmarks, body : those of the layer.
+    chains : the edges of the pathgraph, with their cells.
+    strips : maximal horizontal rows of free squares, and the portals between neighbouring ones.
+    landmarks : words and lengths of the chains, and distances from some nodes.
+    body : True for a body, False for a point.
     """
 
     heights: Heights
@@ -140,7 +147,11 @@ class RoutingData(NamedTuple):
 
 
 def routing_data(layer: Layer) -> RoutingData:
-    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views."""
+    """Return what the kernels read of a layer, the free space of a body of one radius; the arrays are views.
+
+    That is: squared clearances (squared half squares) and states of the skeleton, both flat over the padded grid, the
+    grid's width, and the chains, strips, landmarks and kind (body or point) of the layer.
+    """
     heights, states = layer.square.reshape(-1), layer.state.reshape(-1)
     return RoutingData(heights, states, layer.square.shape[1], layer.chains, layer.runs, layer.landmarks, layer.body)
 
@@ -155,7 +166,7 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 
     Parameters
     ----------
-    data : the layer's arrays.
+    data : the layer's arrays: clearances, states of the skeleton, chains, strips and landmarks.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner, in free squares.
     wanted : how many routes at most, at least 1; the number for which the buffers were made.
     buffers : scratch; the routes are left in `buffers.answers`.
@@ -207,14 +218,15 @@ def itineraries(data: RoutingData, ends: Ends, wanted: int, buffers: RouterBuffe
 def set_split_chains(closed: States, start: Anchor, goal: Anchor, flag: int) -> None:
     """Close the chains that start and goal split (flag 2), or open them again (flag 0).
 
-    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph,
-    with its cells.
+    Chains closed on request (bit 0) stay closed. An end at a node splits none. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
     closed : (m,) of the query, by chain; changed.
-    start, goal : where the ends meet the pathgraph.
-    flag : 2 or 0.
+    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
+        chain), and cell.
+    flag : 2 to close, 0 to open.
     """
     if start.node < 0:
         closed[start.chain] = closed[start.chain] & 1 | flag
@@ -234,7 +246,7 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
     line : (4,) of the query, written: the start (x, y) in squares from the screen's south-west corner, and the scaled
         normal of the straight line.
     ends : x and y of the start, x and y of the goal, in squares.
-    bias : 0 for none.
+    bias : the share, without unit; 0 for none, the normal is then 0.
     """
     dx, dy = ends[2] - ends[0], ends[3] - ends[1]
     square = dx * dx + dy * dy
@@ -246,14 +258,21 @@ def set_bias(line: Floats, ends: Ends, bias: float) -> None:
 
 @bare
 def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, starts: Ints, length: Floats) -> None:
-    """Set the ends and the lengths of the query's five arcs (see astar.py).
+    """Set the nodes and the lengths of the five arcs that link start and goal to the pathgraph; nothing is returned.
 
-    A chain is an edge of the pathgraph, with its cells.
+    Arcs 0 and 1 lead from the start to the first and to the last node of its chain, arcs 2 and 3 from the first and
+    from the last node of the goal's chain to the goal, and arc 4 from the start to the goal along a chain that both
+    share. An end that lies at a node has its first arc, to that node, of length 0, and no second. When both lie on one
+    chain, the arcs that would pass the other end are closed; when both lie in one cell, arc 4 of length 0 alone is
+    left. A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
-    query : `joint` and `cost` are written (squares; infinite for arcs that there are not), `closed_steps` is read.
-    start, goal : where the ends meet the pathgraph.
+    query : written are `joint`, the node at the other end of arcs 0 to 3 (-1 for none), and `cost`, the lengths of all
+        five in squares (infinite for arcs that there are not). `closed_steps` is read: chain and position of steps that
+        may not be taken; an arc over one of them is infinite.
+    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
+        chain), and cell.
     ends : (m, 2) the first and the last node of each chain.
     starts : (m + 1,) where the cells of each chain begin.
     length : (m,) of the chains, in squares.
@@ -284,7 +303,9 @@ def set_query_arcs(query: RouteQuery, start: Anchor, goal: Anchor, ends: Ints, s
 def length_between(closed_steps: Ints, starts: Ints, length: Floats, chain: int, begin: int, end: int) -> float:
     """Return the length of a part of a chain in squares, in proportion to its cells; infinite with a closed step.
 
-    A chain is an edge of the pathgraph, with its cells.
+    It is 0 from a position to itself.
+
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -307,7 +328,8 @@ def fill_end_distances(joint: Ints, cost: Floats, sight: Floats, out: Floats) ->
 
     Parameters
     ----------
-    joint, cost : (4,) and (5,) the nodes and the lengths of the query's arcs.
+    joint : (4,) the nodes to which the start's two arcs lead (0, 1) and from which the goal's two come (2, 3).
+    cost : (5,) the lengths of these arcs, and of that from start to goal, in squares; infinite where there is none.
     sight : (n, landmarks) the nodes' distances, in squares, from the landmarks (nodes chosen in advance).
     out : (2, landmarks) written: the goal's (row 0) and the start's (row 1); infinite where no arc leads to a node.
     """
@@ -326,7 +348,7 @@ def write_stretches(
 ) -> int:
     """Write the chains that a path follows and the positions between which, and return their number.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -334,7 +356,8 @@ def write_stretches(
     starts : (m + 1,) where the cells of each chain begin.
     arcs : (room, longest) arc codes of paths (2 chain, plus 1 when walked backwards; see astar.py).
     row, size : the path's row there, and its number of arcs.
-    start, goal : where the ends meet the pathgraph.
+    start, goal : where the steepest ascents from the ends meet the pathgraph: chain, position on it, node (-1 inside a
+        chain), and cell.
     out : (n, 3) written from row 0 on: chain, first and last position, in the order of the path; positions are indices
         of the chain's cells from 0. Arcs without length, at an end that lies at a node, are left out.
     """
@@ -366,7 +389,7 @@ def write_stretches(
 def is_repeated(bounds: Ints, chains: Ints, written: int, stretch: Ints, steps: int) -> bool:
     """Return whether a path follows the same chains, in the same order, as one of the routes written.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -391,8 +414,8 @@ def lowest_square_on(
 ) -> int:
     """Return the least squared clearance on a path, at most `lowest`, in squared half squares.
 
-    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph,
-    with its cells.
+    A cell's index is (row + 1) * width + column + 1, with width = columns + 2. A chain is an edge of the pathgraph
+    (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -429,16 +452,17 @@ def write_word(
 ) -> int:
     """Write the reduced word of a path from start to goal, and return its size.
 
-    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph, with
-    its cells.
+    A size equal to the length of `word` says that there was not enough room. A chain is an edge of the pathgraph (whose
+    nodes are the junctions and ends of the skeleton), with its cells. A word is reduced when no symbol stands next to
+    its negative. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
 
     Parameters
     ----------
     starts : (m + 1,) where the cells of each chain begin.
     landmarks : the words of the chains.
-    rise, risen : the word from the start up to the skeleton, and its size.
+    rise, risen : the word (signed portals) from the start up to the skeleton, and its size.
     stretch, steps : the chains that the path follows and the positions between which, (n, 3), and their number.
-    fall, fallen : the word from the goal up to the skeleton, and its size.
+    fall, fallen : the word from the goal up to the skeleton, and its size; it is appended backwards.
     word : written: signed portals, negative when crossed southwards.
     """
     symbol, words, spelt = landmarks.symbol, landmarks.word, landmarks.spelt
@@ -467,7 +491,7 @@ def write_route(
 ) -> bool:
     """Pull a word tight and write it as the k-th route; return False when there is no room.
 
-    A chain is an edge of the pathgraph, with its cells.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells.
 
     Parameters
     ----------
@@ -475,9 +499,10 @@ def write_route(
     body : True for a body, which keeps to the lines between centres of squares; False for a point.
     word, size : signed portals (index plus 1, negative when crossed southwards) from start to goal, and their number.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    funnel : scratch.
+    funnel : scratch, of the same room as `word`.
     stretch, steps : the chains that the path follows, in column 0, and their number.
-    answers : written, but for `lowest`: corners, crossings, chains and length of route k, and the bounds behind it.
+    answers : written, but for `lowest`: corners (squares), crossing numbers, chains and length (squares) of route k,
+        behind those of the routes before it, and the bounds behind it.
     k : the number of the route, from 0; those before it must be written.
     """
     bounds, line, crossings, chains = answers.bounds, answers.corners, answers.crossings, answers.chains

@@ -15,7 +15,11 @@ from geometry.routes.route import Route
 def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: tuple[int, ...]) -> Route:
     """Return the tight route of a reduced word: the shortest of its class.
 
-    A chain is an edge of the pathgraph, with its cells.
+    Its points are (x, y) in squares from the screen's south-west corner, both ends included; its length is in squares,
+    its signature made of the crossing numbers of the word.
+    A chain is an edge of the pathgraph (whose nodes are the junctions and ends of the skeleton), with its cells. A word
+    is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free squares)
+    in neighbouring rows.
 
     Parameters
     ----------
@@ -37,14 +41,16 @@ def tight_route(layer: Layer, ends: Ends, word: Ints, clearance: float, chains: 
 def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> Ints | None:
     """Return the reduced word of the class with these crossing numbers; None when start and goal are not connected.
 
-    The word is (n,) int32: signed portals from the start's strip to the goal's, negative when crossed southwards.
+    The word is (n,) int32: signed portals from the start's strip to the goal's, negative when crossed southwards. A
+    word is reduced when no symbol stands next to its negative.
 
     Parameters
     ----------
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
     ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner; both in free
         squares.
-    crossings : signed crossing numbers, in order; empty for the class without any.
+    crossings : signed crossing numbers of portals (from 1, negative when crossed southwards), in order; empty for the
+        class without any.
 
     Raises
     ------
@@ -75,8 +81,9 @@ def word_of_crossings(strips: Strips, ends: Ends, crossings: Sequence[int]) -> I
 def build_forest(strips: Strips) -> Ints:
     """Return for each strip the signed portal towards the first strip of its component, (n,) int32; 0 at that strip.
 
-    Only portals without a crossing number are used: in each component of the `strips` they form a tree. A signed portal
-    is a portal's index plus 1, negative when it is crossed southwards.
+    The first strip is that of the least number. Only portals without a crossing number are used: in each component
+    of the `strips` they form a tree. A signed portal is a portal's index plus 1, negative when it is crossed
+    southwards. A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
     """
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(strips.low))]
     for portal in np.flatnonzero(strips.crossing == 0).tolist():
@@ -100,12 +107,13 @@ def word_in_forest(strips: Strips, forest: Ints, strip: int, goal: int) -> Ints 
     """Return the reduced word from one strip to another over the forest; None when they are not connected.
 
     The word is (n,) int32 of signed portals (index plus 1, negative when crossed southwards), empty from a strip to
-    itself.
+    itself. A word is reduced when no symbol stands next to its negative.
 
     Parameters
     ----------
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    forest : (strips,) for each strip the signed portal towards the first strip of its component, as of `build_forest`.
+    forest : (strips,) for each strip the signed portal (of those without a crossing number) towards the first strip of
+        its component; 0 at that strip.
     strip, goal : numbers of the strips.
     """
     up, top = word_to_root(strips, forest, strip)
@@ -123,7 +131,8 @@ def word_to_root(strips: Strips, forest: Ints, strip: int) -> tuple[list[int], i
     Parameters
     ----------
     strips : the strips of free squares (maximal horizontal rows), and the portals between those of neighbouring rows.
-    forest : (strips,) for each strip the signed portal towards the first strip of its component, as of `build_forest`.
+    forest : (strips,) for each strip the signed portal (of those without a crossing number) towards the first strip of
+        its component; 0 at that strip.
     strip : the number of the strip.
     """
     word: list[int] = []

@@ -48,7 +48,7 @@ def node_marks(word: int, degree: int) -> int:
 
 @bare
 def sum_of_bytes(word: int) -> int:
-    """Return the sum of the eight bytes of a word whose highest byte is less than 128."""
+    """Return the sum of the eight bytes of a word (unsigned) whose highest byte is less than 128."""
     pairs = (word & EVEN_BYTES) + (word >> 8 & EVEN_BYTES)
     fours = (pairs & EVEN_PAIRS) + (pairs >> 16 & EVEN_PAIRS)
     return (fours & LOWER_HALF) + (fours >> 32)
@@ -86,6 +86,8 @@ def count_nodes(words: Eights, base: Ints, since: ByteFlags) -> tuple[int, int, 
 def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> int:
     """Append the cells of the nodes in the words ``first <= k < last`` to ``node``, and return their number so far.
 
+    That is `found` plus the number of those appended.
+
     Parameters
     ----------
     words : (words,) int64, states of eight cells each, of the whole padded screen; `last` may lie beyond.
@@ -106,6 +108,8 @@ def list_nodes(words: Eights, first: int, last: int, node: Ints, found: int) -> 
 @bare
 def node_number(cell: int, words: Eights, base: Ints, since: ByteFlags) -> int:
     """Return the number of nodes before a cell; when the cell is a node itself, that is its own number.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------

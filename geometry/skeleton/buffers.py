@@ -32,7 +32,7 @@ class Buffers(NamedTuple):
     Attributes
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Room for squared clearances in half squares.
+        Room for squared clearances in squared half squares.
     words : (cells / 8, rounded up) uint64
         Room for the states of the skeleton, eight cells a word, a byte each.
     """
@@ -86,7 +86,9 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
     Returns
     -------
     Buffers
-        With arbitrary values, but for the bytes of ``words`` beyond the last cell, which are 0.
+        ``square``, room for squared clearances, of the padded shape, and ``words``, room for the states of the
+        skeleton, eight cells a word. With arbitrary values, but for the bytes of ``words`` beyond the last cell, which
+        are 0.
     """
     buffers = SPARE_BUFFERS.pop(shape, None)
     if buffers is None or buffers.square.dtype < kind:
@@ -103,7 +105,7 @@ def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | 
 
 
 def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
-    """Keep a set of arrays, no longer in use, as the only spare one; `shape` is its padded shape."""
+    """Keep a set of arrays, `buffers`, no longer in use, as the only spare one; `shape` is its padded shape."""
     SPARE_BUFFERS.clear()
     SPARE_BUFFERS[shape] = buffers
 
@@ -111,7 +113,9 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
 def take_scratch(cells: int) -> Scratch:
     """Return scratch for a screen of so many padded cells: that of the last change if it was of that size, else new.
 
-    Its ``mark`` is all 0; what the other arrays hold is arbitrary. It is no longer spare until ``keep_scratch``.
+    It holds an array ``mark`` of marks of cells, all 0, and room for a list of touched cells and for their states
+    before the change, both arbitrary. Cells are flat indices. It is no longer spare until ``keep_scratch``. Flat
+    indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     scratch = SPARE_SCRATCH.pop(cells, None)
     if scratch is None:
@@ -120,7 +124,10 @@ def take_scratch(cells: int) -> Scratch:
 
 
 def keep_scratch(scratch: Scratch) -> None:
-    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one."""
+    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one.
+
+    Scratch holds marks of cells, room for a list of touched cells, and for their states before a change.
+    """
     SPARE_SCRATCH.clear()
     SPARE_SCRATCH[len(scratch.mark)] = scratch
 

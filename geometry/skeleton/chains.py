@@ -43,6 +43,8 @@ class Chains(NamedTuple):
 def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     """Return a graph with the cells of its chains, found by walking them.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     bones : SkeletonGraph
@@ -53,7 +55,9 @@ def find_chains(bones: SkeletonGraph, state: States) -> Chains:
     Returns
     -------
     Chains
-        Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
+        The cells of the nodes, the chain that leaves each node in each of the four directions (-1 for none), and of
+        each chain its two nodes, its cells from the first to the last, and its lowest cell. Cells are flat padded
+        indices. Numbered as in ``bones``; with no chain and no node when the skeleton is empty.
     """
     states, width, size = state.reshape(-1), state.shape[1], len(bones.steps)
     start = np.zeros(size + 1, np.int32)
@@ -70,12 +74,13 @@ def fill_cells(
 ) -> None:
     """Walk every chain from its first end, and fill ``cells``, ``neck`` and ``leave``.
 
-    Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+    Cells are flat indices into the padded screen; n is the number of nodes, m of chains. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node : (n,) int32

@@ -50,10 +50,12 @@ class SkeletonGraph(NamedTuple):
 def contract(square: SquaredDistances, state: States, words: Words, min_notes: int = MIN_NOTES) -> SkeletonGraph:
     """Return the graph of a skeleton, and flag the first cells of rings without a junction as nodes in ``state``.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring. That bit, HALT, of
@@ -61,12 +63,14 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
     words : (n,) uint64
         The memory of ``state`` by eights.
     min_notes : int
-        The least room for notes of lowest cells (see lowest_cells.py).
+        The least room for notes, which are the cells that may be the lowest of their chain; it changes no result.
 
     Returns
     -------
     SkeletonGraph
-        With no node when the skeleton is empty. A summit without links is a node without chains.
+        The cells of the nodes, ascending (flat padded indices), and of each chain its two ends (4 times the node plus
+        the direction in which it leaves), its lowest cell and its number of steps. With no node when the skeleton is
+        empty. A summit without links is a node without chains.
     """
     heights, states, width = square.reshape(-1), state.reshape(-1), state.shape[1]
     eights, size, notes = words.view(np.int64), len(words), new_notes(len(states), min_notes)
@@ -86,12 +90,15 @@ def contract(square: SquaredDistances, state: States, words: Words, min_notes: i
 def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGraph, notes: Ints) -> SkeletonGraph:
     """Return ``bones`` with the rings added whose first cells are flagged in ``states``, in the order of cells.
 
-    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends.
+    A ring is a closed chain without a junction; its first cell becomes a node, at which it begins and ends. New nodes
+    and chains are inserted where the order of cells puts them, so the numbers of old ones behind them grow. The graph
+    holds the cells of nodes, and of each chain its two ends, its lowest cell and its number of steps. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
         States of the skeleton, flat; cells with HALT are the first cells of rings.
     width : int
@@ -99,7 +106,7 @@ def insert_rings(heights: Heights, states: Flags, width: int, bones: SkeletonGra
     bones : SkeletonGraph
         The graph without the rings; it is not changed.
     notes : (size,) int32
-        Scratch.
+        Scratch for cells that may be the lowest of their ring.
     """
     cells = np.flatnonzero(states >= HALT).astype(np.int32)
     place = bones.node.searchsorted(cells)
@@ -131,12 +138,14 @@ def walk_rings(
 ) -> None:
     """Walk once around each ring whose only node has a number in ``ring``, and fill its ends, lowest cell and steps.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node : (n,) int32
@@ -149,7 +158,7 @@ def walk_rings(
     neck, steps : (r,) int32
         Filled with the lowest cell (flat index) of each ring and its number of steps from square to square.
     notes : (size,) int32
-        Scratch.
+        Scratch for cells that may be the lowest of their ring.
     """
     for k in range(ring.shape[0]):
         cell = int(node[ring[k]])
@@ -163,12 +172,13 @@ def walk_rings(
 def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> None:
     """Set HALT in the state of the first cell of every ring that has no junction.
 
-    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index.
+    A ring is found from the saddle that is its lowest cell. Its first cell is that of the least index. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
         States of the skeleton, flat; changed.
     width : int
@@ -190,14 +200,15 @@ def halt_rings(heights: Heights, states: Flags, width: int, words: Words) -> Non
 def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> int:
     """Return the first cell (least flat index) of the ring on which a saddle lies and is the lowest cell.
 
-    -1 when the ring has a node or a lower saddle.
+    -1 when the ring has a node or a lower saddle. Flat indices are row * width + column in the screen padded by one
+    blocked cell on each side.
 
     Parameters
     ----------
     saddle : int
         Flat index of a saddle that is no node.
     heights, states : (cells,)
-        Squared clearances in half squares, and states of the skeleton, flat.
+        Squared clearances in squared half squares, and states of the skeleton, flat.
     width : int
         Width of the padded screen.
     """
@@ -215,7 +226,7 @@ def first_on_ring(saddle: int, heights: Heights, states: Flags, width: int) -> i
 
 @bare
 def is_node(here: int) -> bool:
-    """Return whether a cell of this state (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
+    """Return whether a cell of the state `here` (links 1, 2, 4, 8; flags 16, 32, 64, HALT 128) is a node.
 
     It is when flagged HALT, or with links or flags but not two links. State 0, off the skeleton, is none.
     """
@@ -242,19 +253,20 @@ def walk_chains(
 
     Nodes are listed some way ahead of the walk, which then finds the states there in the processor's cache. Rings
     without a node are not walked. Cells are flat indices into the padded screen; n is the number of nodes, m of chains.
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares, flat.
+        Squared clearances in squared half squares, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     words : (cells / 8, rounded up) int64
         The memory of ``states`` by eights.
     width : int
         Width of the padded screen.
     base, since : int32 and uint8
-        As ``count_nodes`` filled them: nodes before each group of sixteen words, and from there up to each word.
+        Nodes before each group of sixteen words, and from there up to each word.
     node : (n + 1,) int32
         Filled with the cells of the nodes, ascending.
     port : (m, 2) int32
@@ -265,7 +277,7 @@ def walk_chains(
     seen : (n,) uint8
         0 at first; notes the ends met at each node, as bits by direction.
     notes : (2, size) int32
-        Scratch (see lowest_cells.py).
+        Scratch for cells that may be the lowest of their chain, and their squared clearances.
     """
     chain, settled, noted, walked, n, found = 0, 0, 0, 0, 0, 0
     for first in range(-WORDS_AHEAD, words.shape[0], WORDS_AHEAD):
@@ -297,7 +309,8 @@ def walk_chain(
     """Walk one chain from a node; return its last cell, the direction back from there, its steps, and the notes so far.
 
     That is: the flat index of the node at its other end, the direction (0 to 3) in which the chain leaves that node,
-    the number of steps from square to square, and how many of ``notes`` are in use now.
+    the number of steps from square to square, and how many of ``notes`` are in use now. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
@@ -305,7 +318,7 @@ def walk_chain(
         Flat index of the first node, and the direction (0 east, 1 north, 2 west, 3 south) of the link by which the
         chain leaves it.
     heights, states : (cells,)
-        Squared clearances in half squares, and states of the skeleton, flat.
+        Squared clearances in squared half squares, and states of the skeleton, flat.
     width : int
         Width of the padded screen.
     notes : (size,) int32
@@ -362,6 +375,8 @@ def first_direction(here: int) -> int:
 @bare
 def find(node: Ints, cell: int) -> int:
     """Return the number of the first node at or after a cell, by bisection; the number of nodes when there is none.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     `node` : (n,) cells of nodes (flat indices), ascending. `cell` : a flat index.
     """

@@ -30,13 +30,14 @@ def new_notes(cells: int, min_notes: int = MIN_NOTES) -> Notes:
 def lowest_of(notes: Ints, first: int, last: int, heights: SquaredDistances) -> int:
     """Return the lowest cell (flat index) of one chain, by its notes ``first <= k < last``.
 
-    Lower is the cell of less clearance and, of two with the same, that of the lower index.
+    Lower is the cell of less clearance and, of two with the same, that of the lower index. Flat indices are row * width
+    + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     notes : (size,) int32, the cells of the chain that may be its lowest, its ends and saddles; the first one as ~cell.
     first, last : where the notes of this chain begin, and the index behind its last; at least one.
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     """
     lowest = int(~notes[first])
     low = heights[lowest]
@@ -53,7 +54,8 @@ def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances
     """Fill ``neck`` with the lowest cells of successive chains, from number ``chain`` on, by their notes.
 
     Lower is the cell of less clearance and, of two with the same, that of the lower index. The loop has no branches,
-    because none could be predicted.
+    because none could be predicted. Flat indices are row * width + column in the screen padded by one blocked cell on
+    each side.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ def find_lowest(notes: Ints, values: Ints, noted: int, heights: SquaredDistances
         by chain; the first one of each chain as ~cell, which is negative.
     values : (size,) int32, scratch: their squared clearances.
     noted : how many of ``notes`` are in use; 0 fills nothing.
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     chain : the number of the first of these chains.
     neck : (m,) int32, output at the numbers of these chains; all else is left alone.
     """

@@ -22,7 +22,8 @@ def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
     Parameters
     ----------
     arrays : PathgraphArrays
-        The pathgraph. The points of edges become views of its block of points.
+        The pathgraph: places and clearances of nodes, ends, lengths and points of edges. The points of edges become
+        views of its block of points.
 
     Returns
     -------
@@ -41,7 +42,10 @@ def networkx_graph(arrays: PathgraphArrays) -> "networkx.MultiGraph[int]":
 
 
 def node_attributes(arrays: PathgraphArrays) -> list[dict[str, float]]:
-    """Return for each node, in order, a dictionary of ``x``, ``y`` and ``clearance``, all in squares (screen frame)."""
+    """Return for each node of ``arrays``, by number, a dictionary of ``x``, ``y`` and ``clearance``, all in squares.
+
+    The frame is that of the screen: x to the east, y to the north, (0, 0) at the south-west corner.
+    """
     x, y = arrays.nodes.T.tolist()
     places = zip(x, y, arrays.node_clearances.tolist(), strict=True)
     return [{"x": east, "y": north, "clearance": clearance} for east, north, clearance in places]
@@ -50,9 +54,10 @@ def node_attributes(arrays: PathgraphArrays) -> list[dict[str, float]]:
 def adjacency(arrays: PathgraphArrays) -> list[dict[int, dict[int, dict[str, Any]]]]:
     """Return for each node its neighbours, for each of these the edges between by number, for each its attributes.
 
-    The list has a dictionary for each node: neighbour to (number of the edge to attributes). Attributes are ``length``
-    and ``clearance`` in squares and ``points``, (k, 2) float64, x and y in squares, in the frame of the screen. A node
-    without edges has an empty one. Both ends of an edge share the dictionaries of the edge, as networkx has it.
+    The list has a dictionary for each node of ``arrays``, by number: neighbour to (number of the edge to attributes).
+    Attributes are ``length`` and ``clearance`` in squares and ``points``, (k, 2) float64, x and y in squares, in the
+    frame of the screen. A node without edges has an empty one. Both ends of an edge share the dictionaries of the edge,
+    as networkx has it.
     """
     rows: list[dict[int, dict[int, dict[str, Any]]]] = [{} for _ in range(len(arrays.nodes))]
     points, offsets = arrays.points, arrays.offsets.tolist()

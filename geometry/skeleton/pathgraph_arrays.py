@@ -108,7 +108,7 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2, with a blocked frame.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2, with a blocked frame.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
@@ -118,8 +118,9 @@ def build_pathgraph_arrays(square: SquaredDistances, state: States, bones: Skele
     Returns
     -------
     PathgraphArrays
-        Writable arrays, in squares, in the frame of the screen without its padding; of no rows when the skeleton is
-        empty.
+        Of the nodes their places and clearances, of the edges their end nodes, lengths, least clearances and points,
+        and lists of the edges at each node. Writable arrays, in squares, in the frame of the screen without its
+        padding; of no rows when the skeleton is empty.
     """
     n, m = len(bones.node), len(bones.steps)
     offsets = np.zeros(m + 1, np.int32)
@@ -165,21 +166,24 @@ def fill_arrays(
 ) -> None:
     """Fill the arrays of a ``PathgraphArrays`` (all but ``offsets``) from those of a ``SkeletonGraph``.
 
-    n is the number of nodes, m of edges, which are the chains.
+    n is the number of nodes, m of edges, which are the chains. Flat indices are row * width + column in the screen
+    padded by one blocked cell on each side.
 
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares of the padded screen, flat.
+        Squared clearances in squared half squares of the padded screen, flat.
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node, port, lowest, steps : int32
         The graph: cell of each node, both ends of each chain (4 times the node plus the direction in which it leaves),
         lowest cell and number of steps of each chain; cells are flat indices.
     nodes, node_clearances, edges, lengths, edge_clearances, points, narrowest, incident_edges, neighbours
-        Filled; shapes and units as in ``PathgraphArrays``.
+        Filled: (n, 2) places and (n,) clearances of nodes; (m, 2) end nodes, (m,) lengths and (m,) least clearances of
+        edges; (p, 2) points of all edges; (m,) row of ``points`` where each is narrowest; (2 m,) edges at each node and
+        nodes at their other ends. Lengths and places in squares.
     offsets : (m + 1,) int32
         Given: rows of ``points`` at which those of each edge start.
     adjacency_offsets : (n + 2,) int32
@@ -197,10 +201,12 @@ def fill_arrays(
 def fill_nodes(heights: Heights, width: int, node: Ints, nodes: Floats, clearances: Floats) -> None:
     """Fill places and clearances of nodes.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares of the padded screen, flat.
+        Squared clearances in squared half squares of the padded screen, flat.
     width : int
         Width of the padded screen.
     node : (n,) int32
@@ -234,10 +240,12 @@ def fill_points(
 ) -> None:
     """Walk every chain from its first end and fill ``points`` and ``narrowest``.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     states : (cells,) uint8
-        States of the skeleton, flat (see skeleton.py).
+        States of the skeleton, flat: bits 1, 2, 4, 8 are links to the east, north, west, south, 16 and more flags.
     width : int
         Width of the padded screen.
     node, port, lowest : int32

@@ -23,7 +23,7 @@ from geometry.kernels.jit import bare
 
 States = NDArray[np.uint8]
 Heights = SquaredDistances
-"""(cells,) squared clearances in half squares, flat."""
+"""(cells,) squared clearances in squared half squares, flat."""
 Flags = States
 """(cells,) states, flat."""
 Words = NDArray[np.uint64]
@@ -39,8 +39,9 @@ CLIMBED, SADDLE, SUMMIT, HALT = 16, 32, 64, 128  # bits of a state; HALT: the no
 
 @bare
 def flag(e: Truth, ne: Truth, n: Truth, nw: Truth, w: Truth, sw: Truth, s: Truth, se: Truth) -> np.uint8:
-    """Return SADDLE, SUMMIT or 0 for a cell, given which of its eight neighbours (east, north-east, ...) are higher.
+    """Return SADDLE (32), SUMMIT (64) or 0 for a cell, given which of its eight neighbours are higher.
 
+    `e` east, `ne` north-east, and so on counter-clockwise. A group is a stretch of higher neighbours along that ring.
     A group ends behind each edge neighbour that the corner neighbour between does not join to the next edge neighbour.
     Where two groups end the cell is a saddle. It is a summit when none of the four edge neighbours is higher.
     """
@@ -101,13 +102,14 @@ def grow(
 ) -> int:
     """Classify rows from ``north`` down to ``south``, link the ascents from their saddles, and return how many wait.
 
-    An ascent waits when it leads on to a row south of ``south``. The rows further north are done already, and in the
-    next row further south clearances are known. Cells are flat indices (row * width + column) of the padded screen.
+    An ascent goes from each cell to its highest edge neighbour. It waits when it leads on to a row south of ``south``.
+    The rows further north are done already, and in the next row further south clearances are known. Cells are flat
+    indices (row * width + column) of the padded screen.
 
     Parameters
     ----------
     heights : (cells,) int16 or int32
-        Squared clearances in half squares.
+        Squared clearances in squared half squares.
     states : (cells,) uint8
         Filled in these rows with links and flags; links are also set in rows further north.
     words : (cells / 8, rounded up) uint64
@@ -151,10 +153,13 @@ def grow(
 def classify(heights: Heights, states: Flags, width: int, level: int, row: int, flags: States) -> None:
     """Clear the states of a row and set SADDLE or SUMMIT in those of its saddles and summits.
 
+    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
-    heights, states : (cells,) squared clearances in half squares, and states, of which the row is overwritten; both
-        flat.
+    heights, states : (cells,) squared clearances in squared half squares, and states, of which the row is overwritten;
+        both flat.
     width : width of the padded screen.
     level : cells of less squared clearance (half squares) get 0.
     row : padded row, neither the first nor the last.
@@ -173,11 +178,13 @@ def classify(heights: Heights, states: Flags, width: int, level: int, row: int, 
 def find_flags(heights: Heights, width: int, first: int, level: int, flags: Flags) -> None:
     """Fill ``flags`` for as many cells of a row from ``first`` on: SADDLE, SUMMIT or 0.
 
-    Cells lower than ``level`` get 0.
+    A summit has no higher edge neighbour; the higher ones about a saddle form two separate groups or more.
+    Cells lower than ``level`` get 0. Flat indices are row * width + column in the screen padded by one blocked cell on
+    each side.
 
     Parameters
     ----------
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     width : width of the padded screen.
     first : flat index of the first cell, not on the frame of the screen.
     level : a squared clearance, in half squares.
@@ -199,7 +206,7 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 
     Higher is the cell of greater clearance and, of two with the same, that of the greater flat index. The cell, a flat
     index, does not lie on the frame of the padded screen; `heights` are squared clearances, flat, `width` is that of
-    the screen.
+    the screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     own = heights[cell]
     higher = int(heights[cell + 1] >= own) | int(heights[cell + width + 1] >= own) << 1
@@ -212,13 +219,15 @@ def higher_about(cell: int, heights: Heights, width: int) -> int:
 def highest_of(cell: int, edges: int, heights: Heights, width: int) -> int:
     """Return the direction (0 east, 1 north, 2 west, 3 south) of the highest among some edge neighbours of a cell.
 
-    Without branches, because at saddles none could be predicted.
+    Without branches, because at saddles none could be predicted. Flat indices are row * width + column in the screen
+    padded by one blocked cell on each side.
 
     Parameters
     ----------
     cell : a flat index, not on the frame of the padded screen.
     edges : which neighbours are asked about, as bits like links: 1 east, 2 north, 4 west, 8 south; not 0.
-    heights : (cells,) squared clearances in half squares, flat; of equal ones the greater index counts as higher.
+    heights : (cells,) squared clearances in squared half squares, flat; of equal ones the greater index counts as
+        higher.
     width : width of the padded screen.
     """
     south = np.int64(heights[cell - width]) << 2
@@ -238,7 +247,7 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 
     With branches, which along a chain are predictable. Of equal neighbours that of the greater flat index counts as
     higher. `cell` is a flat index, not on the frame; `heights` are squared clearances, flat; `width` is that of the
-    padded screen.
+    padded screen. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
     """
     east, north, west, south = heights[cell + 1], heights[cell + width], heights[cell - 1], heights[cell - width]
     if (north if north >= east else east) >= (west if west >= south else south):
@@ -250,13 +259,14 @@ def highest(cell: int, heights: Heights, width: int) -> int:
 def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int, first: int) -> int:
     """Link a cell to a higher neighbour and ascend from there until a saddle, a summit or an earlier ascent.
 
+    An ascent goes from each cell to its highest edge neighbour; CLIMBED marks the cells that one has passed.
     Returns -1 when the ascent has ended, or the cell (flat index) from which it leads on to a cell before ``first``,
-    where it has to wait.
+    where it has to wait. Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
     cell, direction : flat index of the cell, and the direction (0 east, 1 north, 2 west, 3 south) of the neighbour.
-    heights : (cells,) squared clearances in half squares, flat.
+    heights : (cells,) squared clearances in squared half squares, flat.
     states : (cells,) states of the skeleton, flat; links and CLIMBED are set on the way.
     width : width of the padded screen.
     first : flat index of the first cell of the rows done so far; cells before it are not entered.
@@ -277,7 +287,8 @@ def climb(cell: int, direction: int, heights: Heights, states: Flags, width: int
 def link(cell: int, other: int, direction: int, states: Flags) -> None:
     """Set the two link bits between edge neighbours in ``states``.
 
-    ``direction`` (0 east, 1 north, 2 west, 3 south) leads from ``cell`` to ``other``, both flat indices.
+    ``direction`` (0 east, 1 north, 2 west, 3 south) leads from ``cell`` to ``other``, both flat indices. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
     """
     states[cell] |= 1 << direction
     states[other] |= 1 << (direction ^ 2)
@@ -285,15 +296,21 @@ def link(cell: int, other: int, direction: int, states: Flags) -> None:
 
 @bare
 def steepest(cell: int, heights: Heights, width: int) -> int:
-    """Return the highest edge neighbour (flat index) of a cell that is no summit."""
+    """Return the highest edge neighbour (flat index) of a cell that is no summit; of equal ones the greater index.
+
+    `heights` : (cells,) squared clearances in squared half squares, flat. `width` : that of the padded screen. For a
+    summit, which has no higher neighbour, the highest of the lower ones is returned. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
+    """
     return int(cell + stride(highest(cell, heights, width), width))
 
 
 @bare
 def above(cell: int, other: int, heights: Heights) -> bool:
-    """Return whether a cell is above another in the total order: by clearance, then by flat index.
+    """Return whether `cell` is above `other` in the total order: by clearance, then by flat index.
 
-    A cell is not above itself. `heights` : (cells,) squared clearances in half squares, flat.
+    A cell is not above itself. `heights` : (cells,) squared clearances in squared half squares, flat. Flat indices are
+    row * width + column in the screen padded by one blocked cell on each side.
     """
     return bool(heights[cell] > heights[other] or (heights[cell] == heights[other] and cell > other))
 
@@ -302,7 +319,8 @@ def above(cell: int, other: int, heights: Heights) -> bool:
 def stride(direction: int, width: int) -> int:
     """Return the difference of flat indices of one step in a direction (0 east, 1 north, 2 west, 3 south).
 
-    `width` is that of the padded screen: 1 east, width north, -1 west, -width south.
+    `width` is that of the padded screen: 1 east, width north, -1 west, -width south. Flat indices are row * width +
+    column in the screen padded by one blocked cell on each side.
     """
     return (1 - (direction & 2)) * (width if direction & 1 else 1)
 
@@ -311,7 +329,8 @@ def stride(direction: int, width: int) -> int:
 def beside(k: int, width: int) -> int:
     """Return the difference of flat indices to the k-th of the eight neighbours, from the east counter-clockwise.
 
-    0 is east, 1 north-east, 2 north and so on; k counts modulo 8. `width` is that of the padded screen.
+    0 is east, 1 north-east, 2 north and so on; k counts modulo 8. `width` is that of the padded screen. Flat indices
+    are row * width + column in the screen padded by one blocked cell on each side.
     """
     k %= 8
     if k < 4:

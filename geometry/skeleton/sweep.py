@@ -24,8 +24,8 @@ def survey(free: Bools, square: SquaredDistances, state: States, words: Words, b
     free : (rows, columns) bool
         True on free squares; row 0 in the south.
     square : (rows + 2, columns + 2) int16 or int32
-        Filled with squared clearances in half squares, (2 * clearance in squares)^2, 0 where blocked; its type must
-        hold them. The first and last row and column are a blocked frame.
+        Filled with squared clearances in squared half squares, (2 * clearance in squares)^2, 0 where blocked; its type
+        must hold them. The first and last row and column are a blocked frame.
     state : (rows + 2, columns + 2) uint8
         Filled with the links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north,
         west, south; 16 says that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a
@@ -49,7 +49,7 @@ def grow_all(square: SquaredDistances, level: int, state: States, words: Words) 
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2.
     level : int
         The least squared clearance, in half squares, that counts as free; the higher, the larger the body and the
         smaller the skeleton. Levels beyond the type of ``square`` count as its greatest value.
@@ -78,10 +78,12 @@ def sweep(
 ) -> None:
     """Measure, classify and climb bands of ``band`` rows from the north to the south.
 
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
+
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Filled, but for its first and last row, with squared clearances in half squares.
+        Filled, but for its first and last row, with squared clearances in squared half squares.
     steps : (rows + 2, columns + 2 or more) int16
         Steps from each square to the nearest blocked one to the south, in the memory of ``square``; overwritten.
     heights : (cells,)
@@ -93,7 +95,8 @@ def sweep(
     band : int
         Number of rows that are measured and climbed at a time, 1 or more.
     window, flags, waiting
-        Scratch: a new window (distance_rows.py), (width,) uint8 and (width,) int32.
+        Scratch: a new window of rows for the measuring (distance_rows.py), (width,) uint8 for the flags of a row, and
+        (width,) int32 for cells whose ascents wait.
     """
     last, width = square.shape[0] - 2, square.shape[1]
     measured, waits = last + 1, 0

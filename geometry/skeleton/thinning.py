@@ -20,7 +20,7 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
     Parameters
     ----------
     square : (rows + 2, columns + 2) int16 or int32
-        Squared clearances in half squares, (2 * clearance in squares)^2; 0 on blocked squares.
+        Squared clearances in squared half squares, (2 * clearance in squares)^2; 0 on blocked squares.
     state : (rows + 2, columns + 2) uint8
         Links and flags of the skeleton: of each cell bits 1, 2, 4, 8 are links to the east, north, west, south; 16 says
         that an ascent passed it, 32 saddle, 64 summit, 128 that it was chosen as the node of a ring.
@@ -42,6 +42,8 @@ def thin_skeleton(square: SquaredDistances, state: States) -> Bools:
 @bare
 def flood(line: Bools, reached: Bools, seeds: Ints, stack: Ints) -> None:
     """Set ``reached`` for all cells off the line that the seeds reach by sides and corners.
+
+    Flat indices are row * width + column in the screen padded by one blocked cell on each side.
 
     Parameters
     ----------
