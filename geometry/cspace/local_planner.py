@@ -35,12 +35,11 @@ class HopContext(NamedTuple):
 
 
 def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
-    """Return a context with scratch memory of its own.
+    """Return the body among its obstacles, as `hop` needs it. It has scratch memory of its own for the placed edges.
 
     Parameters
     ----------
-    body, nearby, surface : as in HopContext: the body, the obstacle edges by place, the boundary that it must not
-        cross.
+    body, nearby, surface : the body, the obstacle edges by place, the boundary that it must not cross.
     """
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 
@@ -112,16 +111,17 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
 
 @bare
 def shorter_turn(turn: float) -> float:
-    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to pi."""
+    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to below pi."""
     return turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
 
 
 @bare
 def hop(context: HopContext, here: Floats, there: Floats) -> int:
-    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST, PUSH_FIRST or BLOCKED.
+    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST (1), PUSH_FIRST (2) or BLOCKED (0).
 
     It makes one turn about its centre, the shorter way round, and one push, in the order named; TURN_FIRST if both are
-    free. Poses are (3,) x, y of the body's centre in squares, table frame, radians.
+    free. `context` : the body among its obstacles; context.placed is overwritten. Poses are (3,) x, y of the body's
+    centre in squares, table frame, radians.
     """
     dx, dy = there[0] - here[0], there[1] - here[1]
     turn = shorter_turn(there[2] - here[2])
@@ -140,9 +140,10 @@ def hop(context: HopContext, here: Floats, there: Floats) -> int:
 
 @bare
 def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float) -> bool:
-    """Return whether the reference point is within its bounds (x0, y0, x1, y1) at a pose of the body's centre.
+    """Return whether the reference point is within `bounds` (x0, y0, x1, y1) at a pose of the body's centre.
 
-    `reference` : (2,) x, y relative to the centre, body frame.
+    `x`, `y`, `angle` : that pose, squares, table frame, radians. `reference` : (2,) x, y relative to the centre, body
+        frame.
     """
     c, s = math.cos(angle), math.sin(angle)
     rx, ry = x + c * reference[0] - s * reference[1], y + s * reference[0] + c * reference[1]

@@ -114,7 +114,10 @@ class MotionPlan:
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """Return the bottleneck that is too narrow; None unless impossible for want of one. Computed at first use."""
+        """Return the bottleneck that is too narrow; None unless impossible for want of one. Computed at first use.
+
+        Its middle (x, y), the two points (x, y) of obstacles that make it and their distance, in squares, table frame.
+        """
         query = self.question
         return None if query is None else find_bottleneck(query.field, query.goals, query.reached, query.radius)
 
@@ -188,7 +191,9 @@ def plan_motion(
 
     Returns
     -------
-    MotionPlan : its status is "found", "impossible" (proved) or "limit" (not decided).
+    MotionPlan : its status is "found", "impossible" (proved) or "limit" (not decided). When found it holds the motions
+        in order and the poses of the reference point between them, squares and degrees, table frame; when impossible
+        the reason ("start", "goal" or "") and, computed when asked for, the passage that is too narrow.
 
     Raises
     ------

@@ -60,7 +60,8 @@ def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Moving
 
     Returns
     -------
-    MovingBody : drawn about the pivot.
+    MovingBody : edges (m, 7), inscribed discs and corners (k, 4), enclosing radius, reference point (2,) and one corner
+        of each part, in squares, body frame shifted so that the pivot is the origin.
 
     Raises
     ------

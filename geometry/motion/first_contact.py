@@ -124,6 +124,8 @@ class Obstacles:
     def point_surface(self) -> Surface:
         """Return the surface that a point meets: the skin of all obstacles as one, so that no point slips into a seam.
 
+        A Surface holds edges as rows x0, y0, x1, y1, outward normal x and y, length: squares, table frame.
+
         Between two obstacles that stand flush the skins would leave a gap of 2 SKIN_DEPTH: enough for a point, for no
         body. Its `hull` and `skin` are those of the union; its `edges` and `owner` those of the single obstacles.
         Computed at first use.
@@ -142,9 +144,11 @@ class Obstacles:
 
         Returns
         -------
-        Contact : its fraction is 1 when the whole motion is free. A body that touches at the start may slide along or
-            leave (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7 where
-            points of the contours lie nearer to each other than that.
+        Contact : the part travelled (0 to 1), the place (x, y) of contact in squares, table frame, the index of the
+            obstacle and the unit normal away from it. The fraction is 1, and all else None, when the whole motion is
+            free. Of several obstacles met at once the first found counts. A body that touches at the start may slide
+            along or leave (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7
+            where points of the contours lie nearer to each other than that.
 
         Raises
         ------

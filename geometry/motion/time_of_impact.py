@@ -124,12 +124,14 @@ def turn_impact_angle(
 def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx: float, dy: float) -> FirstContactHit:
     """Return the first contact of a body pushed by (dx, dy).
 
+    Of impacts at the same time the first found counts, by rows of the surface.
+
     Parameters
     ----------
     corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
         frame.
     body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
     dx, dy : the push, squares.
 
     Returns
@@ -201,7 +203,7 @@ def first_push_skin_hit(
 
 @bare
 def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
-    """Return (time, row) of the last entry through the true edges up to the time `until`.
+    """Return (time, row) of the last entry through the true edges up to the time `until`; of equal times the first row.
 
     The time is from 0 to `until` over the push (dx, dy) of the point (x, y); the row is one of `edges` (n, 7). Without
     any entry: (0.0, row of the nearest edge ahead).
@@ -256,12 +258,15 @@ def first_turn_contact(
 ) -> FirstContactHit:
     """Return the first contact of a body turned by `turn` radians, counter-clockwise positive, about (cx, cy).
 
+    Of impacts at the same time the first found counts, by rows of the surface.
+
     Parameters
     ----------
+    turn, cx, cy : the turn in radians, and its pivot in squares, table frame.
     corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
         frame.
     body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
 
     Returns
     -------
