@@ -56,6 +56,10 @@ class Footprints:
 def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
     """Return the footprints of a shape whose centroid lies in the square (0, 0); `home` is (0, 0).
 
+    They hold (columns, rows) offsets from that square: `holds` from which to grasp, sorted by column, then row (or as
+    given); `lying` squares covered; `steps` squares met by a push in each of eight directions; `turns` squares met by a
+    quarter turn counter-clockwise about each hold.
+
     Parameters
     ----------
     shape : shapely Polygon, in squares, drawn so that its centroid lies in the unit square from (0, 0) to (1, 1).
@@ -147,7 +151,11 @@ def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
 
 
 def _unit_square_surface() -> tuple[Floats, Floats, Floats]:
-    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), as in time_of_impact.Surface."""
+    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), from (0, 0) to (1, 1).
+
+    Hull and skin are edges, rows x0, y0, x1, y1, outward normal x and y, length: the sides, and the same drawn inward
+    by SKIN_DEPTH; chunks are rows first, stop, x0, y0, x1, y1: a range of edges and its bounding box. All in squares.
+    """
     surface = Obstacles([shapely.box(0, 0, 1, 1)]).surface
     return surface.hull, surface.skin, surface.chunks
 
@@ -168,7 +176,8 @@ def _mark_met(
     met : (2 window + 1, 2 window + 1) bool, [row, column], row 0 in the south, its middle square the one about (cx,
         cy); written. Squares already marked are skipped.
     cx, cy : the pivot, the middle of a square, in the frame of the body.
-    hull, skin, chunks : of the square (0, 0), as in time_of_impact.Surface.
+    hull, skin, chunks : of the square (0, 0): its sides (4, 7), the same drawn inward (4, 7), their range and bounding
+        box (1, 6).
     """
     window = len(met) // 2
     squared_radius = 0.0
