@@ -20,9 +20,9 @@ def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> S
 
     A leg holds the robot's place and the motions (Translate, Rotate) from grasp to release, squares, table frame.
     `query` : the body, the corner, and what is in the way. `legs` : in order; None when a planner found none. The first
-    variant that is free is returned. The last push is made longer, or another push is added. The legs stay the same
-    (None included) where the goal is no corner with `press` (the squares that a body may be pressed on), where the body
-    lies in the corner already, or where no such push is free.
+    variant that is free and ends in the corner is returned. The last push is made longer, or another push is added. The
+    legs stay the same (None included) where the goal is no corner with `press` (the squares that a body may be pressed
+    on), where the body lies in the corner already, or where no such push is free.
     """
     goal, shape = query.goal, query.shape
     if legs is None or not isinstance(goal, InCorner) or not goal.press or not (legs or query.held):

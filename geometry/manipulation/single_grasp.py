@@ -83,8 +83,7 @@ def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
 
     The place is anywhere for another goal than a pose. None when none are found. A leg holds all from grasp to release:
     the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
-    squares, table frame. The last leg of the first part and the last one, which goes on with its grasp, are joined to
-    one.
+    squares, table frame. Where the leg to the goal goes on with the grasp before it, the two are one leg.
 
     Parameters
     ----------

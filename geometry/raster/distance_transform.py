@@ -99,7 +99,10 @@ def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
 
 @bare
 def largest_value_of(square: SquaredDistances) -> int:
-    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32)."""
+    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32).
+
+    `square` : an array of squared distances; only its type is read.
+    """
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
@@ -187,7 +190,8 @@ def is_hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int6
 
     Parameters
     ----------
-    sites, heights : int64, the envelope so far (see lower_envelope).
+    sites, heights : int64, the envelope so far: by index the places of its sites in half squares, ascending, and edge^2
+        + site^2 of each, in half squares squared.
     top : index of its last site, 1 or more.
     site, height : the new site in half squares, and its height in half squares squared.
     """

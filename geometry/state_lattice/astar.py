@@ -62,8 +62,8 @@ def find_carrying_path(
     Returns
     -------
     (n,) int64 node numbers: from a node with the grasp after which the robot first moves the body, by one node for each
-    push by a square, turn, end of a push or change of grasp, to a node at which the body lies at the goal. Of paths
-    that look alike, that of the node with the least number.
+    push by a square, turn, end of a push or change of grasp, to a node at which the body lies at the goal. Ties go to
+    the path that is further along, then to the least node number.
     """
     squares, holds = end_costs.shape[1], len(grasp_costs)
     total = len(cost)
