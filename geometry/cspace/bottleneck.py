@@ -208,7 +208,8 @@ def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]
     Parameters
     ----------
     costs : (rows, columns) cost to the goal, 0 at goal pixels.
-    start : (2,) row, column; the first pixel of the result. The way ends early at a local minimum.
+    start : (2,) row, column; the first pixel of the result. Steps lead to one of the eight neighbours, of equal costs
+        the southernmost, then westernmost. The way ends early at a local minimum.
     """
     row, column = int(start[0]), int(start[1])
     path = [(row, column)]
@@ -358,10 +359,16 @@ def _decided_status(walls: Any, status_with: StatusQuery) -> str:
 
 
 def _max_widening(bottleneck: Bottleneck, radius: float) -> float:
-    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares."""
+    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares.
+
+    So that it is 2.2 radii wide, but by no less than four times WIDTH_PRECISION.
+    """
     return max(2.2 * radius - bottleneck.width, 4 * WIDTH_PRECISION)
 
 
 def _window_radius(bottleneck: Bottleneck, radius: float) -> float:
-    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares."""
+    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares.
+
+    Its width, plus two radii, plus the greatest widening.
+    """
     return bottleneck.width + 2 * radius + _max_widening(bottleneck, radius)

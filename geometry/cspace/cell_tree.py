@@ -113,8 +113,8 @@ def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: fl
 def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
     """Return whether a cell is larger than the resolution and there is memory for its children and their links.
 
-    It is larger when some point of the body may move further than the resolution (squares) from where it is in the
-    middle of the cell.
+    False also at the greatest depth. It is larger when some point of the body may move further than the resolution
+    (squares) from where it is in the middle of the cell.
 
     Parameters
     ----------
@@ -177,14 +177,21 @@ def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges)
 
 @bare
 def give_up_cell(tree: CellTree, cell: int) -> None:
-    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more."""
+    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more.
+
+    Its kind becomes CELL_GIVEN_UP, and it is added to the cells changed. A channel is a chain of cells from start to
+    goal.
+    """
     tree.kind[cell] = CELL_GIVEN_UP
     _note_change(tree, cell)
 
 
 @bare
 def _note_change(tree: CellTree, cell: int) -> None:
-    """Add a cell to those of `tree` that were changed since the last search."""
+    """Add a cell to those of `tree` that were changed since the last search.
+
+    The number `cell` is appended to tree.changed, and tree.changes counts one more.
+    """
     tree.changed[tree.changes[0]] = cell
     tree.changes[0] += 1
 
@@ -222,8 +229,8 @@ def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
 def _link_if_face(tree: CellTree, a: int, b: int) -> None:
     """Link leaves a and b of `tree` to each other if they share a face and neither is CELL_BLOCKED.
 
-    A face is shared where they touch along one of x, y, angle and overlap in the others. Without memory nothing is
-    done.
+    A face is shared where they touch along one of x, y, angle and overlap in the others. The new link comes first in
+    the list of each. Without memory nothing is done.
     """
     if tree.kind[a] == CELL_BLOCKED or tree.kind[b] == CELL_BLOCKED:
         return

@@ -136,8 +136,8 @@ def find_channel(
     search : the search so far; changed. search.seen[1] becomes 1 if the channel ends at a cell that only may hold a
         pose in the goal region.
     start, goal : numbers of leaves; `goal` may be REGION_GOAL.
-    through_given_up : whether the channel may run through cells given up. Then search.seen must have been set to 0
-        before, which forgets all earlier searches.
+    through_given_up : whether the channel may run through cells given up; otherwise these count as blocked. Then
+        search.seen must have been set to 0 before, which forgets all earlier searches.
     """
     _repair_search(tree, body.radius, nearby, search)
     if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:
@@ -192,6 +192,8 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
     Parameters
     ----------
     tree : the cells; its list of changes is emptied.
+    search : costs, states, parents and heap of the search; cells that are cut off or new are looked at in order of
+        number.
     radius : of the body, squares.
     nearby : only the frame of its raster is used.
     """
@@ -221,7 +223,8 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
 def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> None:
     """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one.
 
-    `search` is changed; `radius` of the body in squares.
+    Blocked and split cells must not be given. `search` is changed: the cell's cost, state and parent, and the heap;
+    `radius` of the body in squares.
 
     Parameters
     ----------
@@ -247,8 +250,8 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
 def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell: int, through_given_up: bool) -> None:
     """Put the neighbours of a settled cell on the heap where the path through it is cheaper.
 
-    `search` is changed. `through_given_up` : whether paths may run through cells given up. `radius` of the body in
-    squares.
+    `search` is changed: costs, states and parents of neighbours, and the heap; settled ones stay. `through_given_up` :
+    whether paths may run through cells given up; otherwise these are left out. `radius` of the body in squares.
 
     Parameters
     ----------

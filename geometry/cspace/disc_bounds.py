@@ -24,7 +24,9 @@ MAX_PATH_CORNERS = 400  # corners of the free space up to which paths are sought
 def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
     """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more.
 
-    Argument and result are shapely geometries, squares, table frame. A negative radius counts as 0.
+    Round corners are approximated by polygons with SIDES_PER_QUARTER sides a quarter turn, drawn about the circle if
+    `outer`, else in it. Argument and result are shapely geometries, squares, table frame. A negative radius counts as
+    0.
     """
     times = 1.0 / math.cos(math.pi / (4 * SIDES_PER_QUARTER)) if outer else 1.0
     return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)

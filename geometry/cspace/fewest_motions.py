@@ -59,13 +59,16 @@ def longest_edge_angle(shape: Any) -> float:
 def longest_edge_tilt(shape: Any) -> float:
     """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90.
 
-    `shape` : shapely Polygon.
+    `shape` : shapely Polygon. Of equally long edges the first on its outer ring counts.
     """
     return math.degrees(longest_edge_angle(shape)) % 90.0
 
 
 def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
     """Return poses on and near a path: (n, 3) x, y, radians; the first its start, the last its end.
+
+    In between, in this order: the other poses of the path, poses evenly along it, these and turned ones moved to more
+    clearance, and poses turned so that the edge lies along an axis.
 
     Parameters
     ----------

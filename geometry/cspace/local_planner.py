@@ -46,7 +46,7 @@ def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> 
 
 @bare
 def copy_pose(target: Floats, pose: Floats) -> None:
-    """Copy a pose (x, y, angle), (3,), into `target`, (3,).
+    """Copy a `pose` (x, y, angle), (3,), into `target`, (3,), which is overwritten.
 
     An array assignment would take numba long to compile.
     """
@@ -56,7 +56,9 @@ def copy_pose(target: Floats, pose: Floats) -> None:
 
 @bare
 def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, angle: float) -> None:
-    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7), see MovingBody.edges.
+    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7).
+
+    Rows are x0, y0, x1, y1, outward unit normal x and y, length.
 
     Parameters
     ----------
@@ -81,7 +83,8 @@ def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: floa
     """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds.
 
     The end alone is checked against the bounds: the start must be within. Pose x, y, angle of the body's centre:
-    squares, table frame, radians. context.placed is overwritten.
+    squares, table frame, radians. `context` : the body among its obstacles; context.placed is overwritten. A move below
+    MIN_MOTION only needs to be within bounds.
     """
     if not _reference_in_bounds(context.body.reference, context.nearby.bounds, x + dx, y + dy, angle):
         return False
@@ -97,7 +100,8 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
     """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds.
 
     Pose x, y, angle of the body's centre: squares, table frame, radians; turns are counter-clockwise positive.
-    context.placed is overwritten.
+    `context` : the body among its obstacles; context.placed is overwritten. A move below MIN_MOTION only needs to be
+    within bounds.
     """
     if not _arc_in_bounds(context.body.reference, context.nearby.bounds, x, y, angle, turn):
         return False

@@ -154,7 +154,10 @@ class MotionPlan:
 
 
 def _path_length(motion: Motion, pose: Pose) -> float:
-    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc."""
+    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc.
+
+    `pose` : of the reference point, table frame.
+    """
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
@@ -239,7 +242,8 @@ def plan_motion(
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
     """Return the bounds given, or the bounding box of obstacles, start and goal.
 
-    x0, y0, x1, y1 in squares, table frame. The start counts with one square all round it.
+    x0, y0, x1, y1 in squares, table frame. Those given are returned themselves; the box as a list. The start counts
+    with one square all round it.
     """
     if bounds is not None:
         return bounds

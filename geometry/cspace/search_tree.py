@@ -38,7 +38,7 @@ def new_search_tree(capacity: int) -> SearchTree:
 
 @bare
 def add_cell(paths: SearchTree, cell: int) -> None:
-    """Make a cell known in `paths`, with neither parent nor children."""
+    """Make a cell known in `paths`, which is changed, with neither parent nor children."""
     paths.parent[cell] = paths.first_child[cell] = -1
 
 
@@ -102,7 +102,10 @@ def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
 
 @bare
 def sort_cells(cells: Ints, count: int) -> None:
-    """Sort the first `count` cells in place, ascending (heapsort, Williams 1964): a search must not depend on lists."""
+    """Sort the first `count` of `cells`, numbers of cells, in place, ascending (heapsort, Williams 1964).
+
+    So a search does not depend on the order of lists.
+    """
     for last in range(count // 2 - 1, -1, -1):
         _sift_down(cells, last, count)
     for size in range(count - 1, 0, -1):

@@ -36,8 +36,9 @@ def shorten_path(context: HopContext, poses: Floats) -> Floats:
 def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
     """Return the path with its corners moved to where the body has more clearance: there the longest hops begin.
 
-    Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame, radians. Where the hop between two such
-    corners is not free the old ones stay between them. `context` : the body among its obstacles.
+    The first and the last pose stay. Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame,
+    radians. Where the hop between two such corners is not free the old ones stay between them. `context` : the body
+    among its obstacles.
     """
     roomy = poses.copy()
     for n in range(1, len(poses) - 1):

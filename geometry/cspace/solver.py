@@ -163,7 +163,10 @@ class MotionSolver:
 
     @property
     def is_small(self) -> bool:
-        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it."""
+        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it.
+
+        Its diameter, twice the radius, is compared with the size of the smallest cells, both in squares.
+        """
         return 2.0 * self.body.radius < SMALL_BODY_CELLS * self.min_cell
 
     def solve_by_discs(self) -> tuple[str, tuple[Motion, ...]]:

@@ -70,7 +70,9 @@ class InCorner:
     def admits(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> Any:
         """Return whether bounding boxes lie in the corner: a bool, or an array of bool.
 
-        `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. `press` does not count.
+        Gaps must be from 0 to `slack`, and the box must reach no further from the walls than `within`, to
+        GOAL_TOLERANCE. `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. `press`
+        does not count.
         """
         x, y = self.gaps(bounds)
         across, up = x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]
@@ -165,7 +167,8 @@ def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
 def shape_at_pose(shape: Any, pose: Pose) -> Any:
     """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares.
 
-    `shape` : shapely Polygon, table frame, as the result.
+    Counter-clockwise, x to the east, y to the north. `shape` : shapely Polygon, squares, table frame, as the result, a
+    new one.
     """
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))

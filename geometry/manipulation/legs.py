@@ -51,7 +51,11 @@ class Leg:
 
     @property
     def commands(self) -> int:
-        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release."""
+        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release.
+
+        One for each WALK_SQUARES_PER_COMMAND squares of walk begun, one for the grasp (none if taken), each motion and
+        the release.
+        """
         return math.ceil(self.walk / WALK_SQUARES_PER_COMMAND) + (0 if self.taken else 1) + len(self.motions) + 1
 
 

@@ -102,14 +102,17 @@ class CarryingPlan:
 
     @cached_property
     def opens(self) -> bool:
-        """Return whether widening the passage would be enough; False without one. Computed on first access."""
+        """Return whether widening the passage alone would let the body through by itself.
+
+        False without one. Computed on first access.
+        """
         return self.body is not None and self.body.opens
 
     @cached_property
     def missing(self) -> float:
         """Return the width that the passage lacks, in squares; nan without a passage.
 
-        inf if widening it would not be enough. Computed on first access (see MotionPlan.missing).
+        inf if widening it would not be enough. Computed on first access, to about 0.03 squares.
         """
         return math.nan if self.body is None else self.body.missing
 
@@ -256,7 +259,11 @@ def _body(shape: Any) -> Any:
 
 
 def _check_goal(goal: End) -> None:
-    """Raise ValueError for a goal that makes no sense; return None otherwise."""
+    """Raise ValueError for a goal that makes no sense; return None otherwise.
+
+    Numbers must be finite and bounded, sx and sy 1 or -1, slack and press not negative, and the two walls of a corner
+    must meet at an angle whose sine is at least MIN_WALLS_SINE.
+    """
     if isinstance(goal, At):
         require_bounded(goal.pose, "the goal")
     elif isinstance(goal, InCorner):

@@ -55,7 +55,8 @@ def press_into_corner(query: ManipulationQuery, legs: Sequence[Leg] | None) -> S
 def _press_distances(goal: InCorner, gap: float) -> list[float]:
     """Return how far, in squares, to press on towards a wall at a distance `gap` (squares), in the order to try.
 
-    Up to the wall, or else as far as the goal needs; [0.0] where the gap is small enough, [] where it is too wide.
+    Up to the wall, or else as far as the goal needs; `goal` : the corner, with its `slack` (greatest gap) and `press`
+    (squares that a body may be pressed on). [0.0] where the gap is small enough, [] where it is too wide.
     """
     if gap <= goal.slack:
         return [0.0]

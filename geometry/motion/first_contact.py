@@ -92,7 +92,11 @@ class ContactBody:
         self.runs: tuple[tuple[Floats, Floats, bool], ...] = (*solid, *loose)
 
     def after(self, motion: Motion) -> "ContactBody":
-        """Return a new body, this one as it lies after the whole of a motion, whether or not that motion is free."""
+        """Return a new body, this one as it lies after the whole of a motion, whether or not that motion is free.
+
+        Its edges (n, 7) and points (n, 2) are in squares, table frame, in the same order. `motion` : Translate or
+        Rotate, table frame.
+        """
         moved = ContactBody()
         edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
         moved._set_parts(edges, np.ascontiguousarray(motion.points(self.points)))
@@ -287,7 +291,11 @@ def with_normals(edges: Floats) -> Floats:
 
 
 def _offset_inward(edges: Floats, depth: float) -> Floats:
-    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row."""
+    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row.
+
+    Rows are x0, y0, x1, y1, outward unit normal x and y, length; normals stay, ends and lengths change. A new array in
+    the frame of `edges`.
+    """
     shifted = edges.copy()
     next_edge = _next_on_ring(edges)
     normal, after = edges[:, 4:6], edges[next_edge, 4:6]
@@ -314,7 +322,10 @@ def _chunks(edges: Floats) -> Floats:
 
 
 def _next_on_ring(edges: Floats) -> npt.NDArray[np.intp]:
-    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another."""
+    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another.
+
+    After the last edge of a ring comes its first.
+    """
     next_edge = np.arange(1, len(edges) + 1)
     start = 0
     for i in range(len(edges)):

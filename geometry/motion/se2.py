@@ -142,7 +142,10 @@ class Rotate(NamedTuple):
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
-        """Return the pose, after the motion, of what was at `pose` before it; degrees add up, beyond a whole turn."""
+        """Return the pose, after the motion, of what was at `pose` before it.
+
+        x, y in squares, table frame; the degrees of both add up, beyond a whole turn.
+        """
         x, y = self.points(np.array([[pose.x, pose.y]]))[0]
         return Pose(float(x), float(y), pose.degrees + self.degrees)
 
@@ -151,7 +154,10 @@ Motion = Translate | Rotate
 
 
 def turned(points: Floats, degrees: float) -> Floats:
-    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns."""
+    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns.
+
+    A new (n, 2) float64 array, in the unit of the points.
+    """
     cosine, sine = direction(degrees)
     x, y = points[:, 0], points[:, 1]
     return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])

@@ -53,13 +53,15 @@ FULL_TURN = 2 * math.pi  # radians
 
 @bare
 def push_impact_time(x: float, y: float, dx: float, dy: float, edges: Floats, j: int) -> float:
-    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT.
+    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT (1e9).
 
     Entering means crossing from the outer side to the inner one; 1 is the end of the push. All in squares, one frame.
 
     Parameters
     ----------
-    edges, j : (n, 7) rows of edges, and the row that is asked for.
+    x, y : the point before the push.
+    dx, dy : the push.
+    edges, j : (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length; and the row that is asked for.
     """
     nx, ny = edges[j, 4], edges[j, 5]
     ahead = nx * dx + ny * dy
@@ -236,7 +238,8 @@ def _nearest_ahead(
     """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does.
 
     An edge of `edges` (n, 7) faces the velocity (dx, dy), or is parallel to it and faces the centripetal direction
-    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Squares, one frame.
+    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Rows are x0, y0, x1, y1,
+    outward unit normal x and y, length. Squares, one frame.
     """
     best, at = math.inf, 0
     for k in range(len(edges)):
@@ -421,10 +424,11 @@ def _passes_direction(along: float, across: float, away: float, cosine: float, l
 def _last_turn_entry(
     x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float
 ) -> tuple[float, int]:
-    """Return (angle, row) of the last entry through the true edges within `until` radians, as _last_push_entry does.
+    """Return (angle, row) of the last entry through the true edges within `until` radians.
 
     The angle, at least 0, is turned by the point (x, y) about (cx, cy) in the sense `sign` (1.0 counter-clockwise, -1.0
-    clockwise). Without any entry: (0.0, row of the nearest edge ahead).
+    clockwise). The row is one of `edges` (n, 7); of equal angles the first. Without any entry: (0.0, row of the nearest
+    edge ahead).
     """
     last, by = 0.0, -1
     cosine = math.cos(until) if until < FULL_TURN else 1.0
@@ -448,7 +452,7 @@ def _rotate(x: float, y: float, angle: float) -> tuple[float, float]:
 def _bounding_box(points: Floats) -> tuple[float, float, float, float]:
     """Return x0, y0, x1, y1 of points with a margin: a corner may lie a skin's depth behind an edge.
 
-    `points` : at least one row that begins with x, y.
+    In the unit and frame of the points. `points` : at least one row that begins with x, y.
     """
     low_x = high_x = points[0, 0]
     low_y = high_y = points[0, 1]

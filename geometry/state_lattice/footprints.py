@@ -76,7 +76,8 @@ def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds:
 def quarter(offsets: Longs, count: int) -> Longs:
     """Return offsets (n, 2) of columns, rows after `count` quarter turns counter-clockwise about the square (0, 0).
 
-    They turn about its middle. A negative `count` turns clockwise.
+    In the same order; `offsets` itself when `count` is a multiple of four. They turn about its middle. A negative
+    `count` turns clockwise.
     """
     for _ in range(count % 4):
         offsets = np.column_stack([-offsets[:, 1], offsets[:, 0]])
@@ -97,8 +98,8 @@ def _covered_offsets(shape: Any) -> Longs:
 def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
     """Return the squares that touch the given ones by an edge or a corner, and `own_square`: offsets (n, 2).
 
-    Columns and rows, sorted by column, then row. `lying` : (m, 2) the given ones. `own_square` : (column, row), or None
-        for none.
+    The given ones themselves are left out. Columns and rows, sorted by column, then row. `lying` : (m, 2) the given
+    ones. `own_square` : (column, row), or None for none.
     """
     covered = {(int(x), int(y)) for x, y in lying}
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in PUSH_DIRECTIONS} - covered
@@ -108,8 +109,8 @@ def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
 def _squares_of_push(shape: Any, lying: Longs, dx: int, dy: int) -> Longs:
     """Return the squares met by a push of a shape by (dx, dy), one square, both ends included: offsets (n, 2).
 
-    Columns and rows. `lying` : (m, 2) the squares that the shape covers before. `dx`, `dy` : -1, 0 or 1, to the east
-        and to the north.
+    Columns and rows, from the square of the centroid before the push; sorted by column, then row, without repeats.
+    `lying` : (m, 2) the squares that the shape covers before. `dx`, `dy` : -1, 0 or 1, to the east and to the north.
     """
     moved = lying + np.array([dx, dy])
     if dx == 0 or dy == 0:
@@ -132,7 +133,7 @@ def swept_polygon(shape: Any, dx: float, dy: float) -> Any:
 def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
     """Return the squares met by a quarter turn counter-clockwise about the middle of square `hold`: offsets (n, 2).
 
-    Columns and rows, both ends of the turn included.
+    Columns and rows from the square (0, 0), sorted by row, then column; both ends of the turn included.
 
     Parameters
     ----------

@@ -105,18 +105,24 @@ class Grid(NamedTuple):
         return (row + self.pad) * self.stride + column + self.pad
 
     def square(self, number: int) -> tuple[int, int]:
-        """Return the (column, row) in the table of a square's number; outside the table if it is in the padding."""
+        """Return the (column, row) in the table of a square's number; outside the table if it is in the padding.
+
+        Row 0 of the table is in the south.
+        """
         return number % self.stride - self.pad, number // self.stride - self.pad
 
     def padded(self, squares: Bools, value: bool) -> Bools:
         """Return a (rows, columns) bool array as (squares,) by number of square, with `value` in the padding.
 
-        A copy; row 0 of the array is row 0 of the table.
+        `squares` : that array, for the table without padding. A copy; row 0 of the array is row 0 of the table.
         """
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
     def offsets(self, offsets: Longs) -> Longs:
-        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,) int64."""
+        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,) int64.
+
+        That is rows * stride + columns, in the same order.
+        """
         flat: Longs = offsets[:, 1] * self.stride + offsets[:, 0]
         return flat
 
@@ -223,7 +229,8 @@ def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
 def _squares_of_robot_step(dx: int, dy: int) -> Longs:
     """Return the squares that must be free for a robot's step: its own, the next, and both beside a diagonal step.
 
-    Offsets (n, 2) column, row from its own square. `dx`, `dy` : -1, 0 or 1.
+    Two of them for a step along an axis, four for a diagonal one. Offsets (n, 2) column, row from its own square. `dx`,
+    `dy` : -1, 0 or 1, to the east and to the north.
     """
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
