@@ -300,7 +300,7 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
 def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> bool:
     """Return whether a body would get through if one bottleneck alone were as wide as the body however it is turned.
 
-    False also if planning stays undecided.
+    False also if planning stays undecided. The bottleneck is widened to 2.2 radii.
 
     Parameters
     ----------

@@ -131,13 +131,13 @@ def find_channel(
 
     Parameters
     ----------
-    tree, body, nearby : the cells, and the body among obstacles.
+    tree, body, nearby : the cells (boxes of places and angles), and the body among obstacles.
     region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
     search : the search so far; changed. search.seen[1] becomes 1 if the channel ends at a cell that only may hold a
         pose in the goal region.
     start, goal : numbers of leaves; `goal` may be REGION_GOAL.
-    through_given_up : whether the channel may run through cells given up; otherwise these count as blocked. Then
-        search.seen must have been set to 0 before, which forgets all earlier searches.
+    through_given_up : whether the channel may run through cells given up; then search.seen must have been set to 0
+        before, which forgets all earlier searches. Otherwise they count as blocked.
     """
     _repair_search(tree, body.radius, nearby, search)
     if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:

@@ -70,6 +70,8 @@ def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goa
 def shortest_path_within(part: Any, start: XY, goal: XY) -> list[XY] | None:
     """Return the corners (x, y) of the shortest path within a polygon, from `start` to `goal`, both among them.
 
+    In order, squares, table frame.
+
     None if the polygon has more than MAX_PATH_CORNERS corners, or if no path is found. Method: Dijkstra's algorithm on
     the visibility graph of the corners.
 

@@ -40,7 +40,8 @@ def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
 
     The HopSequence holds the poses (n, 3) found so far, how many are in use, the goal, and hops known to be free.
 
-    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same, or (0,) for a region.
+    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same for a goal pose; an
+        empty array, (0,), for a region, where the middle of the last cell will do.
     """
     hops = HopSequence(
         np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
@@ -54,6 +55,9 @@ def follow_channel(
     tree: CellTree, context: HopContext, channel: Ints, length: int, split_last: bool, hops: HopSequence
 ) -> int:
     """Check the hops along a channel and split the cells to blame; return how many were blamed, 0 if the path is free.
+
+    A hop is one turn about the body's centre and one push, from the middle of a cell to that of the next. A cell is
+    counted each time it is blamed.
 
     One cell that is not free may be jumped over. After a hop that fails the rest is followed as if it had not failed,
     so that one look at a channel finds most of its faults. A cell that is to blame and too small to split is given up.

@@ -102,6 +102,8 @@ class Between:
     def gaps(self, shape: Any) -> tuple[float, float]:
         """Return the gaps between a shape and the two walls, in squares, in the order of `walls`; negative beyond them.
 
+        Each is measured across the wall, to the nearest point of the shape.
+
         `shape` : shapely geometry, not empty, squares, table frame.
         """
         points = shapely.get_coordinates(shape)

@@ -71,7 +71,7 @@ def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = Fals
     """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same.
 
     A new ManipulationQuery with the shape and the robot's place at the end of the legs, squares, table frame;
-    workspace, margin, walkable squares and prices stay. Without legs only `held` changes.
+    workspace, margin, walkable squares and the commands that a turn counts for stay. Without legs only `held` changes.
 
     Grasp offsets in `avoid` turn with the shape; a goal pose becomes relative to where the shape then lies.
 

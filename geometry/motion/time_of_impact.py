@@ -476,7 +476,8 @@ def push_fractions(corners: Floats, body_edges: Floats, surface: Surface, vector
     Parameters
     ----------
     corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
+        frame.
     vectors : (n, 2) dx, dy in squares.
 
     Returns
@@ -497,7 +498,8 @@ def turn_fractions(corners: Floats, body_edges: Floats, surface: Surface, turns:
     Parameters
     ----------
     corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
+        frame.
     turns : (n,) radians, counter-clockwise positive.
     pivots : (n, 2) x, y, squares, table frame.
 

@@ -153,6 +153,8 @@ def fill_run_distances(
 def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """Write the sites of a run of free squares whose parabolas are lowest somewhere; return the index of the last one.
 
+    It is an index into `sites` and `heights`, 0 or more.
+
     The squared distance of a place x to a site is (x - site)^2 + edge^2: a parabola of x, all in half squares. A site
     is the edge between two neighbouring columns; `edge` is the distance along it to the nearest blocked square of the
     two columns.
