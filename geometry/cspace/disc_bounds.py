@@ -51,6 +51,8 @@ def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, g
 def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:
     """Return the corners of a path for the centre of a disc from `start` to `goal`, both among them, or None.
 
+    In order, (x, y) in squares, table frame.
+
     None proves nothing: grown obstacles are approximated from outside, and long searches are not made.
 
     Parameters

@@ -186,8 +186,8 @@ def read_trips(path: str | Path) -> list[Trip]:
 
     Parameters
     ----------
-    path : the file, in the format of the Moving AI benchmarks: words 5 to 8 of a line are column and row of start and
-        goal.
+    path : the file, in the format of the Moving AI benchmarks: words 4 to 9 of a line are the height, column and row of
+        the start, column and row of the goal, and the length.
 
     Raises
     ------

@@ -255,7 +255,9 @@ def _legend_row(sample: str, text: str) -> LegendRow:
 def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
     """Return the SVG of the pathgraph: chains as lines, then nodes as dots, an element each.
 
-    Their coordinates are in squares, y to the north: they belong into a group that is scaled and turned over.
+    A chain is an edge of the pathgraph: a line of points along the skeleton between two nodes. Chains come first, each
+    in the order of the graph. Their coordinates are in squares, y to the north: they belong into a group that is scaled
+    and turned over.
 
     Parameters
     ----------

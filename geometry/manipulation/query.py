@@ -47,7 +47,10 @@ class ManipulationQuery:
 
     @property
     def square(self) -> tuple[int, int]:
-        """Return (column, row) of the robot's square, the nearest one of the table when it is outside."""
+        """Return (column, row) of the robot's square, the nearest one of the table when it is outside.
+
+        Column 0 is in the west, row 0 in the south.
+        """
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)

@@ -222,7 +222,8 @@ def outline(kind: int, shape: Floats) -> Floats:
     """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated.
 
     Origin at the lower left corner of the image's square (0, 0). A disc becomes DISC_CORNERS corners on its rim. A
-    triangle has its corners in the order of its numbers; all else is counter-clockwise.
+    triangle has its corners in the order of its numbers; all else is counter-clockwise. Corners need not be whole
+    numbers.
 
     Parameters
     ----------
