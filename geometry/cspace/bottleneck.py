@@ -53,11 +53,18 @@ def find_bottleneck(obstacle_field: ObstacleField, goals: Bools, reached: Floats
     Parameters
     ----------
     obstacle_field : the obstacles.
-    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal.
+    goals : (rows, columns) bool, pixels of the field's raster (row 0 in the south) that are the goal. Without a True
+        pixel the result means nothing.
     reached : (n, 2) places x, y, squares, table frame, that the body came to, the start first. The search ended at the
         one from which the path left to the goal costs least.
     radius : of the body, squares. The bottleneck is sought within NECK_SEARCH_RADII radii of there. If the body has
         room to turn all along that stretch it was not stopped there, and the whole path counts.
+
+    Returns
+    -------
+    Bottleneck : its middle (x, y), the two points (x, y) of obstacles on either side of it, and the distance between
+        them (`width`), in squares, table frame. Where no path is free the best path through walls is followed all the
+        same. None when there are not obstacles on both sides of that place, or it lies in an obstacle.
     """
     field, path_clearance = _coarsest_passable_raster(obstacle_field, goals, reached[0])
     costs = _costs_to_goal(field, max(path_clearance, field.frame[2] / 10))
@@ -121,8 +128,11 @@ def _coarsest_passable_raster(
 ) -> tuple[ClearanceField, float]:
     """Return the coarsest raster with a path from start to goal, and the clearance of the widest path, in squares.
 
-    The field's own raster and 0.0 if there is a path in none. `goals` : (rows, columns) bool on the field's own raster.
-    `start` : (2,) x, y in squares, table frame.
+    The raster is a ClearanceField: frame, signed distances to the obstacles in squares and goal pixels, row 0 in the
+    south. Rasters are tried with 1, 2 and 4 pixels along each side of a pixel of the field.
+
+    `obstacle_field` : the obstacles. The field's own raster and 0.0 if there is a path in none. `goals` : (rows,
+        columns) bool on the field's own raster. `start` : (2,) x, y in squares, table frame.
     """
     field = ClearanceField(obstacle_field.frame, obstacle_field.raster, goals)
     for times in RASTER_REFINEMENTS:
@@ -154,7 +164,9 @@ def _costs_to_goal(field: ClearanceField, path_clearance: float) -> Floats:
 
 @compiled
 def _widest_path_clearance(raster: Floats, goals: Bools, row: int, column: int, pixel: float) -> float:
-    """Return the least clearance on the widest path (maximin) from the goal pixels to a pixel; 0.0 without any path.
+    """Return the least clearance, on the widest path (maximin) from goal pixels to a pixel, in squares.
+
+    0.0 without any path. It may be 0.0 or negative where every path leads through an obstacle.
 
     Parameters
     ----------
@@ -196,7 +208,8 @@ def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]
     Parameters
     ----------
     costs : (rows, columns) cost to the goal, 0 at goal pixels.
-    start : (2,) row, column; the first pixel of the result. The way ends early at a local minimum.
+    start : (2,) row, column; the first pixel of the result. Steps lead to one of the eight neighbours, of equal costs
+        the southernmost, then westernmost. The way ends early at a local minimum.
     """
     row, column = int(start[0]), int(start[1])
     path = [(row, column)]
@@ -214,7 +227,9 @@ def _descend(costs: Floats, start: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]
 def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) -> Bottleneck | None:
     """Return the bottleneck about a place: from the nearest point of an obstacle to the nearest on the other side.
 
-    `place` : (x, y) in squares, table frame. None without obstacles on both sides, or if the place is in an obstacle.
+    It holds its middle (x, y), moved from `place` to halfway between the two points, these points and their distance,
+    in squares, table frame. `obstacle_field` : the obstacles. `place` : (x, y) in squares, table frame. None without
+    obstacles on both sides, or if the place is in an obstacle.
     """
     obstacles = shapely.union_all(obstacle_field.polygons)
     here = np.array(place)
@@ -238,7 +253,10 @@ def _bottleneck_at(obstacle_field: ObstacleField, place: tuple[float, float]) ->
 
 
 def _nearest_point(here: Floats, obstacles: Any) -> Floats | None:
-    """Return the point (2,) x, y of a shapely geometry that is nearest to the place `here` (2,); None if empty."""
+    """Return the point (2,) x, y of a geometry that is nearest to the place `here` (2,); None if it is empty.
+
+    `obstacles` : a shapely geometry in the frame of `here`.
+    """
     line = shapely.shortest_line(shapely.Point(here), obstacles)
     return None if line is None or line.is_empty else np.array(line.coords[1])
 
@@ -258,11 +276,12 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
     """Return the obstacles (shapely geometry, table frame) with the two sides of a bottleneck moved apart.
 
     Only the connected free space that the bottleneck is in grows: what lies behind a wall would open it from behind.
+    The result is a new shapely geometry, squares, table frame; obstacles beyond `reach` stay as they are.
 
     Parameters
     ----------
     obstacles : shapely geometry, squares, table frame.
-    bottleneck : the place to widen.
+    bottleneck : the place to widen; its middle, its two points and its width are read.
     extra : by how many squares it becomes wider; half of it on each side.
     reach : the sides are moved within this many squares of its middle.
     """
@@ -281,7 +300,7 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
 def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> bool:
     """Return whether a body would get through if one bottleneck alone were as wide as the body however it is turned.
 
-    False also if planning stays undecided.
+    False also if planning stays undecided. The bottleneck is widened to 2.2 radii.
 
     Parameters
     ----------
@@ -298,6 +317,8 @@ def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, sta
 
 def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> float:
     """Return how much wider a bottleneck must be for a body to pass, in squares, provided that widening it suffices.
+
+    The middle of the last interval of the bisection; where planning stays undecided, the width tried then.
 
     Method: bisection, to WIDTH_PRECISION. What is not decided lies within the resolution of the very width that is
     sought, unless it is hard otherwise: so undecided questions are asked with all cells only above
@@ -330,17 +351,24 @@ def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_
 def _decided_status(walls: Any, status_with: StatusQuery) -> str:
     """Return the status among other obstacles, asked again with all cells if a few do not decide it.
 
-    "found", "impossible" or "limit" (undecided even so). `walls` : shapely geometry. `status_with` : see missing_width.
+    "found", "impossible" or "limit" (undecided even so). `walls` : shapely geometry. `status_with` : called with the
+    walls and whether to search with all cells; returns such a status.
     """
     status = status_with(walls, False)
     return status_with(walls, True) if status == "limit" else status
 
 
 def _max_widening(bottleneck: Bottleneck, radius: float) -> float:
-    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares."""
+    """Return by how many squares a bottleneck is widened at most, for a body of a radius in squares.
+
+    So that it is 2.2 radii wide, but by no less than four times WIDTH_PRECISION.
+    """
     return max(2.2 * radius - bottleneck.width, 4 * WIDTH_PRECISION)
 
 
 def _window_radius(bottleneck: Bottleneck, radius: float) -> float:
-    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares."""
+    """Return within how many squares of a bottleneck's middle its sides are moved, for a body's radius in squares.
+
+    Its width, plus two radii, plus the greatest widening.
+    """
     return bottleneck.width + 2 * radius + _max_widening(bottleneck, radius)

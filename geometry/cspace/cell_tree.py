@@ -72,7 +72,10 @@ class CellTree(NamedTuple):
 
 
 def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: float, capacity: int) -> CellTree:
-    """Return a tree of one cell, undecided: a square of places and all angles.
+    """Return a tree of one cell, number 0, undecided: a square of places and all angles.
+
+    The CellTree holds arrays by number of cell: lower corners in whole-number units, first children, kinds, middles (x,
+    y in squares, table frame; radians), links to neighbours, and the list of cells changed.
 
     Parameters
     ----------
@@ -110,8 +113,13 @@ def new_cell_tree(x: float, y: float, side: float, radius: float, resolution: fl
 def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
     """Return whether a cell is larger than the resolution and there is memory for its children and their links.
 
-    It is larger when some point of the body may move further than the resolution (squares) from where it is in the
-    middle of the cell.
+    False also at the greatest depth. It is larger when some point of the body may move further than the resolution
+    (squares) from where it is in the middle of the cell.
+
+    Parameters
+    ----------
+    tree, cell : the cells, and the number of the one that is asked about.
+    body : only its radius is read.
     """
     depth = tree.box[cell, 3]
     if depth + 1 >= len(tree.sizes) or tree.used[0] + 4 > len(tree.child) or tree.links[0] > len(tree.link) // 2:
@@ -123,10 +131,11 @@ def is_splittable(tree: CellTree, cell: int, body: MovingBody) -> bool:
 
 @bare
 def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges) -> None:
-    """Give a leaf its children, classify them and link them to their neighbours; all in `tree`, which is changed.
+    """Give a leaf its four or two children, classify them and link them to their neighbours. `tree` is changed.
 
     Parameters
     ----------
+    tree : the cells; the children get the next free numbers, row by row from the south-west (places), or by angle.
     cell : number of the leaf; it must be splittable.
     body, nearby : the body, and the obstacle edges that its poses are tested against.
     """
@@ -168,14 +177,21 @@ def split_cell(tree: CellTree, cell: int, body: MovingBody, nearby: NearbyEdges)
 
 @bare
 def give_up_cell(tree: CellTree, cell: int) -> None:
-    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more."""
+    """Mark the leaf `cell` of `tree` as given up: no channel may run through it any more.
+
+    Its kind becomes CELL_GIVEN_UP, and it is added to the cells changed. A channel is a chain of cells from start to
+    goal.
+    """
     tree.kind[cell] = CELL_GIVEN_UP
     _note_change(tree, cell)
 
 
 @bare
 def _note_change(tree: CellTree, cell: int) -> None:
-    """Add a cell to those of `tree` that were changed since the last search."""
+    """Add a cell to those of `tree` that were changed since the last search.
+
+    The number `cell` is appended to tree.changed, and tree.changes counts one more.
+    """
     tree.changed[tree.changes[0]] = cell
     tree.changes[0] += 1
 
@@ -184,7 +200,12 @@ def _note_change(tree: CellTree, cell: int) -> None:
 def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
     """Return the number of the leaf that holds the pose (x, y, angle) of the body's centre; -1 outside the root.
 
-    x, y in squares, table frame; angle in radians, any number of turns.
+    On a border between cells the one with the greater coordinate.
+
+    Parameters
+    ----------
+    tree : the cells.
+    x, y, angle : the pose: squares, table frame; radians, any number of turns.
     """
     ix = math.floor((x - tree.frame[0]) / tree.frame[2])
     iy = math.floor((y - tree.frame[1]) / tree.frame[2])
@@ -208,8 +229,8 @@ def leaf_at(tree: CellTree, x: float, y: float, angle: float) -> int:
 def _link_if_face(tree: CellTree, a: int, b: int) -> None:
     """Link leaves a and b of `tree` to each other if they share a face and neither is CELL_BLOCKED.
 
-    A face is shared where they touch along one of x, y, angle and overlap in the others. Without memory nothing is
-    done.
+    A face is shared where they touch along one of x, y, angle and overlap in the others. The new link comes first in
+    the list of each. Without memory nothing is done.
     """
     if tree.kind[a] == CELL_BLOCKED or tree.kind[b] == CELL_BLOCKED:
         return
@@ -231,9 +252,10 @@ def _link_if_face(tree: CellTree, a: int, b: int) -> None:
 def next_link_to_leaf(child: Ints, head: Ints, link: Ints, cell: int, at: int) -> int:
     """Return the next link of a cell that leads to a leaf, after link `at`, or its first if `at` is -1; -1 at the end.
 
-    A link is a row of `link`; the leaf is link[result, 0]. Links to cells that were split are dropped on the way:
-    `head` and `link` are changed. `child`, `head` and `link` are the tree's: a whole tree is too many arrays to hand to
-    a function that is called a million times.
+    The result is an index of a row of `link`: (cell that the link leads to, next link of the same cell or -1); the leaf
+    is link[result, 0]. `head` : (capacity,) first link of each cell. `child` : (capacity,) -1 for a leaf. Links to
+    cells that were split are dropped on the way: `head` and `link` are changed. `child`, `head` and `link` are the
+    tree's: a whole tree is too many arrays to hand to a function that is called a million times.
     """
     while True:
         found = head[cell] if at < 0 else link[at, 1]

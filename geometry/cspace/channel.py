@@ -86,6 +86,9 @@ class ChannelSearch(NamedTuple):
 def new_channel_search(capacity: int, distances: Floats, disc_centre: Floats) -> ChannelSearch:
     """Return a search with memory for a tree of `capacity` cells, nothing seen yet.
 
+    The ChannelSearch holds, by number of cell, costs, the cell before on the cheapest path and states, and the heap of
+    cells still to be looked at. A cost of 1 is one square of path in large free cells.
+
     Parameters
     ----------
     capacity : number of cells.
@@ -122,17 +125,19 @@ def find_channel(
 ) -> int:
     """Go on searching for a channel from cell `start` to the goal; return its number of cells, 0 if there is none.
 
+    A channel is a chain of neighbouring cells not known to be blocked; the one that looks cheapest is found.
+
     The cells are written to search.channel, the start's first.
 
     Parameters
     ----------
-    tree, body, nearby : the cells, and the body among obstacles.
+    tree, body, nearby : the cells (boxes of places and angles), and the body among obstacles.
     region : the complement of the goal region, as obstacles; not used unless `goal` is REGION_GOAL.
     search : the search so far; changed. search.seen[1] becomes 1 if the channel ends at a cell that only may hold a
         pose in the goal region.
     start, goal : numbers of leaves; `goal` may be REGION_GOAL.
-    through_given_up : whether the channel may run through cells given up. Then search.seen must have been set to 0
-        before, which forgets all earlier searches.
+    through_given_up : whether the channel may run through cells given up; then search.seen must have been set to 0
+        before, which forgets all earlier searches. Otherwise they count as blocked.
     """
     _repair_search(tree, body.radius, nearby, search)
     if tree.kind[start] == CELL_GIVEN_UP and not through_given_up:
@@ -165,8 +170,14 @@ def find_channel(
 def _kind_in_goal(tree: CellTree, body: MovingBody, region: NearbyEdges, cell: int) -> int:
     """Return the kind of a cell with respect to the goal region, whose complement is `region`.
 
-    CELL_FREE or CELL_CENTRE_FREE : the pose in its middle is in the region. CELL_UNDECIDED : another pose of it may be.
-        CELL_BLOCKED : none is.
+    CELL_FREE (0) or CELL_CENTRE_FREE (1) : the pose in its middle is in the region. CELL_UNDECIDED (2) : another pose
+    of it may be. CELL_BLOCKED (3) : none is.
+
+    Parameters
+    ----------
+    tree, cell : the cells, and the number of the one that is asked about.
+    body : the body.
+    region : the complement of the goal region, as obstacles.
     """
     depth = tree.box[cell, 3]
     spread = tree.sizes[depth, 0] * tree.frame[2] / math.sqrt(2.0)
@@ -181,6 +192,8 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
     Parameters
     ----------
     tree : the cells; its list of changes is emptied.
+    search : costs, states, parents and heap of the search; cells that are cut off or new are looked at in order of
+        number.
     radius : of the body, squares.
     nearby : only the frame of its raster is used.
     """
@@ -210,7 +223,12 @@ def _repair_search(tree: CellTree, radius: float, nearby: NearbyEdges, search: C
 def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> None:
     """Put a cell on the heap with the cheapest path to it through its settled neighbours, if there is one.
 
-    `search` is changed; `radius` of the body in squares.
+    Blocked and split cells must not be given. `search` is changed: the cell's cost, state and parent, and the heap;
+    `radius` of the body in squares.
+
+    Parameters
+    ----------
+    tree, cell : the cells, and the number of the one to attach.
     """
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     best, by = 1e18, -1
@@ -232,8 +250,12 @@ def _attach(tree: CellTree, search: ChannelSearch, radius: float, cell: int) -> 
 def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell: int, through_given_up: bool) -> None:
     """Put the neighbours of a settled cell on the heap where the path through it is cheaper.
 
-    `search` is changed. `through_given_up` : whether paths may run through cells given up. `radius` of the body in
-        squares.
+    `search` is changed: costs, states and parents of neighbours, and the heap; settled ones stay. `through_given_up` :
+    whether paths may run through cells given up; otherwise these are left out. `radius` of the body in squares.
+
+    Parameters
+    ----------
+    tree, cell : the cells, and the number of the settled one.
     """
     child, head, links, middle, kind = tree.child, tree.head, tree.link, tree.middle, tree.kind
     link = next_link_to_leaf(child, head, links, cell, -1)
@@ -252,8 +274,9 @@ def _relax_neighbours(tree: CellTree, search: ChannelSearch, radius: float, cell
 def _step_cost(middle: Floats, kind: npt.NDArray[np.int8], box: Ints, radius: float, a: int, b: int) -> float:
     """Return the cost of going from the middle of cell a to the middle of cell b.
 
-    It is the distance in squares, plus half the radius (squares) times the turn (radians), times the mean price of the
-    two cells. `middle`, `kind`, `box` : as in CellTree.
+    A cost of 1 is one square of path in large free cells. It is the distance in squares, plus half the radius (squares)
+    times the turn (radians), times the mean price of the two cells. `middle` : (capacity, 3) poses in the middle of
+    cells; `kind` : (capacity,) kinds; `box` : (capacity, 4), the last column the depth.
     """
     dx, dy = middle[b, 0] - middle[a, 0], middle[b, 1] - middle[a, 1]
     turn = abs(middle[b, 2] - middle[a, 2])

@@ -24,7 +24,9 @@ MAX_PATH_CORNERS = 400  # corners of the free space up to which paths are sought
 def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
     """Return obstacles grown by a radius, in squares: never less than that if `outer`, else never more.
 
-    Argument and result are shapely geometries, squares, table frame. A negative radius counts as 0.
+    Round corners are approximated by polygons with SIDES_PER_QUARTER sides a quarter turn, drawn about the circle if
+    `outer`, else in it. Argument and result are shapely geometries, squares, table frame. A negative radius counts as
+    0.
     """
     times = 1.0 / math.cos(math.pi / (4 * SIDES_PER_QUARTER)) if outer else 1.0
     return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)
@@ -49,6 +51,8 @@ def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, g
 def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:
     """Return the corners of a path for the centre of a disc from `start` to `goal`, both among them, or None.
 
+    In order, (x, y) in squares, table frame.
+
     None proves nothing: grown obstacles are approximated from outside, and long searches are not made.
 
     Parameters
@@ -67,6 +71,8 @@ def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goa
 
 def shortest_path_within(part: Any, start: XY, goal: XY) -> list[XY] | None:
     """Return the corners (x, y) of the shortest path within a polygon, from `start` to `goal`, both among them.
+
+    In order, squares, table frame.
 
     None if the polygon has more than MAX_PATH_CORNERS corners, or if no path is found. Method: Dijkstra's algorithm on
     the visibility graph of the corners.

@@ -36,8 +36,8 @@ def fewest_motions(context: HopContext, path: Floats, edge: float) -> tuple[Moti
 
     Returns
     -------
-    tuple of Translate and Rotate, in order, table frame, turns about the body's centre where it then is; they lead from
-    the first to the last pose of `path`.
+    tuple of Translate (dx, dy in squares) and Rotate (degrees, pivot), in order, table frame, turns about the body's
+    centre where it then is; they lead from the first to the last pose of `path`.
     """
     candidates = _candidates(context.body, context.nearby, path, edge)
     order = _cheapest_order(context, candidates)
@@ -59,13 +59,16 @@ def longest_edge_angle(shape: Any) -> float:
 def longest_edge_tilt(shape: Any) -> float:
     """Return how far a polygon's longest edge is turned counter-clockwise from an axis: degrees, from 0 to below 90.
 
-    `shape` : shapely Polygon.
+    `shape` : shapely Polygon. Of equally long edges the first on its outer ring counts.
     """
     return math.degrees(longest_edge_angle(shape)) % 90.0
 
 
 def _candidates(body: MovingBody, nearby: NearbyEdges, path: Floats, edge: float) -> Floats:
     """Return poses on and near a path: (n, 3) x, y, radians; the first its start, the last its end.
+
+    In between, in this order: the other poses of the path, poses evenly along it, these and turned ones moved to more
+    clearance, and poses turned so that the edge lies along an axis.
 
     Parameters
     ----------
@@ -101,7 +104,8 @@ def resample_evenly(path: Floats, radius: float, count: int) -> Floats:
 def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> None:
     """Move a pose, in place and without turning it, to where the body has more clearance: steps in eight directions.
 
-    It stops at ENOUGH_CLEARANCE. `pose` : (3,) x, y of the body's centre in squares, table frame, radians; changed.
+    It stops at ENOUGH_CLEARANCE. `body`, `nearby` : the body among obstacles. `pose` : (3,) x, y of the body's centre
+    in squares, table frame, radians; changed.
     """
     c, s = math.cos(pose[2]), math.sin(pose[2])
     enough = ENOUGH_CLEARANCE * body.radius
@@ -123,7 +127,8 @@ def move_to_clearance(body: MovingBody, nearby: NearbyEdges, pose: Floats) -> No
 def _cheapest_order(context: HopContext, poses: Floats) -> npt.NDArray[np.int64]:
     """Return the indices of the poses on the cheapest path from the first to the last; empty if there is none.
 
-    (k,) int64, in order. A hop costs the number of its motions, plus a little by their size.
+    (k,) int64, in order. A hop costs the number of its motions, plus a little by their size; of paths that cost the
+    same the one found first.
 
     Parameters
     ----------

@@ -35,19 +35,18 @@ class HopContext(NamedTuple):
 
 
 def new_hop_context(body: MovingBody, nearby: NearbyEdges, surface: Surface) -> HopContext:
-    """Return a context with scratch memory of its own.
+    """Return the body among its obstacles, as `hop` needs it. It has scratch memory of its own for the placed edges.
 
     Parameters
     ----------
-    body, nearby, surface : as in HopContext: the body, the obstacle edges by place, the boundary that it must not
-        cross.
+    body, nearby, surface : the body, the obstacle edges by place, the boundary that it must not cross.
     """
     return HopContext(body, nearby, surface, np.empty_like(body.edges))
 
 
 @bare
 def copy_pose(target: Floats, pose: Floats) -> None:
-    """Copy a pose (x, y, angle), (3,), into `target`, (3,).
+    """Copy a `pose` (x, y, angle), (3,), into `target`, (3,), which is overwritten.
 
     An array assignment would take numba long to compile.
     """
@@ -57,7 +56,9 @@ def copy_pose(target: Floats, pose: Floats) -> None:
 
 @bare
 def _write_placed_edges(body_edges: Floats, edges: Floats, x: float, y: float, angle: float) -> None:
-    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7), see MovingBody.edges.
+    """Write the body's edges as they lie at a pose into `edges`; both are (m, 7).
+
+    Rows are x0, y0, x1, y1, outward unit normal x and y, length.
 
     Parameters
     ----------
@@ -82,7 +83,8 @@ def push_is_free(context: HopContext, x: float, y: float, angle: float, dx: floa
     """Return whether the body can be pushed by (dx, dy) from a pose, free of obstacles and within bounds.
 
     The end alone is checked against the bounds: the start must be within. Pose x, y, angle of the body's centre:
-    squares, table frame, radians. context.placed is overwritten.
+    squares, table frame, radians. `context` : the body among its obstacles; context.placed is overwritten. A move below
+    MIN_MOTION only needs to be within bounds.
     """
     if not _reference_in_bounds(context.body.reference, context.nearby.bounds, x + dx, y + dy, angle):
         return False
@@ -98,7 +100,8 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
     """Return whether the body can be turned about its centre by `turn` radians from a pose, free and within bounds.
 
     Pose x, y, angle of the body's centre: squares, table frame, radians; turns are counter-clockwise positive.
-    context.placed is overwritten.
+    `context` : the body among its obstacles; context.placed is overwritten. A move below MIN_MOTION only needs to be
+    within bounds.
     """
     if not _arc_in_bounds(context.body.reference, context.nearby.bounds, x, y, angle, turn):
         return False
@@ -112,16 +115,17 @@ def turn_is_free(context: HopContext, x: float, y: float, angle: float, turn: fl
 
 @bare
 def shorter_turn(turn: float) -> float:
-    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to pi."""
+    """Return the angle equal to `turn` radians, but for whole turns, that is from -pi to below pi."""
     return turn - 2 * math.pi * math.floor(turn / (2 * math.pi) + 0.5)
 
 
 @bare
 def hop(context: HopContext, here: Floats, there: Floats) -> int:
-    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST, PUSH_FIRST or BLOCKED.
+    """Return how the body can go from pose `here` to pose `there`: TURN_FIRST (1), PUSH_FIRST (2) or BLOCKED (0).
 
     It makes one turn about its centre, the shorter way round, and one push, in the order named; TURN_FIRST if both are
-    free. Poses are (3,) x, y of the body's centre in squares, table frame, radians.
+    free. `context` : the body among its obstacles; context.placed is overwritten. Poses are (3,) x, y of the body's
+    centre in squares, table frame, radians.
     """
     dx, dy = there[0] - here[0], there[1] - here[1]
     turn = shorter_turn(there[2] - here[2])
@@ -140,9 +144,10 @@ def hop(context: HopContext, here: Floats, there: Floats) -> int:
 
 @bare
 def _reference_in_bounds(reference: Floats, bounds: Floats, x: float, y: float, angle: float) -> bool:
-    """Return whether the reference point is within its bounds (x0, y0, x1, y1) at a pose of the body's centre.
+    """Return whether the reference point is within `bounds` (x0, y0, x1, y1) at a pose of the body's centre.
 
-    `reference` : (2,) x, y relative to the centre, body frame.
+    `x`, `y`, `angle` : that pose, squares, table frame, radians. `reference` : (2,) x, y relative to the centre, body
+        frame.
     """
     c, s = math.cos(angle), math.sin(angle)
     rx, ry = x + c * reference[0] - s * reference[1], y + s * reference[0] + c * reference[1]

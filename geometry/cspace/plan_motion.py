@@ -114,7 +114,10 @@ class MotionPlan:
 
     @cached_property
     def passage(self) -> Bottleneck | None:
-        """Return the bottleneck that is too narrow; None unless impossible for want of one. Computed at first use."""
+        """Return the bottleneck that is too narrow; None unless impossible for want of one. Computed at first use.
+
+        Its middle (x, y), the two points (x, y) of obstacles that make it and their distance, in squares, table frame.
+        """
         query = self.question
         return None if query is None else find_bottleneck(query.field, query.goals, query.reached, query.radius)
 
@@ -151,7 +154,10 @@ class MotionPlan:
 
 
 def _path_length(motion: Motion, pose: Pose) -> float:
-    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc."""
+    """Return how far a motion takes a reference point that is at `pose` before it, in squares; of a turn the arc.
+
+    `pose` : of the reference point, table frame.
+    """
     if isinstance(motion, Translate):
         return math.hypot(motion.dx, motion.dy)
     return abs(math.radians(motion.degrees)) * math.dist((pose.x, pose.y), motion.about)
@@ -188,7 +194,9 @@ def plan_motion(
 
     Returns
     -------
-    MotionPlan : its status is "found", "impossible" (proved) or "limit" (not decided).
+    MotionPlan : its status is "found", "impossible" (proved) or "limit" (not decided). When found it holds the motions
+        in order and the poses of the reference point between them, squares and degrees, table frame; when impossible
+        the reason ("start", "goal" or "") and, computed when asked for, the passage that is too narrow.
 
     Raises
     ------
@@ -234,7 +242,8 @@ def plan_motion(
 def _bounds(obstacles: Any, start: Pose, goal: Pose | Inside, bounds: Sequence[float] | None) -> Sequence[float]:
     """Return the bounds given, or the bounding box of obstacles, start and goal.
 
-    x0, y0, x1, y1 in squares, table frame. The start counts with one square all round it.
+    x0, y0, x1, y1 in squares, table frame. Those given are returned themselves; the box as a list. The start counts
+    with one square all round it.
     """
     if bounds is not None:
         return bounds

@@ -36,9 +36,12 @@ class HopSequence(NamedTuple):
 
 
 def new_hop_sequence(start: Floats, goal: Floats, cells: int) -> HopSequence:
-    """Return a path that begins at the pose `start`, with memory for channels of `cells` cells.
+    """Return a path of one pose, `start`, with memory for channels of `cells` cells.
 
-    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same, or (0,) for a region.
+    The HopSequence holds the poses (n, 3) found so far, how many are in use, the goal, and hops known to be free.
+
+    `start` : (3,) x, y of the body's centre in squares, table frame, radians. `goal` : the same for a goal pose; an
+        empty array, (0,), for a region, where the middle of the last cell will do.
     """
     hops = HopSequence(
         np.empty((2 * cells + 2, 3)), np.ones(1, np.int64), goal, np.full(cells, -1, np.int32), np.empty((2, 3))
@@ -53,6 +56,9 @@ def follow_channel(
 ) -> int:
     """Check the hops along a channel and split the cells to blame; return how many were blamed, 0 if the path is free.
 
+    A hop is one turn about the body's centre and one push, from the middle of a cell to that of the next. A cell is
+    counted each time it is blamed.
+
     One cell that is not free may be jumped over. After a hop that fails the rest is followed as if it had not failed,
     so that one look at a channel finds most of its faults. A cell that is to blame and too small to split is given up.
 
@@ -61,7 +67,8 @@ def follow_channel(
     tree : the cells; changed where cells are split or given up.
     context : the body among its obstacles.
     channel, length : (capacity,) numbers of the cells from start to goal, and how many of them are in use.
-    split_last : whether the last cell must be split in any case.
+    split_last : whether the last cell must be split in any case, since it only may hold a pose in the goal region; then
+        it counts as blamed, and 0 is never returned. Otherwise it is split only if a hop blames it.
     hops : the path; its poses are overwritten. If 0 is returned they are free from the start to the goal.
     """
     hops.used[0] = 1
@@ -132,6 +139,7 @@ def _hop_to_stop(
 
     Parameters
     ----------
+    tree, context : the cells, and the body among its obstacles.
     channel, length : numbers of the cells, and how many of them are in use.
     hops : the path; if the hop is free one or two poses are appended.
     last : index in the channel of the cell from whose middle the hop leads; -1 for another pose.
@@ -157,8 +165,16 @@ def _direct_hop_is_free(
 ) -> bool:
     """Return whether the hop to stop n is free. From middle to middle of two cells that is computed only once.
 
-    Parameters as for _hop_to_stop: `last` and `n` are indices in `channel`, `here` and `there` the poses.
-    hops.free_from is written.
+    hops.free_from is written, and context.placed overwritten.
+
+    Parameters
+    ----------
+    context : the body among its obstacles.
+    channel, length : numbers of the cells, and how many of them are in use.
+    hops : the path, with the hops known to be free.
+    last, n : indices in `channel` of the cell that the hop leaves (-1 for another pose) and of the stop that it leads
+        to.
+    here, there : (3,) poses where the hop begins and ends: x, y in squares, table frame, radians.
     """
     between = last >= 0 and n < length
     if between and hops.free_from[channel[n]] == channel[last]:
@@ -174,7 +190,7 @@ def _direct_hop_is_free(
 def _write_face_pose(tree: CellTree, a: int, b: int, middle: Floats) -> None:
     """Write the pose in the middle of the face that neighbouring cells a and b share to `middle`, (3,).
 
-    x, y in squares, table frame, and radians (below 0 or above 2 pi where the angles wrap).
+    `tree` : the cells. x, y in squares, table frame, and radians (below 0 or above 2 pi where the angles wrap).
     """
     for k in range(3):
         unit = tree.frame[2] if k < 2 else tree.frame[3]
@@ -198,6 +214,7 @@ def _split_blamed(tree: CellTree, context: HopContext, channel: Ints, last: int,
 
     Parameters
     ----------
+    tree, context : the cells, which are changed, and the body among its obstacles.
     channel, length : numbers of the cells, and how many of them are in use.
     last : index in the channel of the cell that the hop leaves; -1 for none.
     n : index of the stop that it leads to; `length` for the goal after the last cell.
@@ -224,6 +241,7 @@ def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, leng
 
     Parameters
     ----------
+    tree, context : the cells, which are changed, and the body among its obstacles.
     channel, length : numbers of the cells, and how many of them are in use.
     n : index in the channel.
     ends : number of ends that must be reached: 2 with a goal pose, 1 (the start) with a goal region.
@@ -238,7 +256,10 @@ def _split_near(tree: CellTree, context: HopContext, channel: Ints, n: int, leng
 
 @bare
 def _split_or_give_up(tree: CellTree, context: HopContext, cell: int) -> int:
-    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before."""
+    """Split leaf number `cell` of `tree`, or give it up if it is too small. Return 1: it was changed, now or before.
+
+    `context` : the body among its obstacles.
+    """
     if tree.child[cell] >= 0 or tree.kind[cell] == CELL_GIVEN_UP:
         return 1
     if is_splittable(tree, cell, context.body):

@@ -30,11 +30,12 @@ def run_rounds(
     context : the body among its obstacles.
     region : the complement of the goal region, as obstacles; not used for a goal pose.
     hops : start, goal and path; its poses are overwritten.
+    round_number, last_round : number of the first round, counted from 1, and of the last one that is run.
 
     Returns
     -------
-    The outcome, and the number of the round that it came in. SEARCH_FOUND : the path in `hops` is free.
-    SEARCH_EXHAUSTED : no channel is left. SEARCH_UNFINISHED : neither, so far.
+    The outcome, and the number of the round that it came in. SEARCH_FOUND (1) : the path in `hops` is free.
+    SEARCH_EXHAUSTED (0) : no channel is left. SEARCH_UNFINISHED (2) : neither, so far.
     """
     while True:
         length = next_channel(tree, context, region, search, hops, False)

@@ -29,19 +29,25 @@ class SearchTree(NamedTuple):
 
 
 def new_search_tree(capacity: int) -> SearchTree:
-    """Return memory for a tree of up to `capacity` cells. Each cell must be added before it is used."""
+    """Return memory for a tree of up to `capacity` cells. Each cell must be added before it is used.
+
+    The SearchTree holds, by number of cell, its parent, first child and siblings; -1 stands for none.
+    """
     return SearchTree(*(np.empty(capacity, np.int32) for _ in range(4)))
 
 
 @bare
 def add_cell(paths: SearchTree, cell: int) -> None:
-    """Make a cell known in `paths`, with neither parent nor children."""
+    """Make a cell known in `paths`, which is changed, with neither parent nor children."""
     paths.parent[cell] = paths.first_child[cell] = -1
 
 
 @bare
 def set_parent(paths: SearchTree, cell: int, parent: int) -> None:
-    """Let the path to a cell run through another parent; the cell keeps its children. `paths` is changed."""
+    """Let the path to a cell run through another parent, as its first child; the cell keeps its children.
+
+    `paths` is changed.
+    """
     detach(paths, cell)
     first = paths.first_child[parent]
     paths.parent[cell], paths.next_sibling[cell], paths.previous_sibling[cell] = parent, first, -1
@@ -68,7 +74,9 @@ def detach(paths: SearchTree, cell: int) -> None:
 
 @bare
 def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
-    """Take a cell and all cells that hang on it out of the tree; return the new number of `cells`.
+    """Take a cell and all cells that hang on it out of the tree; return the new number of cells in `cells`.
+
+    They are written in breadth-first order: the root, its children, their children.
 
     Parameters
     ----------
@@ -94,7 +102,10 @@ def cut_off(paths: SearchTree, root: int, cells: Ints, count: int) -> int:
 
 @bare
 def sort_cells(cells: Ints, count: int) -> None:
-    """Sort the first `count` cells in place, ascending (heapsort, Williams 1964): a search must not depend on lists."""
+    """Sort the first `count` of `cells`, numbers of cells, in place, ascending (heapsort, Williams 1964).
+
+    So a search does not depend on the order of lists.
+    """
     for last in range(count // 2 - 1, -1, -1):
         _sift_down(cells, last, count)
     for size in range(count - 1, 0, -1):

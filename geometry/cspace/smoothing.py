@@ -21,6 +21,7 @@ def shorten_path(context: HopContext, poses: Floats) -> Floats:
 
     Poses are x, y of the body's centre in squares, table frame, and radians; hops from one to the next must be free.
     Poses are skipped by hops, the corners left are moved to where there is room, then pulled straight several times.
+    `context` : the body among its obstacles.
     """
     kept = _skip_poses(context, poses)
     if len(kept) > 2:
@@ -35,8 +36,9 @@ def shorten_path(context: HopContext, poses: Floats) -> Floats:
 def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
     """Return the path with its corners moved to where the body has more clearance: there the longest hops begin.
 
-    Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame, radians. Where the hop between two such
-    corners is not free the old ones stay between them.
+    The first and the last pose stay. Argument (n, 3) and result (m, 3) are poses: x, y in squares, table frame,
+    radians. Where the hop between two such corners is not free the old ones stay between them. `context` : the body
+    among its obstacles.
     """
     roomy = poses.copy()
     for n in range(1, len(poses) - 1):
@@ -60,7 +62,7 @@ def _with_roomy_corners(context: HopContext, poses: Floats) -> Floats:
 def _move_to_clearance(context: HopContext, pose: Floats) -> None:
     """Move a pose, in place, to where the body has more clearance: pattern search in place and angle, halving steps.
 
-    `pose` : (3,) x, y of the body's centre in squares, table frame, radians.
+    `pose` : (3,) x, y of the body's centre in squares, table frame, radians. `context` : the body among its obstacles.
     """
     best, radius = _clearance(context, pose), context.body.radius
     step = min(max(best, 0.02 * radius), 0.5 * radius)
@@ -116,7 +118,8 @@ def pose_with_room(context: HopContext, pose: Floats, leaving: bool) -> Floats:
 def _clearance(context: HopContext, pose: Floats) -> float:
     """Return the distance of the body from the obstacles at a pose, in squares, capped at 0.3 of the body's radius.
 
-    -1.0 if they overlap. `pose` : (3,) x, y of the body's centre in squares, table frame, radians.
+    -1.0 if they overlap. `pose` : (3,) x, y of the body's centre in squares, table frame, radians. `context` : the body
+    among its obstacles.
     """
     body, c, s = context.body, math.cos(pose[2]), math.sin(pose[2])
     return min(clearance_at(body, context.nearby, pose[0], pose[1], c, s), 0.3 * body.radius)
@@ -126,7 +129,8 @@ def _clearance(context: HopContext, pose: Floats) -> float:
 def _skip_poses(context: HopContext, poses: Floats) -> Floats:
     """Return a subsequence (m, 3) of `poses` (n, 3), the first and the last among it, with free hops between them.
 
-    From each the hop goes as far ahead as doubling and halving finds it free.
+    Poses are x, y of the body's centre in squares, table frame, radians. From each the hop goes as far ahead as
+    doubling and halving finds it free. `context` : the body among its obstacles.
     """
     kept = np.empty_like(poses)
     copy_pose(kept[0], poses[0])
@@ -154,7 +158,8 @@ def _skip_poses(context: HopContext, poses: Floats) -> Floats:
 def _pull_straight(context: HopContext, poses: Floats) -> None:
     """Move each of `poses`, in place, towards the straight line between its neighbours as far as the hops stay free.
 
-    (n, 3) x, y of the body's centre in squares, table frame, radians; the first and the last stay.
+    (n, 3) x, y of the body's centre in squares, table frame, radians; the first and the last stay. `context` : the body
+    among its obstacles.
     """
     here, step = np.empty(3), np.empty(3)
     for n in range(1, len(poses) - 1):
@@ -179,8 +184,8 @@ def _pull_straight(context: HopContext, poses: Floats) -> None:
 def motions_along(context: HopContext, poses: Floats) -> tuple[Motion, ...]:
     """Return the turns and pushes of a path of poses (n, 3), in order, without those of no size.
 
-    Poses are x, y of the body's centre in squares, table frame, and radians. Motions are Rotate about that centre and
-    Translate, table frame.
+    `context` : the body among its obstacles. Poses are x, y of the body's centre in squares, table frame, and radians.
+        Motions are Rotate about that centre and Translate, table frame.
 
     Raises
     ------

@@ -106,7 +106,11 @@ class MotionSolver:
 
     @cached_property
     def search(self) -> ChannelSearch:
-        """Return the search among the cells, with its estimates of the length to go; made at first use, then kept."""
+        """Return the search among the cells, with its estimates of the length to go; made at first use, then kept.
+
+        It holds costs and states by number of cell (1 for one square of path in large free cells), and estimated
+        lengths to the goal in squares by pixel of the field's raster.
+        """
         largest = self.body.probes[0]
         distances = self.field.disc_distances(self.goals, float(largest[2]))
         return new_channel_search(len(self.tree.child), distances, largest[:2].copy())
@@ -131,8 +135,9 @@ class MotionSolver:
     def solve(self) -> tuple[str, tuple[Motion, ...]]:
         """Search and split until there is an answer; return the status of a MotionPlan and its motions.
 
-        "found" with the motions in order; "impossible" (proved) or "limit" (cells were given up) with (). Call it once:
-        it changes `start`, `end`, `tree`, `rounds`, and `track` if found.
+        "found" with the motions in order (Translate and Rotate, table frame, squares and degrees); "impossible"
+        (proved) or "limit" (cells were given up) with (). Call it once: it changes `start`, `end`, `tree`, `rounds`,
+        and `track` if found.
         """
         context = self._hop_context()
         direct = np.array([self.start, self.end]) if len(self.end) else None
@@ -158,7 +163,10 @@ class MotionSolver:
 
     @property
     def is_small(self) -> bool:
-        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it."""
+        """Return whether the body is so few cells across (below SMALL_BODY_CELLS) that cells tell little about it.
+
+        Its diameter, twice the radius, is compared with the size of the smallest cells, both in squares.
+        """
         return 2.0 * self.body.radius < SMALL_BODY_CELLS * self.min_cell
 
     def solve_by_discs(self) -> tuple[str, tuple[Motion, ...]]:
@@ -212,7 +220,10 @@ class MotionSolver:
         return None if any(hop(context, a, b) == BLOCKED for a, b in pairwise(poses)) else poses
 
     def _hop_context(self) -> HopContext:
-        """Return the body among the obstacles, for exact first contact, with scratch memory of its own."""
+        """Return the body, the obstacle edges by place and the surface that it must not cross, squares, table frame.
+
+        With scratch memory of its own.
+        """
         return new_hop_context(self.body, self.nearby, self.field.surface)
 
     def _disc_centre_at(self, pose: Floats) -> tuple[float, float]:

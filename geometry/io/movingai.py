@@ -63,14 +63,13 @@ def read_map(path: str | Path) -> Bools:
 
     Parameters
     ----------
-    path : the file, in the format of the Moving AI benchmarks (see the top of this module).
+    path : the file, in the format of the Moving AI benchmarks (lines `type`, `height N`, `width N`, then `map` and the
+        rows of text).
 
     Raises
     ------
-    ValueError
-        When the file is no such map; the message has file and line.
-    OSError
-        When it cannot be read.
+    ValueError : when the file is no such map; the message has file and line.
+    OSError : when it cannot be read.
     """
     try:
         return parse_map(Path(path).read_bytes())
@@ -86,12 +85,12 @@ def parse_map(raw: bytes) -> Bools:
 
     Parameters
     ----------
-    raw : the content of a file in the format of the Moving AI benchmarks (see the top of this module).
+    raw : the content of a file in the format of the Moving AI benchmarks (lines `type`, `height N`, `width N`, then
+        `map` and the rows of text).
 
     Raises
     ------
-    MapError
-        When they describe none: at the first line, counted from 1, that goes wrong.
+    MapError : when they describe none: at the first line, counted from 1, that goes wrong.
 
     Examples
     --------
@@ -180,14 +179,20 @@ def _check_row(number: int, row: str, width: int) -> None:
 def read_trips(path: str | Path) -> list[Trip]:
     """Return the problems of a scenario file, in order; lines that do not have nine words are skipped.
 
+    A Trip holds start and goal (x, y), centres of squares, in squares with (0, 0) at the screen's south-west corner,
+    and the length of the optimal path over eight directions, in squares. [] when no line has nine words.
+
     The file counts rows from the north; starts and goals are turned to the screen's frame, row 0 in the south.
+
+    Parameters
+    ----------
+    path : the file, in the format of the Moving AI benchmarks: words 4 to 9 of a line are the height, column and row of
+        the start, column and row of the goal, and the length.
 
     Raises
     ------
-    ValueError
-        When a line of nine words has no numbers where they belong, or the file is no ASCII text.
-    OSError
-        When it cannot be read.
+    ValueError : when a line of nine words has no numbers where they belong, or the file is no ASCII text.
+    OSError : when it cannot be read.
     """
     trips = []
     for line in Path(path).read_text(encoding="ascii").splitlines():

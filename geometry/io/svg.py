@@ -42,8 +42,8 @@ def draw(
 
     Parameters
     ----------
-    screen : the screen.
-    routes : routes to draw; the first one is on top.
+    screen : the screen; its squares, skeleton and pathgraph are drawn, (0, 0) at its south-west corner.
+    routes : routes to draw; the first one is on top and first in the legend.
     passages : passages to draw.
     pathgraph : whether to draw the pathgraph.
     scale : pixels a square; by default such that the longer side has 960 pixels, but at most 48 pixels a square.
@@ -255,7 +255,9 @@ def _legend_row(sample: str, text: str) -> LegendRow:
 def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
     """Return the SVG of the pathgraph: chains as lines, then nodes as dots, an element each.
 
-    Their coordinates are in squares, y to the north: they belong into a group that is scaled and turned over.
+    A chain is an edge of the pathgraph: a line of points along the skeleton between two nodes. Chains come first, each
+    in the order of the graph. Their coordinates are in squares, y to the north: they belong into a group that is scaled
+    and turned over.
 
     Parameters
     ----------
@@ -274,6 +276,8 @@ def draw_pathgraph(screen: Screen, pixel: float) -> list[str]:
 
 def without_straight_points(points: Floats) -> Floats:
     """Return a polyline (n, 2) without the points between two equal steps; the first and last point stay.
+
+    `points` : corners x, y, in squares or any other unit; the result, (m, 2) in the same order, is in the same.
 
     A polyline of fewer than three points is returned itself. Steps in one direction of different lengths do not count
     as equal.

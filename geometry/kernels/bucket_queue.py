@@ -35,7 +35,10 @@ class Queue(NamedTuple):
 
 @compiled
 def new_queue(size: int) -> Queue:
-    """Return an empty queue.
+    """Return an empty queue of nodes (whole numbers that the caller chooses), each with a whole-number cost.
+
+    The Queue holds BUCKETS buckets of linked entries and the counts of entries used and waiting; `put` and `take`
+    change it.
 
     Parameters
     ----------

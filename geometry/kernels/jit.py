@@ -109,7 +109,8 @@ def bare(function: Callable[Arguments, Returned]) -> Kernel[Arguments, Returned]
 def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool) -> Callable[Arguments, Returned]:
     """Return numba's dispatcher of a function, set up for the cache on disk, linking to other kernels and notices.
 
-    With NUMBA_DISABLE_JIT=1 that is the function itself. `counts_references` is as for `Kernel`.
+    With NUMBA_DISABLE_JIT=1 that is the function itself. `counts_references` : whether the compiled code counts
+    references to arrays, which it must when it makes new arrays.
     """
     import numba
 
@@ -209,7 +210,7 @@ def _link_when_compiling(dispatcher: Any, module_globals: dict[str, Any]) -> Non
 
 
 def _link(module_globals: dict[str, Any]) -> None:
-    """Replace kernels among a module's globals (name to value) by their dispatchers, in place.
+    """Replace kernels among a module's globals, `module_globals` (name to value), by their dispatchers, in place.
 
     Numba resolves no other objects there.
     """
@@ -219,7 +220,11 @@ def _link(module_globals: dict[str, Any]) -> None:
 
 
 def _compile(dispatcher: Any, args: tuple[Any, ...]) -> None:
-    """Compile for the types of these arguments, without running; do nothing when given a plain function."""
+    """Compile for the types of these arguments, without running; do nothing when given a plain function.
+
+    `dispatcher` : numba's dispatcher of a kernel, or that function. `args` : arguments as for a call; only types are
+        read.
+    """
     if hasattr(dispatcher, "typeof_pyval"):
         dispatcher.compile(tuple(dispatcher.typeof_pyval(value) for value in args))
 

@@ -26,7 +26,9 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
     """Return legs of which the first aligns the body and the others go by whole squares; None when none are found.
 
     An aligned body has its longest side along an axis and its first corner on whole squares. Of the plans found the one
-    with the fewest commands is returned.
+    with the fewest commands is returned. A leg holds all from grasp to release: the robot's place (x, y) for the grasp,
+    then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame. Of plans with as
+    many commands the one found first is returned.
 
     Parameters
     ----------
@@ -43,7 +45,13 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
 
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:
-    """Yield the legs that align the body, at most one for each grasp, those with short walks first."""
+    """Yield the legs that align the body, at most one for each grasp, those with short walks first.
+
+    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    (degrees, about the robot) in order, in squares, table frame. For a grasp the smaller of two turns is taken when it
+    is free, else the other; nothing is yielded for it when neither is. `query` : the body, the robot, and what is in
+    the way.
+    """
     tilt = longest_edge_tilt(query.shape)
     for candidate in grasp_candidates(query):
         relative = query.grasp_offset(candidate.place)
@@ -62,6 +70,7 @@ def _aligning_motions(query: ManipulationQuery, utak: XY, degrees: float) -> tup
 
     Parameters
     ----------
+    query : the body as it lies, and what is in the way.
     utak : (x, y) of the robot when it holds the body, squares, table frame; the turn is about it.
     degrees : counter-clockwise positive; below MIN_ALIGNMENT, or nearly 90, there is no turn.
 

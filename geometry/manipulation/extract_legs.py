@@ -51,7 +51,10 @@ class LegExtraction:
         self.at = query.square
 
     def legs(self, nodes: Longs) -> list[Leg]:
-        """Return the legs, one for each group of successive nodes with the same grasp; [] without nodes.
+        """Return the legs, one for each group of successive nodes with the same grasp, in order; [] without nodes.
+
+        A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
+        Rotate (degrees, about the robot) in order, in squares, table frame.
 
         `nodes` : (n,) int64, in order, as find_carrying_path returns them. To be called once: the shape moves along.
         """
@@ -71,6 +74,11 @@ class LegExtraction:
 
     def _leg(self, group: list[Step], first: bool, last: bool) -> Leg:
         """Return the leg of a group of steps with the same grasp, and move the shape and the robot along.
+
+        A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and
+        Rotate (degrees, about the robot) in order, in squares, table frame. Its `hold`, the offset of the grasp from
+        the body's centroid, is in the frame of the body as the query has it; its `taken` says whether it goes on with
+        the grasp that the robot has.
 
         Parameters
         ----------
@@ -99,12 +107,18 @@ class LegExtraction:
         return Leg(place, square or (0, 0), with_pivots_at_robot(place, motions), hold, walk, taken)
 
     def _square(self, step: Step) -> tuple[int, int]:
-        """Return (column, row) of the robot's square at a step, in the table."""
+        """Return (column, row) of the robot's square at a step, in the table.
+
+        `step` : (index of the grasp, quarter turn, direction, number of the square of the body's centroid).
+        """
         x, y = self._robot_place(step)
         return math.floor(x), math.floor(y)
 
     def _turn(self, quarters: int, utak: XY) -> Motion:
         """Return the turn of the shape by quarters about the robot, and turn the shape.
+
+        A Rotate, degrees counter-clockwise positive, table frame. The first way that is free with the margin is taken,
+        then the first that is free without; the first way when none is.
 
         Parameters
         ----------
@@ -154,7 +168,9 @@ class LegExtraction:
     def _ends(self, step: Step) -> Floats:
         """Return places of the robot at which the shape, held and turned as in a step, lies well at the goal (cost 0).
 
-        (n, 2) float64 x, y in squares, table frame; at most about MAX_END_SAMPLES of them.
+        (n, 2) float64 x, y in squares, table frame, in order of the numbers of squares; every k-th when there are more
+        than MAX_END_SAMPLES; (0, 2) when there is none. `step` : (index of the grasp, quarter turn, direction, number
+        of the centroid's square); only the first two are read.
         """
         hold, quarters, _, _ = step
         places = np.flatnonzero(self.ends[quarters] == 0)
@@ -165,8 +181,13 @@ class LegExtraction:
     def _stops(self, before: list[XY], steps: list[Step]) -> tuple[Floats, Longs]:
         """Return the robot's places on the path, and the indices of those where it turns, ends included.
 
-        (n, 2) float64 x, y in squares, table frame, and (k,) int64. Parameters as for _pushes: the place before the
-        first step, if it is another one, and the steps.
+        (n, 2) float64 x, y in squares, table frame, in the order of the path, and (k,) int64, ascending: [0] for a
+        single place.
+
+        Parameters
+        ----------
+        before : the robot's place (x, y) before it comes to the first step, if it is another one; else [].
+        steps : successive steps with the same grasp and quarter turn, at least one.
         """
         stops = [*before, self._robot_place(steps[0])]
         corners, direction = [0], 8

@@ -70,7 +70,9 @@ class InCorner:
     def admits(self, bounds: tuple[Extent, Extent, Extent, Extent]) -> Any:
         """Return whether bounding boxes lie in the corner: a bool, or an array of bool.
 
-        `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. `press` does not count.
+        Gaps must be from 0 to `slack`, and the box must reach no further from the walls than `within`, to
+        GOAL_TOLERANCE. `bounds` : x0, y0, x1, y1 of one box, or four arrays for many, squares, table frame. `press`
+        does not count.
         """
         x, y = self.gaps(bounds)
         across, up = x + bounds[2] - bounds[0], y + bounds[3] - bounds[1]
@@ -99,6 +101,8 @@ class Between:
 
     def gaps(self, shape: Any) -> tuple[float, float]:
         """Return the gaps between a shape and the two walls, in squares, in the order of `walls`; negative beyond them.
+
+        Each is measured across the wall, to the nearest point of the shape.
 
         `shape` : shapely geometry, not empty, squares, table frame.
         """
@@ -165,7 +169,8 @@ def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
 def shape_at_pose(shape: Any, pose: Pose) -> Any:
     """Return a shape turned about its centroid by pose.degrees, then moved by (pose.x, pose.y) squares.
 
-    `shape` : shapely Polygon, table frame, as the result.
+    Counter-clockwise, x to the east, y to the north. `shape` : shapely Polygon, squares, table frame, as the result, a
+    new one.
     """
     middle = np.array([shape.centroid.x, shape.centroid.y])
     return shapely.transform(shape, lambda p: turned(p - middle, pose.degrees) + middle + np.array([pose.x, pose.y]))
@@ -173,6 +178,8 @@ def shape_at_pose(shape: Any, pose: Pose) -> Any:
 
 def moved(goal: End, dx: float, dy: float) -> End:
     """Return a goal translated by (dx, dy) squares, table frame, for a shape that is translated as far.
+
+    A new goal of the same class: regions, corners and wished places are translated; gaps and normals stay.
 
     An `At` goal is relative to the shape and stays the same, as does a `Roomy` goal anywhere.
     """
@@ -219,9 +226,10 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
 def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn: higher where the body has less than a free square about it.
 
-    (squares,) int32 by number in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares
-    outside the region count as blocked unless they are free. `offsets` : (n, 2) columns and rows from the square of the
-    centroid to those that the body covers.
+    `goal` : the region. `lattice` : the state lattice, of which the solid squares are read. (squares,) int32 by number
+        in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares outside the region
+        count as blocked unless they are free. `offsets` : (n, 2) columns and rows from the square of the centroid to
+        those that the body covers.
     """
     cost = np.full(len(lattice.solid), -1, np.int32)
     grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
@@ -236,9 +244,10 @@ def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLa
 def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn where all squares within two of the body's are free; -1 elsewhere.
 
-    (squares,) int32 by number in `grid`: a tenth of a command for each square from the wished place, 0 without one; -1
-    also further than ROOMY_RADIUS from it. `offsets` : (n, 2) columns and rows from the square of the centroid to those
-    that the body covers.
+    `goal` : the wished place. `lattice` : the state lattice, of which the solid squares are read. (squares,) int32 by
+        number in `grid`: a tenth of a command for each square from the wished place, 0 without one; -1 also further
+        than ROOMY_RADIUS from it. `offsets` : (n, 2) columns and rows from the square of the centroid to those that the
+        body covers.
     """
     reach = range(-2, 3)
     grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
@@ -253,8 +262,9 @@ def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLatt
 def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
     """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed.
 
-    (squares,) int32 by number in `grid`: 0, TIGHT_END_COST, or -1 where the body is not in the corner, not even with
-    goal.press squares more. `shape` : shapely Polygon as it lies, table frame.
+    `goal` : the corner and its walls. `footprints` : the body's squares, of which `home`, that of its centroid, is
+        read. (squares,) int32 by number in `grid`, the numbering of squares: 0, TIGHT_END_COST, or -1 where the body is
+        not in the corner, not even with goal.press squares more. `shape` : shapely Polygon as it lies, table frame.
     """
     x0, y0, x1, y1 = shape_in_pose(shape, footprints, k, footprints.home).bounds
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
@@ -269,8 +279,9 @@ def _costs_in_corner(goal: InCorner, shape: Any, footprints: Footprints, k: int,
 def _costs_between(goal: Between, shape: Any, footprints: Footprints, k: int, grid: Grid) -> Costs:
     """Return the costs of quarter turn k: higher where a gap to a wall is more than half of what is allowed.
 
-    (squares,) int32 by number in `grid`: 0, TIGHT_END_COST, or -1 where the gap is more than goal.slack. `shape` :
-    shapely Polygon as it lies, table frame.
+    `goal` : the corner and its walls. `footprints` : the body's squares, of which `home`, that of its centroid, is
+        read. (squares,) int32 by number in `grid`, the numbering of squares: 0, TIGHT_END_COST, or -1 where the gap is
+        more than goal.slack. `shape` : shapely Polygon as it lies, table frame.
     """
     gaps = goal.gaps(shape_in_pose(shape, footprints, k, footprints.home))
     row, column = np.divmod(np.arange((grid.rows + 2 * grid.pad) * grid.stride), grid.stride)
@@ -299,8 +310,10 @@ def shape_in_pose(shape: Any, footprints: Footprints, k: int, place: tuple[int, 
 def _costs_at_pose(pose: Pose, shape: Any, footprints: Footprints, grid: Grid) -> Costs:
     """Return the costs of the pose's own place on the lattice, or of the up to four places about it; -1 elsewhere.
 
-    (4, squares) int32 by quarter turn and number in `grid`: 100 for each square that a place is off the pose. All -1
-    when the pose is no whole number of quarter turns. `shape` : shapely Polygon as it lies, table frame.
+    `pose` : relative to the shape as it lies, squares and degrees. `footprints` : the body's squares, of which `home`
+        is read. (4, squares) int32 by quarter turn and number in `grid`: 100 for each square that a place is off the
+        pose. All -1 when the pose is no whole number of quarter turns. `shape` : shapely Polygon as it lies, table
+        frame.
     """
     found = np.full((4, (grid.rows + 2 * grid.pad) * grid.stride), -1, np.int32)
     k = round(pose.degrees / 90.0)

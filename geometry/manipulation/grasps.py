@@ -35,8 +35,10 @@ class GraspCandidate:
 def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
     """Return the present grasp if there is one, then those that the robot can walk to, nearest first.
 
-    Each other candidate is the centre of a free square that shares a side or a corner with one that the body covers.
-    Grasps that must be avoided are left out. [] when there is none.
+    A candidate holds the robot's place (x, y) in squares, table frame, the squares to walk to it (rounded down) and
+    whether the robot holds the body there already. `query` : the body, the robot, and where it may walk. Of places as
+    near the one with the least x, then y, comes first. Each other candidate is the centre of a free square that shares
+    a side or a corner with one that the body covers. Grasps that must be avoided are left out. [] when there is none.
     """
     shape, utak = query.shape, query.utak
     rows, columns = query.walk.shape
@@ -60,7 +62,7 @@ def grasp_candidates(query: ManipulationQuery) -> list[GraspCandidate]:
 
 
 def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Floats) -> tuple[bool, int, float, int, XY]:
-    """Return a sort key for grasps: the most promising has the least.
+    """Return a sort key for grasps: the most promising has the least. Keys are compared part by part.
 
     Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall, in
     MAX_TRACK_SAMPLES poses; the distance of the body's furthest corner in squares; the squares to walk; the place.

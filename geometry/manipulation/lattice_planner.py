@@ -36,7 +36,12 @@ MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, f
 
 
 def _footprints_of(query: ManipulationQuery) -> tuple[Footprints, Footprints]:
-    """Return the footprints of the shape, and of the shape with its margin (the same object without a margin)."""
+    """Return the footprints of the shape, and of the shape with its margin (the same object without a margin).
+
+    They hold (columns, rows) offsets from the square of the centroid: squares covered, squares from which to grasp,
+    squares met by a push in each direction and by a turn about each grasp; `home` is that square in the table. `query`
+    : the body, its margin, and the robot when it holds the body.
+    """
     shape = query.shape
     home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
     shape_near = shapely.transform(shape, lambda p: np.round(p - np.array(home), PLACE_DIGITS))
@@ -48,6 +53,9 @@ def _footprints_of(query: ManipulationQuery) -> tuple[Footprints, Footprints]:
 @lru_cache(maxsize=32)
 def _footprints_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tuple[Footprints, Footprints]:
     """Return the footprints of a shape whose centroid lies in the square (0, 0), without and with its margin.
+
+    They hold (columns, rows) offsets from that square: squares covered, squares from which to grasp, squares met by
+    pushes and turns. Both have the same grasps.
 
     Parameters
     ----------
@@ -66,7 +74,13 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
     A robot that holds the shape off the centre of a square pushes it by whole squares all the same, as long as it does
     not turn it. Or it comes to the centre with its first push, or with one push more, where that takes fewer commands.
-    Both are cheaper than to release and grasp again. The legs are in the order of execution; they are not verified.
+    Both are cheaper than to release and grasp again. The legs are in the order of execution; they are not verified. A
+    leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    (degrees, about the robot) in order, in squares, table frame.
+
+    Parameters
+    ----------
+    query : the body, the robot, the goal, and what is in the way.
     """
     if not query.held:
         return _cheapest_legs(query)
@@ -83,7 +97,13 @@ def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
 
 
 def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
-    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None."""
+    """Return the cheapest legs of a robot off the centre of its square, if the first leg only pushes; else None.
+
+    They are planned as if the robot stood at the centre, then verified from where it stands. The first leg goes on with
+    the present grasp. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate
+    (dx, dy) and Rotate (degrees, about the robot) in order, in squares, table frame. `query` : the body, which the
+    robot holds, the goal, and what is in the way.
+    """
     x, y = query.utak
     legs = _cheapest_legs(replace(query, utak=(math.floor(x) + 0.5, math.floor(y) + 0.5)))
     if legs is None or not legs[0].taken or any(isinstance(motion, Rotate) for motion in legs[0].motions):
@@ -97,7 +117,8 @@ def _legs_off_centre(query: ManipulationQuery) -> list[Leg] | None:
 def _nudges(query: ManipulationQuery) -> list[Translate]:
     """Return the pushes that bring the robot to the centre of a square, shortest first, MAX_NUDGES at most.
 
-    Translate in squares, table frame. There is one of length 0 if the robot is at the centre.
+    Translate in squares, table frame. There is only one, of length 0, if the robot is at the centre. `query` : only the
+    robot's place is read.
     """
     x, y = (sorted((math.floor(v - 0.5) + 0.5 - v, math.floor(v - 0.5) + 1.5 - v), key=abs) for v in query.utak)
     x, y = ([0.0] if abs(near) <= CENTRE_TOLERANCE else [near, far] for near, far in (x, y))
@@ -108,7 +129,7 @@ def _nudges(query: ManipulationQuery) -> list[Translate]:
 def _may_begin(query: ManipulationQuery, leg: Leg) -> bool:
     """Return whether the robot, holding the shape, can and may make the first motion of a leg.
 
-    For a leg without motions: whether it may pull.
+    `query` : the body and the robot, and what is in the way. For a leg without motions: whether it may pull.
     """
     motion = leg.motions[0] if leg.motions else Translate(0.0, 0.0)
     pushes = query.pull or only_pushes(query.shape, query.utak, [motion])
@@ -116,7 +137,10 @@ def _may_begin(query: ManipulationQuery, leg: Leg) -> bool:
 
 
 def _leg_cost(query: ManipulationQuery, legs: Sequence[Leg]) -> float:
-    """Return about how many commands legs take, each turn counted as query.turn commands."""
+    """Return about how many commands legs take, each turn counted as query.turn commands.
+
+    A number of commands, not whole when query.turn is not.
+    """
     turns = sum(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
     return commands(legs) + (query.turn - 1.0) * turns
 
@@ -125,10 +149,13 @@ def _cheapest_legs(query: ManipulationQuery, before_nudge: ManipulationQuery | N
     """Return the cheapest legs of a robot that stands at the centre of a square when it holds the shape, or None.
 
     A push with a bend may become one straight push, or two: both costs are tried, and the fewer commands taken. None
-    when none are found, or the centroid of the shape is off the table.
+    when none are found, or the centroid of the shape is off the table. A leg holds all from grasp to release: the
+    robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
+    squares, table frame.
 
     Parameters
     ----------
+    query : the body, the robot, the goal, and what is in the way.
     before_nudge : the query before the robot was pushed to the centre; None when it was not.
     """
     search = _LatticeSearch(query, before_nudge or query)
@@ -182,6 +209,10 @@ class _LatticeSearch:
     def legs(self, bend_cost: int) -> list[Leg] | None:
         """Return the cheapest legs, given the cost of another direction within one push; None when none are found.
 
+        In order. A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy)
+        and Rotate (degrees, about the robot) in order, in squares, table frame. When the first search runs out of
+        nodes, a second one looks for any legs, perhaps of twice the least cost.
+
         `bend_cost` : in the costs of the lattice, COMMAND_COST for a command.
         """
         to_go = cost_to_go(self.lattice, self.ends, bend_cost)
@@ -201,8 +232,9 @@ class _LatticeSearch:
 def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) -> Costs:
     """Return the cost of the first grasp at each of body.holds: 0 for the present one; any other needs a release first.
 
-    (grasps,) int32, COMMAND_COST for a command; -1 where no path leads or the grasp must be avoided. `walk` : the same
-    for a robot with empty hands.
+    (grasps,) int32, COMMAND_COST for a command; -1 where no path leads or the grasp must be avoided. `query` : whether
+    and where the robot holds the body. `walk` : the same costs for a robot with empty hands; they are returned
+    themselves when it holds nothing.
     """
     if not query.held:
         return walk
@@ -214,7 +246,8 @@ def _first_grasp_costs(query: ManipulationQuery, body: Footprints, walk: Costs) 
 def _grasp_costs(query: ManipulationQuery, body: Footprints) -> Costs:
     """Return the cost of a grasp at each of body.holds, -1 where it must be avoided.
 
-    (grasps,) int32: 0 beside the shape, CORNER_GRASP_COST across a corner of the robot's square.
+    (grasps,) int32, in the order of body.holds, COMMAND_COST for a command: 0 beside the shape, CORNER_GRASP_COST
+    across a corner of the robot's square. `query` : the grasps to avoid. `body` : the footprints of the shape.
     """
     lying = {(int(x), int(y)) for x, y in body.lying}
     grips = []
@@ -229,7 +262,8 @@ def _allowed_pushes(query: ManipulationQuery, body: Footprints) -> Bools:
     """Return in which directions the robot may push from each grasp in each quarter turn: (4, grasps, 8) bool.
 
     The first axis is the quarter turn of the shape, the second the index in body.holds, the third the direction as in
-    PUSH_DIRECTIONS, table frame. All True where the robot may pull.
+    PUSH_DIRECTIONS, table frame. All True where the robot may pull; else True for pushes that lead from the robot
+    towards the body's centroid. `query` : the body, and whether the robot may pull. `body` : its footprints.
     """
     allowed = np.ones((4, len(body.holds), 8), np.bool_)
     if query.pull:

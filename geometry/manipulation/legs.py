@@ -51,7 +51,11 @@ class Leg:
 
     @property
     def commands(self) -> int:
-        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release."""
+        """Return about how many commands the leg takes: walks, grasp, pushes, turns, release.
+
+        One for each WALK_SQUARES_PER_COMMAND squares of walk begun, one for the grasp (none if taken), each motion and
+        the release.
+        """
         return math.ceil(self.walk / WALK_SQUARES_PER_COMMAND) + (0 if self.taken else 1) + len(self.motions) + 1
 
 
@@ -74,7 +78,10 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
 
 
 def round_motion(motion: Motion) -> Motion:
-    """Return a motion with its numbers rounded to LEG_DECIMALS, as they will be commanded; a pivot is not rounded."""
+    """Return a motion with its numbers rounded to LEG_DECIMALS, as they will be commanded; a pivot is not rounded.
+
+    A new Translate (squares) or Rotate (degrees), table frame, of the same kind as `motion`.
+    """
     if isinstance(motion, Translate):
         return Translate(round(motion.dx, LEG_DECIMALS) + 0.0, round(motion.dy, LEG_DECIMALS) + 0.0)
     return Rotate(round(motion.degrees, LEG_DECIMALS) + 0.0, motion.about)
@@ -86,7 +93,7 @@ def commands(legs: Sequence[Leg]) -> int:
 
 
 def with_pivots_at_robot(place: XY, motions: Sequence[Motion]) -> tuple[Motion, ...]:
-    """Return the motions with each turn about the robot's place at that time, exactly.
+    """Return the motions with each turn about the robot's place at that time, exactly; as many, in the same order.
 
     Parameters
     ----------
@@ -104,7 +111,10 @@ def with_pivots_at_robot(place: XY, motions: Sequence[Motion]) -> tuple[Motion, 
 
 
 def shifted(leg: Leg, dx: float, dy: float) -> Leg:
-    """Return a leg with its place and the pivots of its motions translated by (dx, dy) squares; `hold` stays."""
+    """Return a leg with its place and the pivots of its motions translated by (dx, dy) squares; `hold` stays.
+
+    A new Leg, table frame; pushes, degrees, walk and `direction_square` stay, too.
+    """
     place = leg.place[0] + dx, leg.place[1] + dy
     return replace(leg, place=place, motions=with_pivots_at_robot(place, leg.motions))
 
@@ -162,6 +172,10 @@ class PushSegment:
 
         (k, 2) places of the robot, x, y in squares, table frame, the first of `stops` first. The last is the last of
         `stops`, or one of `ends` where that takes fewer pieces. Pieces of the known path always count as free.
+
+        Parameters
+        ----------
+        workspace : where the body and the robot may be.
         """
         if len(self.corners) <= 2:
             return self.stops[self.corners]
@@ -181,6 +195,7 @@ class PushSegment:
 
         Parameters
         ----------
+        workspace : where the body and the robot may be.
         stops : (n, 2) places of the robot, squares, table frame.
         best : for each stop the number of pieces on the way to it, their length in squares, and the index of the stop
             before (-1 at the first).
@@ -203,8 +218,9 @@ class PushSegment:
     def _free_pushes(self, workspace: Workspace, here: Floats, there: Floats) -> Bools:
         """Return to which of the places `there` (n, 2) the robot can push straight from the place `here`: (n,) bool.
 
-        Places are (x, y) of the robot, squares, table frame. The shape moves along from `stops[0]`; it keeps its margin
-        and the robot its clearance, and it is not pulled where that is forbidden.
+        `workspace` : where the body and the robot may be. Places are (x, y) of the robot, squares, table frame. The
+            shape moves along from `stops[0]`; it keeps its margin and the robot its clearance, and it is not pulled
+            where that is forbidden.
         """
         utak = (float(self.stops[0, 0]), float(self.stops[0, 1]))
         vectors = there - here

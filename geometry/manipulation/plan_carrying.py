@@ -87,7 +87,7 @@ class CarryingPlan:
         return math.fsum(math.hypot(push.dx, push.dy) for push in pushes)
 
     def shifted(self, dx: float, dy: float) -> "CarryingPlan":
-        """Return the same plan translated by (dx, dy) squares, table frame: its legs and its polygon; `body` stays."""
+        """Return the same plan translated by (dx, dy) squares, table frame: its legs and its polygon. `body` stays."""
         polygon = None if self.polygon is None else Translate(dx, dy).carry(self.polygon)
         return replace(self, legs=tuple(shifted(leg, dx, dy) for leg in self.legs), polygon=polygon)
 
@@ -95,20 +95,24 @@ class CarryingPlan:
     def passage(self) -> Bottleneck | None:
         """Return the bottleneck that is too narrow for the body; None unless the plan is impossible because of one.
 
-        Computed on first access.
+        It holds its middle (x, y), the two points (x, y) of walls that make it, and their distance, in squares, table
+        frame. Computed on first access.
         """
         return None if self.body is None else self.body.passage
 
     @cached_property
     def opens(self) -> bool:
-        """Return whether widening the passage would be enough; False without one. Computed on first access."""
+        """Return whether widening the passage alone would let the body through by itself.
+
+        False without one. Computed on first access.
+        """
         return self.body is not None and self.body.opens
 
     @cached_property
     def missing(self) -> float:
         """Return the width that the passage lacks, in squares; nan without a passage.
 
-        inf if widening it would not be enough. Computed on first access (see MotionPlan.missing).
+        inf if widening it would not be enough. Computed on first access, to about 0.03 squares.
         """
         return math.nan if self.body is None else self.body.missing
 
@@ -153,7 +157,9 @@ def plan_carrying(
 
     Returns
     -------
-    CarryingPlan : its status is "found", "impossible" (proved for the body alone) or "limit". Every motion is free by
+    CarryingPlan : its status is "found", "impossible" (proved for the body alone) or "limit". When found it holds the
+        legs in order (walk to a place, grasp, push and turn, release), the end pose of the body relative to how it
+        lies, and the polygon of the body there, squares, table frame; otherwise the reason. Every motion is free by
         exact first contact for body and robot as one, with its numbers as they are commanded. When the goal holds
         already it is "found" without legs.
 
@@ -198,7 +204,13 @@ OFF_LATTICE_PLANNERS = OffLatticePlanners()
 
 
 def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners = OFF_LATTICE_PLANNERS) -> CarryingPlan:
-    """Return the plan of the first planner that finds one, or the reason why none does."""
+    """Return the plan of the first planner that finds one, or a plan without legs that says why none does.
+
+    The CarryingPlan holds a status ("found", "impossible" or "limit"), legs in order and the end of the body, squares,
+    table frame; when not found the reason, "body", "hold", "start" or "goal", and the motion plan of the body alone.
+    `query` : the body, the robot, the goal, and what is in the way. `off_lattice` : the planners asked after those by
+    whole squares.
+    """
     plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
@@ -219,7 +231,16 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners = OFF_L
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:
-    """Raise ValueError for arguments of plan_carrying that make no sense; return None otherwise."""
+    """Raise ValueError for arguments of plan_carrying that make no sense; return None otherwise.
+
+    Parameters
+    ----------
+    free, walk : (rows, columns) bool, of the same shape and not empty; `walk` may be None.
+    utak : (x, y), squares; finite, as are all offsets in `avoid`.
+    margin : squares, finite and not negative.
+    avoid : (x, y) offsets of grasps, squares.
+    turn : commands, 1 to MAX_TURN_COST.
+    """
     if free.ndim != 2 or free.size == 0 or (walk is not None and walk.shape != free.shape):
         raise ValueError("free and walk must be arrays of the same rows and columns, of which there must be some")
     require_bounded([*utak, *(v for hold in avoid for v in hold)], "utak and avoid")
@@ -230,7 +251,7 @@ def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bool
 
 
 def _body(shape: Any) -> Any:
-    """Return the body as a valid shapely Polygon with an area, or raise ValueError."""
+    """Return the body `shape` as a valid shapely Polygon with an area, squares, table frame, or raise ValueError."""
     body = valid_polygons(shape, "the body")
     if body is None or body.geom_type != "Polygon" or not len(boundary_edges(body)):
         raise ValueError("the body must be a polygon with an area")
@@ -238,7 +259,11 @@ def _body(shape: Any) -> Any:
 
 
 def _check_goal(goal: End) -> None:
-    """Raise ValueError for a goal that makes no sense; return None otherwise."""
+    """Raise ValueError for a goal that makes no sense; return None otherwise.
+
+    Numbers must be finite and bounded, sx and sy 1 or -1, slack and press not negative, and the two walls of a corner
+    must meet at an angle whose sine is at least MIN_WALLS_SINE.
+    """
     if isinstance(goal, At):
         require_bounded(goal.pose, "the goal")
     elif isinstance(goal, InCorner):
@@ -258,7 +283,9 @@ def _check_goal(goal: End) -> None:
 def _plan_of(query: ManipulationQuery, legs: Sequence[Leg] | None) -> CarryingPlan | None:
     """Return the plan of some legs, status "found", when they are free and lead to the goal; else None.
 
-    `legs` : in order; None when a planner found none.
+    The plan holds the legs, the end pose relative to how the body lies (x, y in squares, degrees of all turns added up)
+    and the polygon at the end, table frame. `query` : the body, the goal, and what is in the way. `legs` : in order;
+    None when a planner found none.
     """
     shape = query.shape
     end = None if legs is None else verified(query.workspace, shape, legs)

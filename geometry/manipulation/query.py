@@ -47,7 +47,10 @@ class ManipulationQuery:
 
     @property
     def square(self) -> tuple[int, int]:
-        """Return (column, row) of the robot's square, the nearest one of the table when it is outside."""
+        """Return (column, row) of the robot's square, the nearest one of the table when it is outside.
+
+        Column 0 is in the west, row 0 in the south.
+        """
         rows, columns = self.walk.shape
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
@@ -70,13 +73,16 @@ class ManipulationQuery:
 def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = False) -> ManipulationQuery:
     """Return the query that is left after some legs: shape and robot are elsewhere, the goal is the same.
 
+    A new ManipulationQuery with the shape and the robot's place at the end of the legs, squares, table frame;
+    workspace, margin, walkable squares and the commands that a turn counts for stay. Without legs only `held` changes.
+
     Grasp offsets in `avoid` turn with the shape; a goal pose becomes relative to where the shape then lies.
 
     Parameters
     ----------
     query : the query before.
     legs : in order; they are not verified.
-    held : whether the robot still holds the shape at the end of the legs.
+    held : whether the robot still holds the shape at the end of the legs; otherwise it has empty hands there.
     """
     shape, utak = query.shape, query.utak
     for leg in legs:
@@ -92,6 +98,10 @@ def query_after(query: ManipulationQuery, legs: Sequence[Leg], held: bool = Fals
 
 def join_legs(first: Sequence[Leg], following: Sequence[Leg]) -> list[Leg]:
     """Return legs followed by the legs of the query after them, with all grasp offsets in the frame of the first query.
+
+    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    (degrees, about the robot) in order, in squares, table frame. Only the `hold` of the following legs is changed: it
+    is turned back.
 
     Where the following legs go on with the grasp that the robot has (`taken`), the legs on both sides become one.
 
@@ -114,6 +124,9 @@ def total_rotation(legs: Sequence[Leg]) -> float:
 
 def _goal_after(goal: End, before: Any, now: Any, degrees: float) -> End:
     """Return the same goal for a shape that has been moved; only a goal pose changes, being relative to the shape.
+
+    The pose then holds the (x, y) squares that the centroid has still to go, table frame, and the degrees still to
+    turn, rounded to 7 digits; every other goal is returned itself.
 
     Parameters
     ----------

@@ -52,10 +52,13 @@ CORNER_GAP = 0.1  # squares; convention: the gap at which a body is put before t
 def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | None:
     """Return one leg that leads to the goal, the first that is short enough or the best of some; None if none is found.
 
-    A list of one leg, verified. Short enough are FEW_MOTIONS motions.
+    A list of one leg, verified. Short enough are FEW_MOTIONS motions. A leg holds all from grasp to release: the
+    robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
+    squares, table frame. The best has the fewest commands.
 
     Parameters
     ----------
+    query : the body, the robot, the goal, and what is in the way.
     track : (n, 3) float64, a path of the body alone: x, y in squares, table frame, and angle in radians of some point
         of it; may be empty. Grasps with which it would bring the robot into walls are tried last.
     """
@@ -78,7 +81,13 @@ def plan_with_one_grasp(query: ManipulationQuery, track: Floats) -> list[Leg] | 
 def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
     """Return legs by whole squares to a place with room all round, near the goal pose, followed by one leg to the goal.
 
-    The place is anywhere for another goal than a pose. None when none are found.
+    The place is anywhere for another goal than a pose. None when none are found. A leg holds all from grasp to release:
+    the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate (degrees, about the robot) in order, in
+    squares, table frame. Where the leg to the goal goes on with the grasp before it, the two are one leg.
+
+    Parameters
+    ----------
+    query : the body, the robot, the goal, and what is in the way.
     """
     near = None
     if isinstance(query.goal, At):
@@ -96,9 +105,9 @@ def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
 def goal_poses(query: ManipulationQuery) -> list[Pose | Inside]:
     """Return the goal as poses of the body's centroid, or as regions, in the order in which to try them.
 
-    Poses are in the table frame; their degrees are relative to how the body lies now. In a corner: near the walls,
-    turned by quarters; where the body must not reach far from the walls, it is aligned with the axes first. [] for a
-    Roomy goal.
+    `query` : the body as it lies, and the goal. Poses are in the table frame, squares; their degrees are relative to
+        how the body lies now. In a corner: near the walls, turned by quarters; where the body must not reach far from
+        the walls, it is aligned with the axes first. [] for a Roomy goal.
     """
     goal, middle = query.goal, query.shape.centroid
     if isinstance(goal, Inside):
@@ -129,7 +138,8 @@ def _pose_in_corner(goal: InCorner, shape: Any, degrees: float) -> Pose:
 def _flush_rotations(goal: Between, shape: Any) -> list[float]:
     """Return the rotations that lay one of a shape's sides along a wall, in degrees, least first; before them 0.
 
-    At most MAX_FLUSH_TURNS of them, from -180 to 180, counter-clockwise positive. Sides are those of the convex hull.
+    `goal` : the two walls, by their normals. `shape` : shapely Polygon as it lies, table frame. At most MAX_FLUSH_TURNS
+        of them, from -180 to 180, counter-clockwise positive. Sides are those of the convex hull.
     """
     ring = np.array(shapely.convex_hull(shape).exterior.coords)
     sides = np.degrees(np.arctan2(*np.diff(ring, axis=0).T[::-1]))
@@ -159,8 +169,13 @@ def _leg(
 ) -> tuple[Leg | None, int]:
     """Return the leg with one grasp, or None, and how many cells the search took.
 
+    A leg holds all from grasp to release: the robot's place (x, y) for the grasp, then Translate (dx, dy) and Rotate
+    (degrees, about the robot) in order, in squares, table frame. None when the robot reaches nothing there, no motions
+    are found, or a pull is needed and forbidden. The leg is not verified.
+
     Parameters
     ----------
+    query : the body, the robot, the goal, and what is in the way.
     candidate : the grasp.
     goal : pose of the body's centroid, table frame, or a region.
     with_margin : whether body and robot have their clearance.
@@ -186,6 +201,7 @@ def _motions(
 
     Parameters
     ----------
+    query : the body as it lies, and what is in the way.
     place : (x, y) of the robot, squares, table frame.
     goal : pose of the body's centroid, table frame, or a region.
     with_margin : whether body and robot have their clearance.

@@ -49,7 +49,11 @@ class Workspace:
 
     @cached_property
     def floor(self) -> ObstacleField:
-        """Return the walls prepared for plan_motion, with the table as bounds. Computed on first access."""
+        """Return the walls prepared for plan_motion, with the table as bounds. Computed on first access.
+
+        The ObstacleField holds the united walls, bounds (0, 0, columns, rows) for a body's reference point, and a
+        raster of distances to the walls, squares, table frame.
+        """
         rows, columns = self.free.shape
         return ObstacleField(self.walls, (0.0, 0.0, float(columns), float(rows)))
 
@@ -73,6 +77,7 @@ class Workspace:
 
         Parameters
         ----------
+        body : shape and robot where they stand, squares, table frame.
         vectors : (n, 2) float64, the pushes (dx, dy) in squares, table frame.
         """
         free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
@@ -81,6 +86,8 @@ class Workspace:
 
 def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
     """Return shape and robot as one body, widened by a margin (squares) and by ROBOT_CLEARANCE.
+
+    The ContactBody holds the edges of the padded shape and of the robot's square, squares, table frame, and no points.
 
     Parameters
     ----------
@@ -112,7 +119,8 @@ def clear_square(utak: tuple[float, float]) -> Any:
 def _free_rectangles(free: Bools) -> Any:
     """Return the free squares as few rectangles: a list of shapely Polygons, squares, table frame.
 
-    Runs along rows, joined with equal runs of the rows that follow. `free` : (rows, columns) bool, row 0 in the south.
+    Sorted by their last row, then by column. Runs along rows, joined with equal runs of the rows that follow. `free` :
+    (rows, columns) bool, row 0 in the south.
     """
     rectangles = []
     growing: dict[tuple[int, int], int] = {}
@@ -126,6 +134,6 @@ def _free_rectangles(free: Bools) -> Any:
 
 
 def _row_runs(line: Bools) -> set[tuple[int, int]]:
-    """Return the runs of True in a row, (columns,) bool, as a set of (first column, column after the last)."""
+    """Return the runs of True in a row `line`, (columns,) bool, as a set of (first column, column after the last)."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
     return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}

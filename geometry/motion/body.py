@@ -33,8 +33,9 @@ def new_moving_body(
 
     Returns
     -------
-    MovingBody : edges and discs in squares, body frame shifted so that the pivot is the origin ("centre"). It is cached
-        and shared: its arrays must not be written to.
+    MovingBody : edges (m, 7) with outward normals, discs within it and its corners (k, 4), the radius of the circle
+        about the pivot that encloses it, its reference point (2,) and one corner of each part; in squares, body frame
+        shifted so that the pivot is the origin ("centre"). It is cached and shared: its arrays must not be written to.
 
     Raises
     ------
@@ -60,7 +61,8 @@ def _moving_body(wkb: bytes, points: tuple[XY, ...], pivot: XY | None) -> Moving
 
     Returns
     -------
-    MovingBody : drawn about the pivot.
+    MovingBody : edges (m, 7), inscribed discs and corners (k, 4), enclosing radius, reference point (2,) and one corner
+        of each part, in squares, body frame shifted so that the pivot is the origin.
 
     Raises
     ------

@@ -72,6 +72,11 @@ def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, flo
 
     The distance is negative inside obstacles. The true distance at (x, y) differs from the first by at most the second.
     (x, y) is in the table frame; outside the raster the nearest pixel is taken.
+
+    Parameters
+    ----------
+    nearby : the obstacle edges, of which the raster of distances and its frame are read.
+    x, y : the point, squares, table frame.
     """
     rows, columns = nearby.raster.shape
     pixel = nearby.frame[2]
@@ -86,7 +91,13 @@ def raster_distance(nearby: NearbyEdges, x: float, y: float) -> tuple[float, flo
 def block_at(nearby: NearbyEdges, x: float, y: float) -> int:
     """Return the number of the block of pixels that (x, y) lies in, or of the nearest one outside the raster.
 
-    (x, y) is in squares, table frame. Blocks are numbered as in NearbyEdges.
+    The number is row of blocks * blocks in a row + column of blocks, from 0 in the south-west; it is an index into
+    nearby.block_start.
+
+    Parameters
+    ----------
+    nearby : the obstacle edges, with the blocks into which their raster is divided.
+    x, y : the point, squares, table frame.
     """
     size = nearby.frame[2] * nearby.blocks[1]
     columns = nearby.blocks[0]
@@ -112,7 +123,7 @@ def squared_distance_to_edge(x: float, y: float, edges: Floats, j: int) -> float
 
 @bare
 def is_inside(x: float, y: float, edges: Floats) -> bool:
-    """Return whether (x, y) is inside closed rings, by counting crossings. On the boundary either answer may come.
+    """Return whether (x, y) is inside closed rings, by the even-odd rule. On the boundary either answer may come.
 
     `edges` : (n, 7) or (n, 4) rows that begin with x0, y0, x1, y1, all rings together (holes count as outside), in the
         frame of (x, y). False without edges.
@@ -221,6 +232,9 @@ def classify_cell(
 ) -> int:
     """Return the kind of a cell of poses: places at most `spread` from (x, y), angles at most `half` from `angle`.
 
+    The kinds are whole numbers in the order CELL_FREE 0, CELL_CENTRE_FREE 1, CELL_UNDECIDED 2, CELL_BLOCKED 3: the
+    lower, the freer.
+
     Parameters
     ----------
     body, nearby : the body, and the obstacle edges prepared for its radius, with the bounds of its reference point.
@@ -263,10 +277,14 @@ def classify_cell(
 def _in_bounds(
     body: MovingBody, nearby: NearbyEdges, x: float, y: float, c: float, s: float, spread: float, swing: float
 ) -> int:
-    """Return the cell's kind (FREE, CENTRE_FREE, UNDECIDED or BLOCKED) by the bounds of the reference point alone.
+    """Return the cell's kind, a number CELL_FREE ... CELL_BLOCKED, by the bounds of the reference point alone.
+
+    CELL_FREE (0): within bounds at every pose of the cell; CELL_CENTRE_FREE (1): in its middle; CELL_UNDECIDED (2): not
+    there, but perhaps elsewhere; CELL_BLOCKED (3): out of bounds at every pose.
 
     Parameters
     ----------
+    body, nearby : the body, and the bounds (x0, y0, x1, y1) that its reference point must not leave.
     x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine of
         the angle.
     spread : greatest distance of a place in the cell from (x, y), squares.
@@ -291,8 +309,16 @@ def _always_overlaps(
 ) -> bool:
     """Return whether the body surely overlaps an obstacle at every pose of a cell; False proves nothing.
 
-    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing. Parameters as
-    in _in_bounds: the pose in the middle, how far places lie from it, and the chord of a turn per square of distance.
+    Proofs tried: an inscribed disc or a corner of one stays inside the other, or two edges keep crossing.
+
+    Parameters
+    ----------
+    body, nearby : the body, and the obstacle edges prepared for its radius.
+    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine of
+        the angle.
+    spread : greatest distance of a place in the cell from (x, y), squares.
+    swing : how far a point at distance 1 from the centre moves at most when the body turns from the middle of the
+        cell's angles to their end (a chord).
     """
     block = block_at(nearby, x, y)
     if _keeps_crossing(
@@ -343,10 +369,12 @@ def _keeps_crossing(
     Parameters
     ----------
     body_edges : (m, 7) MovingBody.edges, body frame.
-    edges, block_edges, block_start : as in NearbyEdges, table frame.
+    edges : (n, 7) obstacle edges, table frame.
+    block_edges, block_start : rows of `edges` near block n are block_edges[block_start[n] : block_start[n + 1]].
     block : number of the block of pixels that (x, y) lies in.
-    x, y, c, s, spread, swing : as in _in_bounds: the pose in the middle, how far places lie from it in squares, and the
-        chord of a turn per square of distance from the centre.
+    x, y, c, s : pose in the middle of the cell: place of the body's centre in squares, table frame; cosine and sine.
+    spread : greatest distance of a place in the cell from (x, y), squares.
+    swing : chord of half the cell's turn per square of distance from the centre.
     """
     for k in range(block_start[block], block_start[block + 1]):
         j = block_edges[k]

@@ -92,7 +92,11 @@ class ContactBody:
         self.runs: tuple[tuple[Floats, Floats, bool], ...] = (*solid, *loose)
 
     def after(self, motion: Motion) -> "ContactBody":
-        """Return a new body, this one as it lies after the whole of a motion, whether or not that motion is free."""
+        """Return a new body, this one as it lies after the whole of a motion, whether or not that motion is free.
+
+        Its edges (n, 7) and points (n, 2) are in squares, table frame, in the same order. `motion` : Translate or
+        Rotate, table frame.
+        """
         moved = ContactBody()
         edges = with_normals(motion.points(self.edges[:, :4].reshape(-1, 2)).reshape(-1, 4))
         moved._set_parts(edges, np.ascontiguousarray(motion.points(self.points)))
@@ -124,6 +128,8 @@ class Obstacles:
     def point_surface(self) -> Surface:
         """Return the surface that a point meets: the skin of all obstacles as one, so that no point slips into a seam.
 
+        A Surface holds edges as rows x0, y0, x1, y1, outward normal x and y, length: squares, table frame.
+
         Between two obstacles that stand flush the skins would leave a gap of 2 SKIN_DEPTH: enough for a point, for no
         body. Its `hull` and `skin` are those of the union; its `edges` and `owner` those of the single obstacles.
         Computed at first use.
@@ -142,9 +148,11 @@ class Obstacles:
 
         Returns
         -------
-        Contact : its fraction is 1 when the whole motion is free. A body that touches at the start may slide along or
-            leave (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7 where
-            points of the contours lie nearer to each other than that.
+        Contact : the part travelled (0 to 1), the place (x, y) of contact in squares, table frame, the index of the
+            obstacle and the unit normal away from it. The fraction is 1, and all else None, when the whole motion is
+            free. Of several obstacles met at once the first found counts. A body that touches at the start may slide
+            along or leave (fraction above 0) and may not go in (fraction 0). It ends at most 1e-7 squares deep, or 3e-7
+            where points of the contours lie nearer to each other than that.
 
         Raises
         ------
@@ -283,7 +291,11 @@ def with_normals(edges: Floats) -> Floats:
 
 
 def _offset_inward(edges: Floats, depth: float) -> Floats:
-    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row."""
+    """Return edges (n, 7) of closed rings moved inward by `depth` squares, corners mitred, row for row.
+
+    Rows are x0, y0, x1, y1, outward unit normal x and y, length; normals stay, ends and lengths change. A new array in
+    the frame of `edges`.
+    """
     shifted = edges.copy()
     next_edge = _next_on_ring(edges)
     normal, after = edges[:, 4:6], edges[next_edge, 4:6]
@@ -310,7 +322,10 @@ def _chunks(edges: Floats) -> Floats:
 
 
 def _next_on_ring(edges: Floats) -> npt.NDArray[np.intp]:
-    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another."""
+    """Return for every row of `edges` (n, 7) the index of the next edge on its ring, (n,). Rings follow one another.
+
+    After the last edge of a ring comes its first.
+    """
     next_edge = np.arange(1, len(edges) + 1)
     start = 0
     for i in range(len(edges)):

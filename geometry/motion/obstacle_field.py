@@ -90,13 +90,23 @@ class ObstacleField:
         return frame, raster
 
     def ground(self, body: MovingBody) -> NearbyEdges:
-        """Return the obstacle edges looked up by place for a body of this radius; made once for each radius."""
+        """Return the obstacle edges prepared for a body of this radius; made once for each radius.
+
+        Squares, table frame.
+
+        It holds the edges of the united obstacles, for each block of raster pixels the list of those within reach of a
+        body there, the raster of distances, and the bounds (x0, y0, x1, y1) of the body's reference point.
+
+        `body` : only its radius, in squares, is read.
+        """
         if body.radius not in self._grounds:
             self._grounds[body.radius] = self._prepare(body.radius)
         return self._grounds[body.radius]
 
     def complement_of(self, polygon: Any) -> "ObstacleField":
         """Return the field in which all but `polygon` is an obstacle: a body free there lies within the polygon.
+
+        An ObstacleField in the table frame, in squares, with a raster and edges of its own.
 
         `polygon` : shapely Polygon or MultiPolygon, squares, table frame; a body must lie in one part of it. The bounds
             stay those of this field. Made once for each polygon.
@@ -110,7 +120,11 @@ class ObstacleField:
         return self._complements[key]
 
     def _prepare(self, radius: float) -> NearbyEdges:
-        """Return the obstacle edges looked up by place, by block of pixels, for a body of a radius in squares."""
+        """Return the obstacle edges, with a list for each block of pixels, for a body of a radius in squares.
+
+        Table frame, squares. The list of a block holds the edges within two radii of it, and distances are known up to
+        one radius (`reach`).
+        """
         rows, columns = self.raster.shape
         down, across = math.ceil(rows / BLOCK_PIXELS), math.ceil(columns / BLOCK_PIXELS)
         block_start, block_edges = _list_block_edges(self.surface.hull, self.frame, down, across, 2 * radius)

@@ -29,6 +29,10 @@ class Pose(NamedTuple):
         """Return a shapely geometry as it lies at this pose: from the body frame to the table frame, both in squares.
 
         It is turned about its own origin by `degrees`, then moved by (x, y).
+
+        Parameters
+        ----------
+        shape : shapely geometry in the body frame; the result is of the same type, a new one.
         """
         return shapely.transform(shape, lambda p: turned(p, self.degrees) + np.array([self.x, self.y]))
 
@@ -45,11 +49,17 @@ class Translate(NamedTuple):
     dy: float
 
     def part(self, fraction: float) -> "Translate":
-        """Return the first part of this motion; `fraction` of its length is from 0 to 1 (not checked)."""
+        """Return the first part of this motion, in the same direction.
+
+        `fraction` of its length is from 0 to 1 (not checked).
+        """
         return Translate(self.dx * fraction, self.dy * fraction)
 
     def reversed(self) -> "Translate":
-        """Return the motion that undoes this one."""
+        """Return the motion that undoes this one, done from where this one ends.
+
+        It has the displacement negated, squares, table frame.
+        """
         return Translate(-self.dx, -self.dy)
 
     def steered(self, onward: float, left: float) -> "Translate":
@@ -78,11 +88,17 @@ class Translate(NamedTuple):
         return moved
 
     def carry(self, shape: Any) -> Any:
-        """Return a shapely geometry (squares, table frame) as it lies after the motion."""
+        """Return the shapely geometry `shape` (squares, table frame) as it lies after the motion.
+
+        It is a new one of the same type.
+        """
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
-        """Return the pose, after the motion, of what was at `pose` before it."""
+        """Return the pose, after the motion, of what was at `pose` before it.
+
+        x, y in squares, table frame; the same degrees.
+        """
         return Pose(pose.x + self.dx, pose.y + self.dy, pose.degrees)
 
 
@@ -99,11 +115,17 @@ class Rotate(NamedTuple):
     about: tuple[float, float]
 
     def part(self, fraction: float) -> "Rotate":
-        """Return the first part of this motion; `fraction` of its angle is from 0 to 1 (not checked)."""
+        """Return the first part of this motion, about the same pivot.
+
+        `fraction` of its angle is from 0 to 1 (not checked).
+        """
         return Rotate(self.degrees * fraction, self.about)
 
     def reversed(self) -> "Rotate":
-        """Return the motion that undoes this one."""
+        """Return the motion that undoes this one, done from where this one ends.
+
+        It has minus the degrees, about the same pivot.
+        """
         return Rotate(-self.degrees, self.about)
 
     def points(self, points: Floats) -> Floats:
@@ -113,11 +135,17 @@ class Rotate(NamedTuple):
         return moved
 
     def carry(self, shape: Any) -> Any:
-        """Return a shapely geometry (squares, table frame) as it lies after the motion."""
+        """Return the shapely geometry `shape` (squares, table frame) as it lies after the motion.
+
+        It is a new one of the same type.
+        """
         return shapely.transform(shape, self.points)
 
     def pose(self, pose: Pose) -> Pose:
-        """Return the pose, after the motion, of what was at `pose` before it; degrees add up, beyond a whole turn."""
+        """Return the pose, after the motion, of what was at `pose` before it.
+
+        x, y in squares, table frame; the degrees of both add up, beyond a whole turn.
+        """
         x, y = self.points(np.array([[pose.x, pose.y]]))[0]
         return Pose(float(x), float(y), pose.degrees + self.degrees)
 
@@ -126,7 +154,10 @@ Motion = Translate | Rotate
 
 
 def turned(points: Floats, degrees: float) -> Floats:
-    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns."""
+    """Return points (n, 2) x, y rotated by `degrees` counter-clockwise about the origin; exact at quarter turns.
+
+    A new (n, 2) float64 array, in the unit of the points.
+    """
     cosine, sine = direction(degrees)
     x, y = points[:, 0], points[:, 1]
     return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])

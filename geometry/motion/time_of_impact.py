@@ -53,13 +53,15 @@ FULL_TURN = 2 * math.pi  # radians
 
 @bare
 def push_impact_time(x: float, y: float, dx: float, dy: float, edges: Floats, j: int) -> float:
-    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT.
+    """Return when the point (x, y), pushed by (dx, dy), enters through edge j: 0 to 1, or NO_IMPACT (1e9).
 
     Entering means crossing from the outer side to the inner one; 1 is the end of the push. All in squares, one frame.
 
     Parameters
     ----------
-    edges, j : (n, 7) rows of edges, and the row that is asked for.
+    x, y : the point before the push.
+    dx, dy : the push.
+    edges, j : (n, 7) rows x0, y0, x1, y1, outward unit normal x and y, length; and the row that is asked for.
     """
     nx, ny = edges[j, 4], edges[j, 5]
     ahead = nx * dx + ny * dy
@@ -124,12 +126,14 @@ def turn_impact_angle(
 def first_push_contact(corners: Floats, body_edges: Floats, surface: Surface, dx: float, dy: float) -> FirstContactHit:
     """Return the first contact of a body pushed by (dx, dy).
 
+    Of impacts at the same time the first found counts, by rows of the surface.
+
     Parameters
     ----------
     corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
         frame.
     body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
     dx, dy : the push, squares.
 
     Returns
@@ -201,7 +205,7 @@ def first_push_skin_hit(
 
 @bare
 def _last_push_entry(x: float, y: float, dx: float, dy: float, edges: Floats, until: float) -> tuple[float, int]:
-    """Return (time, row) of the last entry through the true edges up to the time `until`.
+    """Return (time, row) of the last entry through the true edges up to the time `until`; of equal times the first row.
 
     The time is from 0 to `until` over the push (dx, dy) of the point (x, y); the row is one of `edges` (n, 7). Without
     any entry: (0.0, row of the nearest edge ahead).
@@ -234,7 +238,8 @@ def _nearest_ahead(
     """Return the row of the edge nearest to (x, y) among those that face its motion; 0 if none does.
 
     An edge of `edges` (n, 7) faces the velocity (dx, dy), or is parallel to it and faces the centripetal direction
-    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Squares, one frame.
+    (centripetal_x, centripetal_y), (0, 0) in a push. Only the directions of the two matter. Rows are x0, y0, x1, y1,
+    outward unit normal x and y, length. Squares, one frame.
     """
     best, at = math.inf, 0
     for k in range(len(edges)):
@@ -256,12 +261,15 @@ def first_turn_contact(
 ) -> FirstContactHit:
     """Return the first contact of a body turned by `turn` radians, counter-clockwise positive, about (cx, cy).
 
+    Of impacts at the same time the first found counts, by rows of the surface.
+
     Parameters
     ----------
+    turn, cx, cy : the turn in radians, and its pivot in squares, table frame.
     corners : (k, 2) or more columns: x, y of the corners of the body, or of its points. At least one. Squares, table
         frame.
     body_edges : (m, 7) its edges; (0, 7) for points.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy (skin) and the obstacle that each edge belongs to.
 
     Returns
     -------
@@ -416,10 +424,11 @@ def _passes_direction(along: float, across: float, away: float, cosine: float, l
 def _last_turn_entry(
     x: float, y: float, cx: float, cy: float, sign: float, edges: Floats, until: float
 ) -> tuple[float, int]:
-    """Return (angle, row) of the last entry through the true edges within `until` radians, as _last_push_entry does.
+    """Return (angle, row) of the last entry through the true edges within `until` radians.
 
     The angle, at least 0, is turned by the point (x, y) about (cx, cy) in the sense `sign` (1.0 counter-clockwise, -1.0
-    clockwise). Without any entry: (0.0, row of the nearest edge ahead).
+    clockwise). The row is one of `edges` (n, 7); of equal angles the first. Without any entry: (0.0, row of the nearest
+    edge ahead).
     """
     last, by = 0.0, -1
     cosine = math.cos(until) if until < FULL_TURN else 1.0
@@ -443,7 +452,7 @@ def _rotate(x: float, y: float, angle: float) -> tuple[float, float]:
 def _bounding_box(points: Floats) -> tuple[float, float, float, float]:
     """Return x0, y0, x1, y1 of points with a margin: a corner may lie a skin's depth behind an edge.
 
-    `points` : at least one row that begins with x, y.
+    In the unit and frame of the points. `points` : at least one row that begins with x, y.
     """
     low_x = high_x = points[0, 0]
     low_y = high_y = points[0, 1]
@@ -467,7 +476,8 @@ def push_fractions(corners: Floats, body_edges: Floats, surface: Surface, vector
     Parameters
     ----------
     corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
+        frame.
     vectors : (n, 2) dx, dy in squares.
 
     Returns
@@ -488,7 +498,8 @@ def turn_fractions(corners: Floats, body_edges: Floats, surface: Surface, turns:
     Parameters
     ----------
     corners, body_edges : corners (k, 2 or more columns) and edges (m, 7) of the body, squares, table frame.
-    surface : what stands in the way.
+    surface : what stands in the way: edges, their inward copy and the obstacle that each belongs to, squares, table
+        frame.
     turns : (n,) radians, counter-clockwise positive.
     pivots : (n, 2) x, y, squares, table frame.
 

@@ -35,8 +35,9 @@ def components(mask: Bools) -> Components:
 
     Returns
     -------
-    Components
-        A label for each square (0 where the mask is False) and the number of components.
+    Components : `labels` (rows, columns) int32: 0 where the mask is False, else the component's number from 1, in order
+        of first squares, row by row from the south, each from the west; and `number`, how many components there are, 0
+        for an empty mask.
 
     Examples
     --------

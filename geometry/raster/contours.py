@@ -36,6 +36,9 @@ def outline(mask: NDArray[np.bool_]) -> list[Ring]:
 def _pop_ring(start: GridCorner, outgoing: dict[GridCorner, list[GridCorner]]) -> list[GridCorner]:
     """Follow the boundary from a corner until it closes, and return the corners (x, y) where it turns, with the start.
 
+    In order, the region on the left, in squares from the outer corner of square [0, 0]; the start comes first and is
+    not repeated.
+
     Parameters
     ----------
     start : a corner (x, y), in squares, with an edge in `outgoing`.

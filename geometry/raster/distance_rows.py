@@ -52,7 +52,11 @@ class RowWindow(NamedTuple):
 
 
 def new_row_window(width: int) -> RowWindow:
-    """Return scratch memory for rows of a padded width (columns + 2), in the state that it has north of all rows."""
+    """Return scratch memory for rows of a padded width (columns + 2), in the state that it has north of all rows.
+
+    The RowWindow holds, by padded column, steps to the nearest blocked square (0 at first) and squared distances in
+    half squares squared, and by stretch of 128 columns how far to look aside.
+    """
     own, reach = np.zeros(width + 2 * ROW_PADDING, np.int16), np.zeros(-(-width // COLUMNS_PER_STRETCH), np.int32)
     sites, heights = np.empty((2, width + 1), np.int64)
     return RowWindow(np.zeros(width, np.int16), own, np.empty(width, np.int16), reach, sites, heights)
@@ -164,7 +168,10 @@ def minimise_over_four(west: ColumnSteps, east: ColumnSteps, t: int, value: Colu
 
 @bare
 def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
-    """Copy the values (n,) to `out` (n,), which may be of a wider type; return the largest, 0 if none is above 0."""
+    """Copy `value` (n,) to `out` (n,), which may be of a wider type; return the largest, 0 if none is above 0.
+
+    Squared distances of a row to the nearest blocked square, in half squares squared, as is the result.
+    """
     largest = np.int16(0)
     for j in range(value.shape[0]):
         out[j] = value[j]
@@ -174,7 +181,12 @@ def copy_row(value: ColumnSteps, out: SquaredDistances) -> int:
 
 @bare
 def largest_distance(out: SquaredDistances) -> int:
-    """Return the largest of some squared distances (n,), one or more, in their own unit (half squares squared)."""
+    """Return the largest of some squared distances (n,), one or more, in their own unit (half squares squared).
+
+    Parameters
+    ----------
+    out : (n,) int16 or int32, one or more, by padded column of a row.
+    """
     largest = 0 * out[0]
     for j in range(out.shape[0]):
         largest = out[j] if out[j] > largest else largest

@@ -99,7 +99,10 @@ def count_steps_to_nearest(steps: ColumnSteps, gap: ColumnSteps) -> None:
 
 @bare
 def largest_value_of(square: SquaredDistances) -> int:
-    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32)."""
+    """Return the greatest value that an array's signed integer type holds: 32767 (int16) or 2147483647 (int32).
+
+    `square` : an array of squared distances; only its type is read.
+    """
     return int((1 << 8 * square.itemsize - 1) - 1)
 
 
@@ -150,6 +153,8 @@ def fill_run_distances(
 def lower_envelope(gap: ColumnSteps, first: int, last: int, sites: Sites, heights: Sites) -> int:
     """Write the sites of a run of free squares whose parabolas are lowest somewhere; return the index of the last one.
 
+    It is an index into `sites` and `heights`, 0 or more.
+
     The squared distance of a place x to a site is (x - site)^2 + edge^2: a parabola of x, all in half squares. A site
     is the edge between two neighbouring columns; `edge` is the distance along it to the nearest blocked square of the
     two columns.
@@ -187,7 +192,8 @@ def is_hidden(sites: Sites, heights: Sites, top: int, site: int, height: np.int6
 
     Parameters
     ----------
-    sites, heights : int64, the envelope so far (see lower_envelope).
+    sites, heights : int64, the envelope so far: by index the places of its sites in half squares, ascending, and edge^2
+        + site^2 of each, in half squares squared.
     top : index of its last site, 1 or more.
     site, height : the new site in half squares, and its height in half squares squared.
     """

@@ -45,8 +45,11 @@ def best_whole_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
     Returns
     -------
-    (PARAMETER_COUNT,) float64, the numbers of the shape as in misfit, in squares of the image and radians; and the
-    count of known squares that it gets wrong. Zeros and infinity when there is no such shape, as for every disc.
+    (PARAMETER_COUNT,) float64, the numbers of the shape; and the count of known squares that it gets wrong. Of equally
+    good shapes the first tried. The numbers of a shape are, in squares of the image (origin at the lower left corner of
+    square [0, 0], x along columns) and radians: angle, centre x and y, width, height, thickness, thickness of an L's
+    stem or 0; of a triangle three corners x, y and 0; of a disc centre x, y, radius and zeros. Zeros and infinity when
+    there is no such shape, as for every disc.
     """
     best, at = math.inf, np.zeros(PARAMETER_COUNT)
     if kind == DISC_CLASS:
@@ -88,13 +91,14 @@ def _whole_rectangles(
 ) -> tuple[Floats, float]:
     """Return the best square, brick, L, T or U that just fits in a rectangle, and how many squares are wrong.
 
-    All four directions are tried. The numbers of the shape are as in misfit. If none gets fewer than `limit` squares
-    wrong: zeros, and infinity or, for an L, `limit`.
+    All four directions are tried. The numbers of the shape are angle (radians), centre x and y, width, height,
+    thickness, and the stem of an L with arms of two widths, else 0; squares of the image. If none gets fewer than
+    `limit` squares wrong: zeros, and infinity or, for an L, `limit`.
 
     Parameters
     ----------
     kind : SQUARE_CLASS, BRICK_CLASS, ELL_CLASS, TEE_CLASS or HORSESHOE_CLASS.
-    image : the image.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     west, south, east, north : sides of the rectangle, squares of the image.
     limit : number of wrong squares to be beaten.
     """
@@ -122,15 +126,16 @@ def _whole_uneven_ell(
 ) -> tuple[Floats, float]:
     """Return the best L with arms of two widths that just fits in a rectangle, if it is better than a shape.
 
-    Otherwise `shape` and `limit` are returned. Its notch is at least MIN_NOTCH squares long and wide: the image of a
-    turned rectangle may lack a square or two of a row at a corner.
+    The result is (numbers, wrong squares); otherwise `shape` and `limit` are returned. Its notch is at least MIN_NOTCH
+    squares long and wide: the image of a turned rectangle may lack a square or two of a row at a corner.
 
     Parameters
     ----------
-    image : the image.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     west, south, east, north : sides of the rectangle, squares of the image.
     limit : number of squares that `shape` gets wrong, to be beaten.
-    shape : numbers of a shape, as in misfit.
+    shape : (PARAMETER_COUNT,) numbers of a shape: angle (radians), centre x, y, width, height, thickness, stem or 0,
+        squares.
     """
     best, at = limit, shape
     for quarter in range(4):
@@ -155,7 +160,7 @@ def _whole_triangle(image: Image, west: int, south: int, east: int, north: int, 
 
     Parameters
     ----------
-    image : the image.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     west, south, east, north : sides of the rectangle, squares of the image.
     limit : number of wrong squares to be beaten.
     """
@@ -185,13 +190,17 @@ def best_turned_shape(kind: int, image: Image) -> tuple[Floats, float]:
 
     Parameters
     ----------
-    kind : one of the classes of misfit.
+    kind : one of the classes of misfit (SQUARE_CLASS ... DISC_CLASS).
     image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south; a square must be occupied.
 
     Returns
     -------
-    (PARAMETER_COUNT,) numbers as in misfit, and a count of squares, one more for a shape that is no proper one of its
-    class.
+    (PARAMETER_COUNT,) float64, the numbers of the shape; and the count of known squares that it gets wrong, one more
+    for a shape that is no proper one of its class (arms or sides too short). An L with arms of two widths is returned
+    only if it gets more than UNEVEN_CREDIT squares fewer wrong. The numbers of a shape are, in squares of the image
+    (origin at the lower left corner of square [0, 0], x along columns) and radians: angle, centre x and y, width,
+    height, thickness, thickness of an L's stem or 0; of a triangle three corners x, y and 0; of a disc centre x, y,
+    radius and zeros.
     """
     free, starts = initial_steps(kind), _starts(kind, image)
     at, best = _best_descended(kind, starts, free, image)
@@ -210,13 +219,16 @@ def _best_descended(kind: int, starts: Floats, free: Floats, image: Image) -> tu
 
     Parameters
     ----------
-    kind, image : class of the shape, and the image.
-    starts : (n, PARAMETER_COUNT) numbers of shapes as in misfit, n at least 1.
+    kind : one of the classes of misfit.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
+    starts : (n, PARAMETER_COUNT) numbers of shapes, squares and radians, n at least 1; not changed. Descents begin at
+        the DESCENT_STARTS of least disagreement.
     free : (PARAMETER_COUNT,) how far each number is moved at first; 0 where it stays.
 
     Returns
     -------
-    (PARAMETER_COUNT,) numbers, and a count, one more for a shape that is no proper one of its class.
+    (PARAMETER_COUNT,) numbers, and a count, one more for a shape that is no proper one of its class. Of equally good
+    shapes that of least disagreement.
     """
     losses = np.empty(len(starts))
     for k in range(len(starts)):
@@ -250,7 +262,7 @@ def _refined_disc(disc: Floats, wrong: float, image: Image) -> tuple[Floats, flo
     ----------
     disc : (PARAMETER_COUNT,) centre x, y and radius, in squares of the image.
     wrong : number of squares that it gets wrong.
-    image : the image.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     """
     best, at, least = wrong, disc, disagreement(DISC_CLASS, disc, image)
     for i in range(-DISC_STEP_COUNT, DISC_STEP_COUNT + 1):
@@ -288,9 +300,11 @@ def initial_steps(kind: int) -> Floats:
 
 @compiled
 def _starts(kind: int, image: Image) -> Floats:
-    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), numbers as in misfit.
+    """Return the shapes of a class from which descents may begin: (n, PARAMETER_COUNT), float64.
 
-    One for each of some angles and thicknesses; a single one for discs. `kind` : one of the classes of misfit.
+    One for each of some angles and thicknesses; a single one for discs. Sorted by angle, then thickness. The numbers of
+    a shape are in squares of the image and radians. `kind` : one of the classes of misfit. `image` : (rows, columns) of
+    IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     """
     if kind == DISC_CLASS:
         return _start_disc(image)
@@ -308,7 +322,8 @@ def _starts(kind: int, image: Image) -> Floats:
 def _start_disc(image: Image) -> Floats:
     """Return a disc about the mean of the occupied squares, of nearly their area, (1, PARAMETER_COUNT).
 
-    Centre x, y and radius in squares of the image, then zeros. At least one square must be occupied.
+    Centre x, y and radius in squares of the image, then zeros. `image` : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED,
+    IMAGE_UNKNOWN, row 0 in the south. At least one square must be occupied.
     """
     x = y = 0.0
     count = 0
@@ -328,13 +343,17 @@ def _start_disc(image: Image) -> Floats:
 def _write_start(kind: int, image: Image, angle: float, thickness: float, out: Floats) -> None:
     """Write a shape in one direction to `out`, (PARAMETER_COUNT,), its sizes read off the extent of the squares.
 
+    The numbers are angle (radians), centre x and y, width, height and thickness, or three corners x, y of a triangle,
+    in squares of the image; further numbers are left alone.
+
     A shape reaches into its outermost squares by less than half of what a square measures across that direction; a
     little less than that is taken off.
 
     Parameters
     ----------
     kind : any class but DISC_CLASS.
-    image : the image, with an occupied square.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south. At least one square must
+        be occupied.
     angle : direction in radians, counter-clockwise from the east.
     thickness : of the arms, squares; written even for classes without arms, but not for triangles.
     """

@@ -81,13 +81,13 @@ def fit_shapes(occupied: Bools, possible: Bools | None = None) -> list[Fit]:
 
     Returns
     -------
-    list of Fit
-        One for each class.
+    list of Fit : one for each of the seven classes, in that order: its name, the number of squares it gets wrong, its
+    polygon in squares from the lower left corner of square (0, 0) of the array, its sizes in squares, and its angle in
+    degrees.
 
     Raises
     ------
-    ValueError
-        When no square is occupied, or the arrays differ in shape.
+    ValueError : when no square is occupied, or the arrays differ in shape.
 
     Examples
     --------
@@ -126,7 +126,9 @@ class _Candidate(NamedTuple):
 def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
     """Return the best shape of a class: the best whole one unless a turned one gets fewer squares wrong.
 
-    `name`, `kind` : the class by name and by number.
+    It holds the class, the numbers of the shape (squares of the image, radians), the count of squares it gets wrong and
+    whether it has whole corners. `name`, `kind` : the class by name and by number. `image` : (rows, columns) of
+    IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     """
     shape, wrong = best_whole_shape(kind, image)
     if wrong > 0:
@@ -137,7 +139,7 @@ def _best_of_class(name: str, kind: int, image: misfit.Image) -> _Candidate:
 
 
 def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_Candidate]:
-    """Return shapes that agree equally well, whole ones first, then by likelihood.
+    """Return shapes that agree equally well, whole ones first, then by likelihood; one for each of `ties`.
 
     A turned shape that gets no square wrong is replaced by the mean of all such shapes of its class. A disc comes first
     where the first whole shape is an L with a slight notch and no square is unknown.
@@ -160,7 +162,8 @@ def _likeliest_first(ties: Sequence[_Candidate], image: misfit.Image) -> list[_C
 def _is_cut_square(candidate: _Candidate) -> bool:
     """Return whether a shape is an L with a notch as slight as the image of a small disc has.
 
-    Its notch is less than MAX_SLIGHT_NOTCH of both sides.
+    `candidate` : the shape; of all classes but an L the answer is False. Its notch is less than MAX_SLIGHT_NOTCH of
+        both sides.
     """
     width, height, thickness = candidate.shape[3:6]
     notch = max((width - misfit.stem_of(candidate.shape)) / width, (height - thickness) / height)
@@ -172,7 +175,7 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, 
 
     Parameters
     ----------
-    occupied, possible : as in fit_shapes: (rows, columns) bool, squares that are and that may be the object; None for
+    occupied, possible : (rows, columns) bool, row 0 in the south, squares that are and that may be the object; None for
         none.
 
     Returns
@@ -204,6 +207,9 @@ def _image(occupied: Bools, possible: Bools | None) -> tuple[misfit.Image, int, 
 def _fit(candidate: _Candidate, west: int, south: int) -> Fit:
     """Return a candidate as a Fit, in the squares of the whole array.
 
+    Its polygon has its origin at the lower left corner of square (0, 0) of the array; sizes in squares, angle in
+    degrees.
+
     `west`, `south` : column and row there of the image's square (0, 0).
     """
     polygon = shapely.Polygon(outline(candidate.kind, candidate.shape) + np.array([west, south], float))
@@ -216,12 +222,14 @@ def outline(kind: int, shape: Floats) -> Floats:
     """Return the corners (n, 2) x, y of a shape, in order, in squares of the image, without the first one repeated.
 
     Origin at the lower left corner of the image's square (0, 0). A disc becomes DISC_CORNERS corners on its rim. A
-    triangle has its corners in the order of its numbers; all else is counter-clockwise.
+    triangle has its corners in the order of its numbers; all else is counter-clockwise. Corners need not be whole
+    numbers.
 
     Parameters
     ----------
     kind : one of the classes of misfit.
-    shape : (PARAMETER_COUNT,) the numbers of the shape, as in misfit.
+    shape : (PARAMETER_COUNT,) the numbers of the shape: angle (radians), centre x, y, width, height, thickness, stem;
+        of a triangle three corners x, y; of a disc centre x, y and radius; squares of the image.
     """
     if kind == misfit.TRIANGLE_CLASS:
         return shape[:6].reshape(3, 2)
@@ -268,11 +276,14 @@ def _corners(kind: int, width: float, height: float, thickness: float, stem: flo
 
 
 def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]:
-    """Return the width, height and thickness of a shape, in squares, as in Fit; thickness 0.0 without arms.
+    """Return the width, height and thickness of a shape, in squares; thickness 0.0 without arms.
+
+    Of a disc the diameter twice, of a triangle the longest side and the height on it, else the sides of the rectangle
+    that holds the shape, in its own frame.
 
     Parameters
     ----------
-    kind, shape : the class, and the numbers of the shape as in misfit.
+    kind, shape : the class, and the numbers (PARAMETER_COUNT,) of the shape in squares of the image and radians.
     polygon : its shapely Polygon; only the area of a triangle is read.
     """
     if kind == misfit.DISC_CLASS:
@@ -288,7 +299,8 @@ def _sizes(kind: int, shape: Floats, polygon: Any) -> tuple[float, float, float]
 def _rotation(kind: int, shape: Floats) -> float:
     """Return the angle by which a shape is turned, in degrees; of a triangle the direction of its longest side.
 
-    From 0 to below 360, counter-clockwise from the east. Not for discs.
+    From 0 to below 360, counter-clockwise from the east. `kind` : any class but DISC_CLASS. `shape` :
+    (PARAMETER_COUNT,) its numbers: the angle in radians first, or three corners x, y.
     """
     if kind != misfit.TRIANGLE_CLASS:
         return math.degrees(float(shape[0])) % 360.0

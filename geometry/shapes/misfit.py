@@ -61,7 +61,9 @@ def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = ma
 
     Parameters
     ----------
-    kind, shape, image : class, numbers of the shape, and image, as for disagreement.
+    kind : one of the classes (SQUARE_CLASS ... DISC_CLASS).
+    shape : (PARAMETER_COUNT,) the numbers of the shape, squares of the image and radians.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     most : counting ends after the row in which this number is reached.
     """
     wrong: int = 0
@@ -80,8 +82,8 @@ def count_wrong_squares(kind: int, shape: Floats, image: Image, most: float = ma
 def class_violation(kind: int, shape: Floats) -> float:
     """Return by how much a shape fails to be a proper one of its class, in squares; 0 for a proper shape.
 
-    `kind`, `shape` : class and numbers of the shape. It is the sum of what its sides, arms and notches are too short
-        by, and of what a brick is too short by for its width.
+    `kind` : one of the classes. `shape` : (PARAMETER_COUNT,) the numbers of the shape, squares and radians. It is the
+        sum of what its sides, arms and notches are too short by, and of what a brick is too short by for its width.
     """
     if kind == DISC_CLASS:
         return float(max(0.0, MIN_FEATURE - shape[2]))
@@ -133,8 +135,9 @@ def convex_pieces(kind: int, shape: Floats) -> Floats:
     """Return a shape's convex pieces as separating lines (n, 3): rows (normal x, y, offset), eight a piece.
 
     A square with its centre at p is apart from a piece by at least normal . p - offset, for each of its rows; all in
-    squares of the image. For a disc the one row is (centre x, centre y, radius). `kind`, `shape` : class and numbers of
-    the shape.
+    squares of the image. For a disc the one row is (centre x, centre y, radius). One piece (8 rows) for a square, brick
+    or triangle, two for an L or T, three for a U. `kind`, `shape` : class and numbers (PARAMETER_COUNT,) of the shape,
+    squares of the image and radians.
     """
     if kind == DISC_CLASS:
         return shape[:3].copy().reshape(1, 3)
@@ -201,7 +204,8 @@ def _two_lines(lines: Floats, row: int, nx: float, ny: float, x: float, y: float
 def _triangle_lines(shape: Floats) -> Floats:
     """Return the lines of a triangle: three sides, its bounding box, and one more that never separates.
 
-    (8, 3) float64 rows (normal x, y, offset) as in convex_pieces. `shape` : three corners x, y, in either sense.
+    (8, 3) float64 rows (normal x, y, offset) in squares of the image: a square with its centre at p is apart from the
+    triangle by at least normal . p - offset. `shape` : three corners x, y, in either sense.
     """
     lines = np.zeros((8, 3))
     area = (shape[2] - shape[0]) * (shape[5] - shape[1]) - (shape[3] - shape[1]) * (shape[4] - shape[0])
@@ -225,8 +229,8 @@ def _triangle_lines(shape: Floats) -> Floats:
 def gap_to_square(pieces: Floats, x: float, y: float) -> float:
     """Return the gap in squares between the square centred at (x, y) and a shape's pieces; negative if they overlap.
 
-    `pieces` : (n, 3) as convex_pieces returns them. `x`, `y` : in squares of the image. Gaps may be less than the true
-        distance, never more.
+    `pieces` : (n, 3) rows (normal x, y, offset), eight for each convex piece, from convex_pieces; for a disc one row
+        (centre x, y, radius). `x`, `y` : in squares of the image. Gaps may be less than the true distance, never more.
     """
     if len(pieces) == 1:  # a disc
         dx = max(abs(x - pieces[0, 0]) - 0.5, 0.0)
@@ -251,7 +255,8 @@ def descend(kind: int, shape: Floats, free: Floats, image: Image, steps: int) ->
 
     Parameters
     ----------
-    kind, image : class of the shape, and the image.
+    kind : one of the classes (SQUARE_CLASS ... DISC_CLASS).
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     shape : (PARAMETER_COUNT,) numbers of the shape; changed.
     free : (PARAMETER_COUNT,) how far each number is moved at first, in squares or radians; 0 for numbers that stay.
     steps : the number of steps at most.
@@ -314,7 +319,8 @@ def _combine(p: float, one: Floats, q: float, other: Floats, out: Floats) -> Non
 def _extremes(losses: Floats, n: int) -> tuple[int, int, int]:
     """Return the indices of the least, the greatest and the second greatest of the first n numbers of `losses`.
 
-    n is at least 2.
+    Three different indices but for n = 2, where the second greatest is the least. Of equal numbers the least is the
+    first, the greatest the last. n is at least 2.
     """
     low, height = 0, 0
     for k in range(1, n):

@@ -55,12 +55,15 @@ class ParameterVolume(NamedTuple):
 def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> ParameterVolume:
     """Return the volume of the parameters about a shape that gets at most so many squares of an image wrong.
 
-    It is given as a likelihood. Shapes turned by any angle are equally likely, and so are lengths and diameters over
-    SIZE_RANGE squares. The same arguments give the same answer.
+    The ParameterVolume holds the mean of these shapes, (PARAMETER_COUNT,) numbers in squares of the image and radians,
+    and the natural logarithm of the likelihood of the image; higher is likelier. Shapes turned by any angle are equally
+    likely, and so are lengths and diameters over SIZE_RANGE squares. The same arguments give the same answer.
 
     Parameters
     ----------
-    kind, shape, image : class, numbers (PARAMETER_COUNT,) and image, as in geometry.shapes.misfit.
+    kind : one of the classes of misfit.
+    shape : (PARAMETER_COUNT,) numbers of the shape about which is looked, squares of the image and radians.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     wrong : the number of squares that the shape gets wrong.
     """
     free = initial_steps(kind)
@@ -73,8 +76,8 @@ def parameter_volume(kind: int, shape: Floats, image: Image, wrong: int) -> Para
 def _log_density(kind: int, uneven: bool) -> float:
     """Return the log density of a class in its numbers, all that stand for one shape taken together.
 
-    The natural logarithm of a density per square of length and per radian. `kind` : one of the classes of misfit.
-    `uneven` : whether the shape is an L with arms of two widths.
+    Higher is likelier. The natural logarithm of a density per square of length and per radian. `kind` : one of the
+    classes of misfit. `uneven` : whether the shape is an L with arms of two widths.
     """
     if kind == DISC_CLASS:
         return -math.log(SIZE_RANGE / 2)
@@ -102,7 +105,9 @@ def _sample_volume(
 
     Parameters
     ----------
-    kind, shape, image : class, numbers (PARAMETER_COUNT,) and image, as in misfit.
+    kind : one of the classes of misfit.
+    shape : (PARAMETER_COUNT,) numbers of the shape about which is looked, squares of the image and radians.
+    image : (rows, columns) of IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     wrong : number of squares that may be wrong.
     free : (PARAMETER_COUNT,) how far the walk goes in each number in one step, in squares or radians; 0 for numbers
         that stay.
@@ -144,6 +149,7 @@ def _sample_volume(
 def _agrees(kind: int, shape: Floats, image: Image, wrong: int) -> bool:
     """Return whether a shape is a proper one of its class and gets at most `wrong` squares wrong.
 
-    `kind`, `shape`, `image` : class, numbers and image, as in misfit.
+    `kind` : one of the classes of misfit. `shape` : (PARAMETER_COUNT,) its numbers. `image` : (rows, columns) of
+        IMAGE_FREE, IMAGE_OCCUPIED, IMAGE_UNKNOWN, row 0 in the south.
     """
     return class_violation(kind, shape) == 0.0 and count_wrong_squares(kind, shape, image, wrong + 1.0) <= wrong

@@ -61,7 +61,9 @@ def find_carrying_path(
 
     Returns
     -------
-    (n,) int64.
+    (n,) int64 node numbers: from a node with the grasp after which the robot first moves the body, by one node for each
+    push by a square, turn, end of a push or change of grasp, to a node at which the body lies at the goal. Ties go to
+    the path that is further along, then to the least node number.
     """
     squares, holds = end_costs.shape[1], len(grasp_costs)
     total = len(cost)
@@ -151,9 +153,11 @@ def _write_successors(
 
     Parameters
     ----------
+    lattice : the state lattice.
     hold, k, m, p : index of the hold, quarter turn, direction (NO_DIRECTION while the body lies) and place of the node.
     redirect_cost : cost of going on in another direction in the same push.
-    successor, step_cost : (16,) output: node numbers as in find_carrying_path, and costs of the step.
+    successor, step_cost : (16,) output: node numbers, ((hold * 4 + quarter turn) * 9 + direction) * squares + place,
+        and costs of the step, COMMAND_COST for a command; only the first entries are written.
     """
     squares = len(lattice.solid)
     base = (hold * 4 + k) * 9
@@ -202,6 +206,7 @@ def _write_walk_costs(
 
     Parameters
     ----------
+    lattice : the state lattice.
     hold, k, p : index of the robot's hold, quarter turn and place of the body.
     walk_cost : (holds,) output, COMMAND_COST for a command; the cost of the grasp is not in it.
     seen : (squares,) scratch, written with `mark`.
@@ -222,6 +227,7 @@ def _flood_walk_costs(
 
     Parameters
     ----------
+    lattice : the state lattice.
     targets : (holds,) number of the square of each hold.
     start : number of the square where the walk begins.
     walk_cost : (holds,) output, COMMAND_COST for a command; 0 where the robot stands, -1 where no path leads or the
@@ -255,8 +261,16 @@ def _flood_walk_costs(
 def costs_to_first_grasp(lattice: StateLattice, place: int, start: int) -> Costs:
     """Return the cost of walking from square `start` to each hold of the body, where it lies unturned, and grasping it.
 
-    `place` : number of the square of the body's centroid, `start` : number of the robot's square, in the padded table.
-        Returns (holds,) int32, COMMAND_COST for a command; -1 where no path leads.
+    Parameters
+    ----------
+    lattice : the state lattice.
+    place : number of the square of the body's centroid, in the padded table.
+    start : number of the robot's square, in the padded table.
+
+    Returns
+    -------
+    (holds,) int32, in the order of the lattice's holds, COMMAND_COST for a command; -1 where no path leads or the hold
+    is not to be used.
     """
     grasp_costs, seen = np.empty(len(lattice.grasp_cost), np.int32), np.zeros(len(lattice.solid), np.int32)
     for n in range(lattice.covered.first[0], lattice.covered.first[1]):

@@ -56,6 +56,10 @@ class Footprints:
 def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds: Longs | None = None) -> Footprints:
     """Return the footprints of a shape whose centroid lies in the square (0, 0); `home` is (0, 0).
 
+    They hold (columns, rows) offsets from that square: `holds` from which to grasp, sorted by column, then row (or as
+    given); `lying` squares covered; `steps` squares met by a push in each of eight directions; `turns` squares met by a
+    quarter turn counter-clockwise about each hold.
+
     Parameters
     ----------
     shape : shapely Polygon, in squares, drawn so that its centroid lies in the unit square from (0, 0) to (1, 1).
@@ -72,7 +76,8 @@ def new_footprints(shape: Any, own_square: tuple[int, int] | None = None, holds:
 def quarter(offsets: Longs, count: int) -> Longs:
     """Return offsets (n, 2) of columns, rows after `count` quarter turns counter-clockwise about the square (0, 0).
 
-    They turn about its middle. A negative `count` turns clockwise.
+    In the same order; `offsets` itself when `count` is a multiple of four. They turn about its middle. A negative
+    `count` turns clockwise.
     """
     for _ in range(count % 4):
         offsets = np.column_stack([-offsets[:, 1], offsets[:, 0]])
@@ -93,8 +98,8 @@ def _covered_offsets(shape: Any) -> Longs:
 def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
     """Return the squares that touch the given ones by an edge or a corner, and `own_square`: offsets (n, 2).
 
-    Columns and rows, sorted by column, then row. `lying` : (m, 2) the given ones. `own_square` : (column, row), or None
-        for none.
+    The given ones themselves are left out. Columns and rows, sorted by column, then row. `lying` : (m, 2) the given
+    ones. `own_square` : (column, row), or None for none.
     """
     covered = {(int(x), int(y)) for x, y in lying}
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in PUSH_DIRECTIONS} - covered
@@ -104,8 +109,8 @@ def _squares_about(lying: Longs, own_square: tuple[int, int] | None) -> Longs:
 def _squares_of_push(shape: Any, lying: Longs, dx: int, dy: int) -> Longs:
     """Return the squares met by a push of a shape by (dx, dy), one square, both ends included: offsets (n, 2).
 
-    Columns and rows. `lying` : (m, 2) the squares that the shape covers before. `dx`, `dy` : -1, 0 or 1, to the east
-        and to the north.
+    Columns and rows, from the square of the centroid before the push; sorted by column, then row, without repeats.
+    `lying` : (m, 2) the squares that the shape covers before. `dx`, `dy` : -1, 0 or 1, to the east and to the north.
     """
     moved = lying + np.array([dx, dy])
     if dx == 0 or dy == 0:
@@ -128,7 +133,7 @@ def swept_polygon(shape: Any, dx: float, dy: float) -> Any:
 def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
     """Return the squares met by a quarter turn counter-clockwise about the middle of square `hold`: offsets (n, 2).
 
-    Columns and rows, both ends of the turn included.
+    Columns and rows from the square (0, 0), sorted by row, then column; both ends of the turn included.
 
     Parameters
     ----------
@@ -147,7 +152,11 @@ def _squares_of_turn(body: ContactBody, lying: Longs, hold: Longs) -> Longs:
 
 
 def _unit_square_surface() -> tuple[Floats, Floats, Floats]:
-    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), as in time_of_impact.Surface."""
+    """Return hull (4, 7), skin (4, 7) and chunks (1, 6) of the square (0, 0), from (0, 0) to (1, 1).
+
+    Hull and skin are edges, rows x0, y0, x1, y1, outward normal x and y, length: the sides, and the same drawn inward
+    by SKIN_DEPTH; chunks are rows first, stop, x0, y0, x1, y1: a range of edges and its bounding box. All in squares.
+    """
     surface = Obstacles([shapely.box(0, 0, 1, 1)]).surface
     return surface.hull, surface.skin, surface.chunks
 
@@ -168,7 +177,8 @@ def _mark_met(
     met : (2 window + 1, 2 window + 1) bool, [row, column], row 0 in the south, its middle square the one about (cx,
         cy); written. Squares already marked are skipped.
     cx, cy : the pivot, the middle of a square, in the frame of the body.
-    hull, skin, chunks : of the square (0, 0), as in time_of_impact.Surface.
+    hull, skin, chunks : of the square (0, 0): its sides (4, 7), the same drawn inward (4, 7), their range and bounding
+        box (1, 6).
     """
     window = len(met) // 2
     squared_radius = 0.0

@@ -9,7 +9,7 @@ It never exceeds the true cost: an admissible heuristic.
 
 import numpy as np
 
-from geometry.kernels.bucket_queue import new_queue, put, take
+from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import compiled
 from geometry.state_lattice.lattice import COMMAND_COST, Costs, StateLattice, place_after_turn, turn_cost
 
@@ -71,14 +71,15 @@ def cost_to_go(lattice: StateLattice, end_costs: Costs, redirect_cost: int) -> C
 
 
 @compiled
-def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[no-untyped-def]
+def _relax_turns(lattice: StateLattice, remaining: Costs, queue: Queue, k: int, p: int, cost_before: int) -> None:
     """Relax backwards the quarter and half turns, about every hold, that end at a pose.
 
     Parameters
     ----------
     lattice : the state lattice.
     remaining : (4, 9, squares) the costs to go so far; lowered where a turn to the pose is cheaper.
-    queue : poses still to be looked at; those with lower costs are put on it.
+    queue : poses still to be looked at, as (place << 8) + (direction << 4) + quarter turn; those with lower costs are
+        put on it.
     k, p : quarter turn and place (number of the centroid's square) of the pose.
     cost_before : its cost to go plus that of a turn.
     """
@@ -104,16 +105,17 @@ def _relax_turns(lattice, remaining, queue, k, p, cost_before):  # type: ignore[
 
 
 @compiled
-def _relax_push_step(lattice, remaining, queue, k, m, p, now):  # type: ignore[no-untyped-def]
+def _relax_push_step(lattice: StateLattice, remaining: Costs, queue: Queue, k: int, m: int, p: int, now: int) -> None:
     """Relax backwards one step of a push: to the same push under way, and to where it began.
 
     Parameters
     ----------
     lattice : the state lattice.
     remaining : (4, 9, squares) the costs to go so far; lowered where a push to the pose is cheaper.
-    queue : poses still to be looked at; those with lower costs are put on it.
+    queue : poses still to be looked at, as (place << 8) + (direction << 4) + quarter turn; those with lower costs are
+        put on it.
     k, m, p : quarter turn, direction and place (number of the centroid's square) after the step.
-    now : the cost to go there.
+    now : the cost to go from there, COMMAND_COST for a command.
     """
     place_before = p - lattice.steps[m]
     price = lattice.push_cost[k, m, place_before]

@@ -105,18 +105,24 @@ class Grid(NamedTuple):
         return (row + self.pad) * self.stride + column + self.pad
 
     def square(self, number: int) -> tuple[int, int]:
-        """Return the (column, row) in the table of a square's number; outside the table if it is in the padding."""
+        """Return the (column, row) in the table of a square's number; outside the table if it is in the padding.
+
+        Row 0 of the table is in the south.
+        """
         return number % self.stride - self.pad, number // self.stride - self.pad
 
     def padded(self, squares: Bools, value: bool) -> Bools:
         """Return a (rows, columns) bool array as (squares,) by number of square, with `value` in the padding.
 
-        A copy; row 0 of the array is row 0 of the table.
+        `squares` : that array, for the table without padding. A copy; row 0 of the array is row 0 of the table.
         """
         return np.pad(squares, self.pad, constant_values=value).ravel()
 
     def offsets(self, offsets: Longs) -> Longs:
-        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,) int64."""
+        """Return offsets (n, 2) of columns and rows as differences of square numbers (n,) int64.
+
+        That is rows * stride + columns, in the same order.
+        """
         flat: Longs = offsets[:, 1] * self.stride + offsets[:, 0]
         return flat
 
@@ -139,6 +145,9 @@ class Grid(NamedTuple):
 def new_lattice_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
     """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body.
 
+    A Grid holds the columns and rows of the table and the width of the padding, in squares; a square's number is (row +
+    pad) * (columns + 2 pad) + column + pad, row 0 in the south. `free` : only its shape is read.
+
     `body`, `wide` : footprints of the body without and with its margin.
     """
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
@@ -155,7 +164,10 @@ def new_state_lattice(
     push_allowed: Bools,
     turn_price: int,
 ) -> StateLattice:
-    """Return the state lattice of a body on a table.
+    """Return the state lattice of a body on a table: arrays by number of square, quarter turn, hold and direction.
+
+    They say where the body can lie, what a push by one square costs (0 where blocked), where the robot can walk and
+    step, what a grasp costs, and which squares a turn meets.
 
     Parameters
     ----------
@@ -199,7 +211,8 @@ def new_state_lattice(
 def _push_footprints(grid: Grid, body: Footprints) -> OffsetLists:
     """Return the squares met by a push of one square, list number quarter turn * 8 + direction.
 
-    As offsets of square numbers from the body's place before the push.
+    `grid` : the numbering of squares. `body` : its footprints, unturned. List n is items[first[n] : first[n + 1]]. As
+        offsets of square numbers from the body's place before the push.
     """
     return _joined([grid.offsets(quarter(body.steps[(d - 2 * k) % 8], k)) for k in range(4) for d in range(8)])
 
@@ -207,7 +220,8 @@ def _push_footprints(grid: Grid, body: Footprints) -> OffsetLists:
 def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
     """Return the squares met by a quarter turn counter-clockwise, list number hold * 4 + quarter turn before it.
 
-    As offsets of square numbers from the body's place before the turn.
+    `grid` : the numbering of squares. `body` : its footprints, unturned. List n is items[first[n] : first[n + 1]]. As
+        offsets of square numbers from the body's place before the turn.
     """
     return _joined([grid.offsets(quarter(turn, k)) for turn in body.turns for k in range(4)])
 
@@ -215,13 +229,14 @@ def _turn_footprints(grid: Grid, body: Footprints) -> OffsetLists:
 def _squares_of_robot_step(dx: int, dy: int) -> Longs:
     """Return the squares that must be free for a robot's step: its own, the next, and both beside a diagonal step.
 
-    Offsets (n, 2) column, row from its own square. `dx`, `dy` : -1, 0 or 1.
+    Two of them for a step along an axis, four for a diagonal one. Offsets (n, 2) column, row from its own square. `dx`,
+    `dy` : -1, 0 or 1, to the east and to the north.
     """
     return np.array(sorted({(0, 0), (dx, 0), (0, dy), (dx, dy)}), dtype=np.int64)
 
 
 def _joined(lists: list[Longs]) -> OffsetLists:
-    """Return lists of int64 as one OffsetLists, in the same order."""
+    """Return lists of int64 as one OffsetLists, in the same order: list n is items[first[n] : first[n + 1]]."""
     first = np.concatenate([[0], np.cumsum([len(each) for each in lists])]).astype(np.int64)
     return OffsetLists(np.concatenate([np.empty(0, np.int64), *lists]), first)
 
@@ -275,6 +290,7 @@ def place_after_turn(lattice: StateLattice, hold: int, quarters: int, place: int
 
     Parameters
     ----------
+    lattice : the state lattice, of which the offsets of the holds are read.
     hold : index of the hold; the robot stands there.
     quarters, place : the body's quarter turn and place before.
     quarters_turned : quarter turns made, counter-clockwise positive.
@@ -286,10 +302,13 @@ def place_after_turn(lattice: StateLattice, hold: int, quarters: int, place: int
 def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quarters_turned: int) -> int:
     """Return the cost of a quarter turn about a hold in addition to the price of every turn; -1 if it is blocked.
 
+    A whole number, COMMAND_COST for a command.
+
     0 where the margin has room, TIGHT_TURN_COST where only the body has. The robot's own square is not looked at.
 
     Parameters
     ----------
+    lattice : the state lattice.
     hold : index of the hold; the robot stands there.
     quarters, place : the pose before: quarter turn, number of the square of the centroid.
     quarters_turned : 1 for counter-clockwise, -1 for clockwise.
@@ -309,7 +328,8 @@ def turn_cost(lattice: StateLattice, hold: int, quarters: int, place: int, quart
 def _is_clear(solid: Bools, lists: OffsetLists, which: int, place: int) -> bool:
     """Return whether none of the offsets in list number `which`, seen from a place, is solid.
 
-    `solid` : (squares,) bool by number of square. `place` : number of a square.
+    `solid` : (squares,) bool by number of square. `lists` : offsets of square numbers; list n is items[first[n] :
+        first[n + 1]]. `place` : number of a square.
     """
     for n in range(lists.first[which], lists.first[which + 1]):  # noqa: SIM110 (numba)
         if solid[place + lists.items[n]]:
