@@ -235,8 +235,10 @@ class Screen:
         -------
         PathgraphArrays
             Of the squares whose clearance is at least the radius: new, read-only arrays, of no rows when there is no
-            such square. Coordinates, lengths and clearances are in squares; the clearances are those of a point, from
-            which the radius is not taken off.
+            such square. Coordinates (x, y) are from the screen's south-west corner, y to the north; coordinates, lengths
+            and clearances are in squares, and the radius is not taken off the clearances. The points of edge e are
+            ``points[offsets[e]:offsets[e + 1]]``, the edges at node v
+            ``incident_edges[adjacency_offsets[v]:adjacency_offsets[v + 1]]``; see `PathgraphArrays`.
 
         Raises
         ------
@@ -421,7 +423,9 @@ class Screen:
         -------
         Route
             New: ``points``, corners (x, y) in squares in the frame of this screen, ``length`` and ``clearance`` in
-            squares, ``signature`` (crossing numbers that name the class) and ``chains`` (edges of the pathgraph).
+            squares (the radius is not taken off the clearance), ``signature`` (tuple of int that names the class:
+            portals crossed from start to goal, negative southwards) and ``chains`` (tuple of int: numbers of the
+            pathgraph's edges, in order).
 
         Raises
         ------

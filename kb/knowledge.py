@@ -68,8 +68,10 @@ class Knowledge:
     def memory(self) -> TrackerState:
         """Return what the localisation tracker believes now: frame, place (map frame), map, track and held objects.
 
-        Angles are degrees, places (x, y) in squares; the track is all observations, oldest first; held objects are all
-        that were ever held, by name, and `in_hand` is the name of the one in hand or None.
+        The frame's angle is that by which Utak's own frame is turned against the map frame, in degrees,
+        counter-clockwise. The track is all observations, oldest first, each with its place (east, north) in squares,
+        Utak's own frame. Map and held objects are in the map frame; held objects are all that were ever held, by name,
+        and `in_hand` is the name of the one in hand or None.
         """
         return self.tracker.state
 

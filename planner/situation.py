@@ -127,7 +127,7 @@ class Situation:
         A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
         sides, and its confidence in percent.
 
-        In the order of `rooms.doors`; one door alone for the robot when a sure one is known.
+        In the order of `rooms.doors`: for the robot one sure door alone, or all of `rooms.doors` when there is none.
 
         Parameters
         ----------

@@ -65,7 +65,8 @@ def grasp_rank(query: ManipulationQuery, candidate: GraspCandidate, track: Float
     """Return a sort key for grasps: the most promising has the least. Keys are compared part by part.
 
     Its parts are: whether it is not the present grasp; how often the track would bring the robot into a wall, in
-    MAX_TRACK_SAMPLES poses; the distance of the body's furthest corner in squares; the squares to walk; the place.
+    MAX_TRACK_SAMPLES poses; the distance from the robot's place at the grasp to the body's furthest corner, in squares;
+    the squares to walk; that place, (x, y) in squares, table frame.
 
     Parameters
     ----------

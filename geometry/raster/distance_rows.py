@@ -112,7 +112,7 @@ def add_column_distances(steps: ColumnSteps, gap: ColumnSteps, own: ColumnSteps)
     gap : (width,) int16, steps to the nearest blocked square of the column, of the row to the north; overwritten with
         this row's.
     own : (width,) int16, output: squared distance along the column to that square's edge, in half squares squared; 0 on
-        blocked squares, capped where it is more than 67 steps away.
+        blocked squares, (2 * 67 - 1)^2 = 17689 where it is 67 steps or more away (`gap` is not capped).
     """
     count_steps_to_nearest(steps, gap)
     for j in range(gap.shape[0]):

@@ -56,9 +56,10 @@ def percept_facts(percept: Percept, touched: Iterable[tuple[str, str]] = ()) -> 
     Returns
     -------
     list of str
-        For each region R: `region(R,zero|nonzero,Certain)` with percent, `extent(R,N)` in squares, `mass(R,N)` in
-        tenths of squares, and `rim(R)` and `own(R)` where that is so. Then `surrounds(Outer,Inner)` and
-        `touched(R,Colour)`, sorted.
+        For each region R, in their order: `region(R,zero|nonzero,Certain)` (nonzero: occupied) with percent,
+        `extent(R,N)` in squares, `mass(R,N)` in tenths of squares, `rim(R)` where it touches what was not seen, and
+        `own(R)` for the robot's own cell. Then all `surrounds(Outer,Inner)`, sorted; then all `touched(R,Colour)`,
+        sorted.
     """
     facts = []
     for region in percept.regions:

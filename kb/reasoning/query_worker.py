@@ -234,7 +234,10 @@ def _respond(line: bytes) -> Response:
 
 
 def main() -> None:
-    """Answer requests, lines of the standard input, on the standard output until the input ends; then end at once.
+    """Answer requests until the standard input ends; then end at once.
+
+    Each request is a line of JSON on the standard input. Its answer is a line of JSON on the standard output, an error
+    likewise (see `_respond`).
 
     The first line that is written is `ready`.
     """

@@ -187,9 +187,9 @@ class _Search:
         )
 
     def truth_of_negated(self, atom: Atom, given: Bindings) -> TruthValue:
-        """Return the truth of an atom with `not`, or `not not`, before it; None when it is not known.
+        """Return the truth of the literal `not atom`, or `not not atom` (by `atom.negations`); None when not known.
 
-        True when it certainly holds, False when it cannot. A variable `_` in it matches anything.
+        True when the literal certainly holds, False when it cannot. A variable `_` in the atom matches anything.
 
         given : the values of the variables that are bound, by name.
         """

@@ -58,10 +58,10 @@ def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle
     stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
     Nothing is yielded when no object blocks.
 
-    An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
+    An Obstacle holds the object, and an end: where it shall lie so that the way is free.
 
-    The end is Inside its own squares and surely free ones off the route; for one that goes on in a wall it is At, a
-    pull out of it.
+    The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route. For an
+    object that goes on in a wall it is At: a translation (x, y) in squares from where it lies, out of the wall.
 
     Parameters
     ----------

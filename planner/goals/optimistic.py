@@ -44,9 +44,11 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
 
 
 def optimistic_floor(situation: Situation) -> Bools:
-    """Return all squares that are assumed to be free, (rows, columns) bool with the margin of `with_unseen_margin`.
+    """Return all squares that are assumed to be free, (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN) bool.
 
-    These are the free ones of level OPTIMISTIC_LEVEL and the unseen ones that these lead to.
+    Rows and columns are those of the view; UNSEEN_MARGIN (6) more squares are on each side. These squares are the free
+    ones of certainty level OPTIMISTIC_LEVEL (2; 0 is the surest), and the unseen ones that at most UNSEEN_MARGIN steps
+    lead to from these.
 
     Parameters
     ----------

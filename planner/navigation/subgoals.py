@@ -41,8 +41,9 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
-    One of kind ATTAIN comes before all others; then the least cost divided by the chance; of equals the first. The cost
-    is that of the way plus the price, with an extra cost for some kinds and for a switch to another subgoal.
+    One of kind ATTAIN comes before all others; then the least cost divided by the chance, plus three squares for a
+    switch to another subgoal; of equals the first. The cost is that of the way plus the price, with an extra cost for
+    some kinds.
 
     Parameters
     ----------

@@ -351,10 +351,12 @@ class _Competition:
         self._trials: dict[int, FrameTrial] = {}
 
     def run(self) -> dict[int, FrameTrial]:
-        """Return the trials of the frames that may be the best, by orientation in degrees; all of them were drawn.
+        """Return the trials of the frames that may be the best, by orientation; all of them were drawn.
 
-        They come in the order in which they were tried, not by their odds. A trial holds the map in the frame and the
-        log odds (natural logarithm) against it. Only orientations about Utak's own axes are there where those fit.
+        An orientation is by how many degrees Utak's own frame is turned against the map frame, counter-clockwise. The
+        trials come in the order in which they were tried, not by their odds. A trial holds the map in the frame and the
+        log odds (natural logarithm) against it. Only orientations near 0 are there when the map at 0 has straight
+        sides.
         """
         trials = self._trials
         self._enter([0])

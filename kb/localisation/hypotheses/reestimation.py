@@ -146,8 +146,9 @@ def reestimate_walk(
     """Yield other ends of a motion, each with the frame in which no observation contradicts another.
 
     What is yielded holds the frame hypothesis, the shift of all observations since the motion, (east, north) in
-    squares, Utak's own frame, whether something known blocked it, the number of fields that contradict it, and where
-    the newest observation was made. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost); in
+    squares, Utak's own frame, whether something known blocked it, the number of fields, over all observations,
+    that contradict the map (`residual`), and where the newest observation was made, (east, north) in squares, Utak's
+    own frame. Frame by frame, in the order of the hypotheses (the 90 of the least prior cost); in
     each frame in the order of the way. Until it was blocked the motion entered no occupied square, and it was blocked
     before no free one. Where a contact with something known is possible in a frame, contacts with open squares are left
     out. Not yielded: what is believed already, and a contact of the newest motion with something unknown in the
