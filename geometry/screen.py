@@ -235,8 +235,8 @@ class Screen:
         -------
         PathgraphArrays
             Of the squares whose clearance is at least the radius: new, read-only arrays, of no rows when there is no
-            such square. Coordinates (x, y) are from the screen's south-west corner, y to the north; coordinates, lengths
-            and clearances are in squares, and the radius is not taken off the clearances. The points of edge e are
+            such square. Coordinates (x, y) are from the screen's south-west corner, y to the north. Coordinates,
+            lengths and clearances are in squares; the radius is not taken off the clearances. The points of edge e are
             ``points[offsets[e]:offsets[e + 1]]``, the edges at node v
             ``incident_edges[adjacency_offsets[v]:adjacency_offsets[v + 1]]``; see `PathgraphArrays`.
 

@@ -69,16 +69,36 @@ class _Interrupts:
     def _again(self, lost: "sys.UnraisableHookArgs") -> None:
         """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import."""
         if issubclass(lost.exc_type, KeyboardInterrupt):
-            from threading import Timer
-
-            Timer(REPEAT_DELAY_SECONDS, signal_again).start()
+            repeat_soon()
         else:
             sys.__unraisablehook__(lost)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        """Note the interrupt and raise KeyboardInterrupt."""
+        """Note the interrupt and raise KeyboardInterrupt, or wait for the end of an import that is under way.
+
+        Libraries in C print a traceback of their own when an import of theirs is interrupted.
+        """
         self.seen = True
-        raise KeyboardInterrupt
+        if is_importing(frame):
+            repeat_soon()
+        else:
+            raise KeyboardInterrupt
+
+
+def is_importing(frame: FrameType | None) -> bool:
+    """Return whether the code of a frame runs within an import."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def repeat_soon() -> None:
+    """Interrupt the main thread once more, a moment later."""
+    from threading import Timer
+
+    Timer(REPEAT_DELAY_SECONDS, signal_again).start()
 
 
 def signal_again() -> None:

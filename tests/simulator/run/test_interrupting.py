@@ -210,3 +210,18 @@ def test_a_background_job_ignores_ctrl_c(tmp_path: Path) -> None:
     environment = os.environ | {"PYTHONPATH": str(ROOT), "SCRIPTED_PAUSE": "0.02"}
     code, said = press_after(0.5, command, preexec_fn=prepare, env=environment)
     assert code == 75, said
+
+
+def test_an_import_that_is_under_way_ends_before_the_interrupt(tmp_path: Path) -> None:
+    (tmp_path / "interrupted_module.py").write_text(
+        "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nfor _ in range(1000): pass\nprint('whole', flush=True)\n"
+    )
+    code = (
+        f"import sys, time; sys.path[:0] = [{str(ROOT)!r}, {str(tmp_path)!r}]; from simulator.cli.main import _Interrupts\n"
+        "_Interrupts().take()\n"
+        "try:\n    import interrupted_module\n    time.sleep(20)\n"
+        "except KeyboardInterrupt:\n    print('interrupted', flush=True)\n"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=15, check=True)
+    assert found.stdout.split() == ["whole", "interrupted"]
+    assert found.stderr == ""
