@@ -214,10 +214,13 @@ def test_a_background_job_ignores_ctrl_c(tmp_path: Path) -> None:
 
 def test_an_import_that_is_under_way_ends_before_the_interrupt(tmp_path: Path) -> None:
     (tmp_path / "interrupted_module.py").write_text(
-        "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nfor _ in range(1000): pass\nprint('whole', flush=True)\n"
+        "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n"
+        "for _ in range(1000): pass\nprint('whole', flush=True)\n"
     )
     code = (
-        f"import sys, time; sys.path[:0] = [{str(ROOT)!r}, {str(tmp_path)!r}]; from simulator.cli.main import _Interrupts\n"
+        f"import signal, sys, time; sys.path[:0] = [{str(ROOT)!r}, {str(tmp_path)!r}]\n"
+        "from simulator.cli.main import _Interrupts\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "_Interrupts().take()\n"
         "try:\n    import interrupted_module\n    time.sleep(20)\n"
         "except KeyboardInterrupt:\n    print('interrupted', flush=True)\n"
