@@ -102,10 +102,16 @@ def repeat_soon() -> None:
 
 
 def signal_again() -> None:
-    """Interrupt the main thread."""
+    """Interrupt the main thread, also where it waits for something."""
     import _thread
+    import signal
+    import threading
 
-    _thread.interrupt_main()
+    main_thread = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main_thread is not None:
+        signal.pthread_kill(main_thread, signal.SIGINT)
+    else:  # Windows has no signals between threads
+        _thread.interrupt_main()
 
 
 def _run_reporting_errors(arguments: Sequence[str] | None, interrupts: _Interrupts) -> int:
