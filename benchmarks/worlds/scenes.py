@@ -1,7 +1,7 @@
 """A scenario as a frozen value, with the truth about it, and its four files."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -67,6 +67,25 @@ class RandomScenario:
     def world(self) -> str:
         """The text of world.lp."""
         return world_text(self.plan, self.utak, self.heading, self.things)
+
+
+def random_scenario(
+    task: int,
+    seed: int,
+    plan: FloorPlan,
+    things: tuple[PlacedThing, ...],
+    utak: Point | None,
+    heading: int,
+    texts: TaskTexts,
+    target: BaseGeometry,
+    missing: float = 0.0,
+) -> RandomScenario | None:
+    """Return the scenario, with `fails` expected where the task cannot be done; None without a place for the robot."""
+    if utak is None:
+        return None
+    if texts.unable:
+        texts = replace(texts, expect=f"% {texts.unable}\nfails.\n{texts.expect}")
+    return RandomScenario(task, seed, plan, things, utak, heading, texts, target, missing)
 
 
 # Makes a world of (random numbers, seed, whether the task cannot be done); None when the things find no place.

@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.worlds.floorplans import FloorPlan, convex_corners, random_plan
 from benchmarks.worlds.furniture import rectangle
 from benchmarks.worlds.placing import OBJECT_GAP, colour, face, furniture, lay, spot, stand
-from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, wkt
+from benchmarks.worlds.scenes import Maker, PlacedThing, RandomScenario, TaskTexts, random_scenario, wkt
 
 DOORS = (3, 6)
 EYESHOT = 8.0  # squares: what lies so near is seen at every heading
@@ -77,7 +77,7 @@ def corner_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomSce
     utak = stand(rng, starts, things, target, 6)
     expect = f'inside(utak, "{wkt(target)}").\n'
     why = "the corner is in a room without a door" if unable else ""
-    return _made(
+    return random_scenario(
         1, seed, plan, things, utak, heading, TaskTexts("", f"at(utak, corner({compass})).\n", expect, why), target
     )
 
@@ -102,7 +102,9 @@ def next_room_world(rng: np.random.Generator, seed: int, unable: bool) -> Random
     target = union_all([plan.room(name) for name in plan.neighbours(first.name)])
     expect = "" if unable else f'inside(utak, "{wkt(target)}").\n'
     why = ("no door leads to the other room" if closed else "there is one room only") if unable else ""
-    return _made(2, seed, plan, things, utak, face(rng), TaskTexts("", "in(utak, room(next)).\n", expect, why), target)
+    return random_scenario(
+        2, seed, plan, things, utak, face(rng), TaskTexts("", "in(utak, room(next)).\n", expect, why), target
+    )
 
 
 def to_square_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
@@ -124,7 +126,7 @@ def to_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Random
     utak = stand(rng, starts, [thing for thing in things if thing.shape != "wall"] + _filled(things), goals, 6)
     expect = f'near(utak, "{wkt(goals)}", 2).\n' if count else ""
     texts = TaskTexts(SQUARE_FACTS, "at(utak, x).\n", expect, WHY[kind])
-    return _made(3, seed, plan, things, utak, face(rng), texts, goals.buffer(2, quad_segs=8))
+    return random_scenario(3, seed, plan, things, utak, face(rng), texts, goals.buffer(2, quad_segs=8))
 
 
 def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> RandomScenario | None:
@@ -148,7 +150,7 @@ def round_square_world(rng: np.random.Generator, seed: int, unable: bool) -> Ran
     circle = "circles(utak, t1).\nunmoved(t1).\n" if squares else ""
     expect = circle + f'near(utak, "{wkt(utak)}", 2).\n'
     texts = TaskTexts(SQUARE_FACTS, "circled(utak, x).\nat(utak, start).\n", expect, WHY[kind])
-    return _made(4, seed, plan, things, utak, face(rng), texts, NO_REGION)
+    return random_scenario(4, seed, plan, things, utak, face(rng), texts, NO_REGION)
 
 
 WALKING: dict[int, Maker] = {
@@ -157,24 +159,6 @@ WALKING: dict[int, Maker] = {
     3: to_square_world,
     4: round_square_world,
 }
-
-
-def _made(
-    task: int,
-    seed: int,
-    plan: FloorPlan,
-    things: tuple[PlacedThing, ...],
-    utak: Point | None,
-    heading: int,
-    texts: TaskTexts,
-    target: BaseGeometry,
-) -> RandomScenario | None:
-    """Return the scenario, with `fails` expected where the task cannot be done; None without a place for the robot."""
-    if utak is None:
-        return None
-    if texts.unable:
-        texts = TaskTexts(texts.start, texts.goal, f"% {texts.unable}\nfails.\n" + texts.expect, texts.unable)
-    return RandomScenario(task, seed, plan, things, utak, heading, texts, target)
 
 
 def _any_plan(rng: np.random.Generator, closed: bool) -> FloorPlan:

@@ -20,7 +20,6 @@ from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew
 MIN_CORNER_SINE = 0.5  # the sine of the angle between the walls of a corner; below it they are taken for one wall
 MIN_FLOOR_SQUARES = 6  # squares: smaller parts of the floor have no corner; tuned
-CORNER_SIDES = ("northeast", "northwest", "southeast", "southwest")  # of the robot frame
 
 
 class Corner(NamedTuple):

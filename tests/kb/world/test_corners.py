@@ -9,9 +9,10 @@ import shapely.affinity
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from kb.language.vocabulary import CORNER_NAMES
 from kb.mapping.occupancy import OCCUPIED, OPEN
 from kb.mapping.patch import patch_of
-from kb.world.corners import CORNER_SIDES, corners, known_floor
+from kb.world.corners import corners, known_floor
 from kb.world.model import Node
 from planner.screen.projection import dilate
 from tests.kb.drawings import known_model
@@ -30,7 +31,7 @@ def test_a_corner_is_the_furthest_point_of_the_known_floor(seed: int) -> None:
     model = known_model(rows)
     floor = known_floor(model)
     found = corners(model)
-    assert set(found) == set(CORNER_SIDES)
+    assert set(found) == set(CORNER_NAMES)
     for side, (dx, dy) in SIGNS.items():
         r, c = np.nonzero(floor)
         best = max(float((dx * (c + a) + dy * (r + b)).max()) for a in (0, 1) for b in (0, 1))
