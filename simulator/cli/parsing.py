@@ -2,7 +2,8 @@
 
 import argparse
 
-from simulator.cli.commands import check, new, query, repl, routes, run, show, test, warm
+from simulator.cli.commands import query, repl, routes, run, test, warm
+from simulator.cli.commands.files import check, new, show
 
 COMMANDS = (run, test, check, show, new, query, repl, routes, warm)  # in the order of the help text
 # The end of the help text.

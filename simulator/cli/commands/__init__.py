@@ -2,11 +2,9 @@
 
 run     run the robot on a scenario
 test    run scenarios as tests
-check   check the files of scenarios
-show    print a world as a picture
-new     write a small scenario
 query   ask what Utak believes
 repl    step through a run and ask
 routes  find distinct routes on a map
 warm    compile the geometry kernels
+files   the subcommands that read and write files of scenarios: check, show, new
 """

@@ -17,7 +17,7 @@ import scripted_robot
 from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
-from simulator.cli.commands.new import NEW_SCENARIO_FILES
+from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
 from simulator.run.interrupts import defer_interrupt
 from simulator.run.story import Story, open_story
 from simulator.scenario.settings import Settings

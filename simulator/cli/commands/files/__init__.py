@@ -1,0 +1,6 @@
+"""The subcommands of `utak` that read and write files of scenarios, and run nothing.
+
+check   check the files of scenarios
+show    print a world as a picture
+new     write a small scenario
+"""
