@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from kb.explanation.values import RuleInstance, RuleText
 from kb.language.reader import facts_from_text
-from kb.language.source_text import source_from_bytes
+from kb.language.source_text import Source, source_from_bytes
 from kb.reasoning.rulebook import Statement
-from kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
+from kb.reasoning.sentences import PredicateWords, fill, read_sentences
 from kb.reasoning.solver import ENCODING_FOLDERS
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
 from kb.tracing.requests import respond
@@ -153,22 +153,26 @@ def _rules_with_words(
     found, problems = read_sentences(source, [((one["line"], one["column"]), one["variables"]) for one in ours])
     if problems:
         raise ExplanationError(str(problems[0]))
-    words = dict(found.predicates)
-    rules = []
-    for one, entry in zip(users, statements, strict=False):
-        theirs = _words_of_file(one, users)
-        words = {**theirs.predicates, **words}
-        text = " ".join(one.written.split())
-        rules.append(RuleText(one.source.file, *one.at, text, entry["kind"], theirs.sentences.get(one.at, "")))
+    sentences, words = words_of_users(users)
+    rules = [
+        RuleText(one.source.file, *one.at, " ".join(one.written.split()), entry["kind"], sentence)
+        for one, entry, sentence in zip(users, statements, sentences, strict=False)
+    ]
     for entry in ours:
         at = (entry["line"], entry["column"])
         rules.append(RuleText(own.file, *at, entry["text"], entry["kind"], found.sentences.get(at, "")))
-    return rules, words
+    return rules, {**words, **found.predicates}
 
 
-def _words_of_file(one: Statement, users: Sequence[Statement]) -> RuleWords:
-    """Return the sentences of the file in which a user's rule stands."""
-    return words_of_rules(one.source, [other for other in users if other.source == one.source])[0]
+def words_of_users(users: Sequence[Statement]) -> tuple[list[str], dict[tuple[str, int], PredicateWords]]:
+    """Return the sentence of each of some users' rules, '' for none, and how predicates read in their files."""
+    words: dict[tuple[str, int], PredicateWords] = {}
+    sentences: dict[tuple[Source, tuple[int, int]], str] = {}
+    for source in dict.fromkeys(one.source for one in users):
+        found, _ = words_of_rules(source, [one for one in users if one.source == source])
+        words = {**found.predicates, **words}
+        sentences |= {(source, at): text for at, text in found.sentences.items()}
+    return [sentences.get((one.source, one.at), "") for one in users], words
 
 
 def _unit(entry: Json, rules: Sequence[RuleText], statements: Sequence[Json]) -> Unit:
