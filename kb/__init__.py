@@ -12,6 +12,8 @@ world         the world model, rooms, doors and corners; the same as facts
 task          the task, and the binding of its parameters to objects
 language      fact files: reading, checking, vocabulary
 reasoning     clingo, queries, rules of users
+explanation   why a decision is as it is, and what would change it
+tracing       programs made to tell how their answers come about
 three_valued  queries whose answer may be `don't know`
 asp           the encodings, one concern a file
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
-from kb.explanation.programs import ExplanationError, Unit, canonical, decision_program, words_of_users
+from kb.explanation.programs import ExplanationError, RuleUnit, canonical, decision_program, words_of_users
 from kb.explanation.support import Support, supports_of
 from kb.explanation.tree import ProofTrees
 from kb.explanation.values import Proof, RuleInstance, RuleText
@@ -63,18 +64,18 @@ def _trees(facts: tuple[str, ...], rule_files: tuple[str, ...]) -> tuple[ProofTr
     supports = supports_of(found, units)
     for fact in facts:
         _add_object(fact, supports)
-    trees = ProofTrees(supports, facts, found["atoms"], {**decision_program(BELIEF).words, **words}, (), _instance, _none)
+    trees = ProofTrees(
+        supports, facts, found["atoms"], {**decision_program(BELIEF).words, **words}, (), _instance, _none
+    )
     return trees, frozenset(found["atoms"])
 
 
-def _unit(entry: dict[str, object], rules: Sequence[Statement], sentences: Sequence[str]) -> Unit:
+def _unit(entry: dict[str, Any], rules: Sequence[Statement], sentences: Sequence[str]) -> RuleUnit:
     """Return a unit from the response of the worker."""
     number = entry["statement"]
-    assert isinstance(number, int)
-    one = rules[number]
-    rule = RuleText(one.source.file, *one.at, " ".join(one.written.split()), "rule", sentences[number])
-    names, literals, conditions = (tuple(entry[key]) for key in ("names", "literals", "conditions"))  # type: ignore[call-overload]
-    return Unit(rule, names, names, literals, tuple(map(tuple, conditions)))
+    one, names = rules[number], tuple(entry["names"])
+    rule = RuleText(one.source.file, one.at[0], one.at[1], " ".join(one.written.split()), "rule", sentences[number])
+    return RuleUnit(rule, names, names, tuple(entry["literals"]), tuple(map(tuple, entry["conditions"])))
 
 
 def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
@@ -82,7 +83,7 @@ def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
     name, _, rest = fact.partition("(")
     parts = rest.removesuffix(")").split(",")
     if name == "kind" and len(parts) == 3 and parts[1] == "object":
-        unit = Unit(OBJECT_RULE, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
+        unit = RuleUnit(OBJECT_RULE, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
         one = Support(-1, unit, (parts[0], parts[2]), (fact,), ((),), 0, ())
         supports.setdefault(f"object({parts[0]})", []).append(one)
 

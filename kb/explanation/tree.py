@@ -1,7 +1,6 @@
 """Proof trees built from rule instances: the same for encodings and for users' rules in queries."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 from kb.explanation.support import (
     CountedElement,
@@ -14,7 +13,7 @@ from kb.explanation.support import (
 )
 from kb.explanation.values import ProofNode, RivalChoice, RuleInstance
 from kb.explanation.wording import (
-    Words,
+    WordsByPredicate,
     absent_words,
     aggregate_claim,
     aggregate_words,
@@ -26,8 +25,7 @@ from kb.explanation.wording import (
     substituted,
     variables_in,
 )
-
-Json = dict[str, Any]
+from kb.tracing.syntax import JsonValues
 
 
 class ProofTrees:
@@ -49,7 +47,7 @@ class ProofTrees:
         supports: Mapping[str, Sequence[Support]],
         given: Iterable[str],
         holding: Iterable[str],
-        words: Words,
+        words: WordsByPredicate,
         assumed: Iterable[str],
         instance: Callable[[Support], RuleInstance],
         rivals: Callable[[Support], tuple[RivalChoice, ...]],
@@ -116,7 +114,7 @@ class ProofTrees:
     def _literal(
         self,
         value: LiteralValue,
-        info: Json,
+        info: JsonValues,
         elements: Sequence[CountedElement],
         values: Mapping[str, str] | None,
     ) -> Iterator[ProofNode]:
@@ -145,7 +143,7 @@ class ProofTrees:
             told = f"{number} it holds that {text}" if elements else f"there is no case in which to check {text}"
             yield ProofNode("each", text, told, children=tuple(self._cases(info, elements)))
 
-    def _members(self, info: Json, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
+    def _members(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
         """Yield a node for each element that counts in an aggregate; that of its only atom when it has one."""
         for one in elements:
             infos = info["conditions"][one.element]
@@ -160,7 +158,7 @@ class ProofTrees:
                 text = member_text(one.terms)
                 yield ProofNode("each", text, f"{text} counts", children=tuple(parts))
 
-    def _cases(self, info: Json, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
+    def _cases(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
         """Yield a node for each case of a conditional literal: its literal, with its condition below."""
         for one in elements:
             (literal,) = self._literal(one.terms[0], info["literal"], (), None)

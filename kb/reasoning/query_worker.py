@@ -220,8 +220,9 @@ def _respond(line: bytes) -> Response:
     """Return the response to one request, a line of JSON: JSON values by key, never an exception.
 
     A request with "read" has the response of `read_rule_text`, one with "justify" that of `justify_rules`, one
-    with "trace" that of kb.tracing.requests, one with "program" that of `solve_with_rules`, any other that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
-    0) in the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
+    with "trace" that of kb.tracing.requests, one with "program" that of `solve_with_rules`, any other that of
+    `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from 0) in
+    the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
     """
     _messages.clear()
     try:

@@ -26,12 +26,10 @@ from kb.three_valued.evaluation import find_bindings, fixed_confidence_variables
 from kb.three_valued.open_world import Beliefs
 from kb.three_valued.term_values import Bindings, is_interval, value_of
 from kb.three_valued.uncertain_values import MIRRORED_SIGNS, Unknown
-from kb.tracing.syntax import ANY_NAME
-
-Json = dict[str, Any]
+from kb.tracing.syntax import ANY_NAME, JsonValues
 
 
-def certain_instances(clauses: Sequence[Clause], beliefs: Beliefs) -> Json:
+def certain_instances(clauses: Sequence[Clause], beliefs: Beliefs) -> JsonValues:
     """Return the rule instances that certainly hold, as JSON values.
 
     Parameters
@@ -44,7 +42,7 @@ def certain_instances(clauses: Sequence[Clause], beliefs: Beliefs) -> Json:
     "units": of each clause the index of its rule ("statement"), the names of its variables, and its literals; "on",
     "heads" and "elements" as of kb.tracing.requests for the task "trace"; "atoms": all certain atoms.
     """
-    found: Json = {"units": [], "on": [], "heads": [], "elements": []}
+    found: JsonValues = {"units": [], "on": [], "heads": [], "elements": []}
     for number, clause in enumerate(clauses):
         assert clause.head is not None
         names = list(global_variables(clause.body))
@@ -89,7 +87,7 @@ def _elements(
                 yield [number, at, index, list(values), shown, [_value(one, found) for one in condition]]
 
 
-def _info(literal: Literal) -> Json:
+def _info(literal: Literal) -> JsonValues:
     """Return what an explanation needs to know of a literal: see kb.tracing.instrument.literal_info."""
     text = _literal_text(literal)
     if isinstance(literal, Atom):

@@ -6,7 +6,7 @@ stand in literals without negation, have names of their own, so that an instance
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import clingo
 from clingo.ast import (
@@ -23,6 +23,7 @@ from clingo.ast import (
     parse_string,
 )
 
+JsonValues = dict[str, Any]  # values by key, ready for JSON
 ANY_NAME = "any__"  # stands for an anonymous variable of a negated atom, which may have any value
 HIDDEN_PREFIX = "Some__"  # begins the names that anonymous variables and intervals get
 KEPT_NODES = (ASTType.Rule, ASTType.Minimize)  # the statements that are traced
@@ -292,9 +293,7 @@ class _HiddenNamer(Transformer):
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Return an aggregate with named hidden variables in the conditions of its elements."""
-        return node.update(
-            elements=[one.update(condition=self._conjunction(one.condition)) for one in node.elements]
-        )
+        return node.update(elements=[one.update(condition=self._conjunction(one.condition)) for one in node.elements])
 
     def visit_Aggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Return a set of conditional literals with named hidden variables in its literals and conditions."""
