@@ -6,7 +6,7 @@ comes 8.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import islice, product
+from itertools import islice, permutations, product
 from typing import NamedTuple
 
 import clingo
@@ -72,8 +72,10 @@ class Domains:
         for atom in atoms:
             for index, value in enumerate(atom.arguments):
                 self._add((atom.name, len(atom.arguments), index), value)
-        for _, unit in counted:
-            self._add_constants(unit)
+        for number, unit in counted:
+            self._add_constants(number, unit)
+        for number, unit in counted:
+            self._add_prices(number, unit)
         for _ in range(MAX_NUMBER_ROUNDS):
             found = [
                 pair
@@ -166,8 +168,14 @@ class Domains:
         for name in names[1:]:
             self._join((number, names[0]), (number, name))
 
-    def _add_constants(self, unit: Unit) -> None:
-        """Add the constants of a unit's atoms to the classes of their positions."""
+    def _add_constants(self, number: int, unit: Unit) -> None:
+        """Add the constants of a unit's atoms and comparisons to the classes of their positions and variables."""
+        for comparison in _comparisons(unit):
+            sides = [comparison.term, *(guard.term for guard in comparison.guards)]
+            for one, other in permutations(sides, 2):
+                value = self.constant(other)
+                if one.ast_type == ASTType.Variable and value is not None:
+                    self._add((number, one.name), value)
         for atom in atoms_in(unit):
             for index, term in enumerate(arguments_of(atom)):
                 value = self.constant(term)
@@ -175,6 +183,15 @@ class Domains:
                     self._add((atom_name(atom), len(arguments_of(atom)), index), value)
 
     # ---- needed numbers ----
+
+    def _add_prices(self, number: int, unit: Unit) -> None:
+        """Add to the numbers in a weak constraint's price those beside them, and 0: with these another one is cheaper."""
+        if unit.node.ast_type != ASTType.Minimize:
+            return
+        for name in _names(unit.node.weight):
+            for value in [0, *(near for known in self._numbers((number, name)) for near in (known - 1, known + 1))]:
+                if value >= 0:
+                    self._add((number, name), clingo.Number(value))
 
     def _needed(self, number: int, index: int, one: Relation) -> Iterator[tuple[Slot, int]]:
         """Yield (slot, number) of the numbers at which a relation turns, for each of its variables.
