@@ -154,7 +154,11 @@ def test_a_query_atom_that_is_not_certain_is_not_explained(tmp_path: Path) -> No
     ("text", "place", "message"),
     [
         ('%! because "Region {Q} is lost."\nlost(R) :- rim(R).\n', "1:20-22", "no variable Q"),
-        ('%! because "Region {N} is lost."\nlost(R) :- rim(R), 1 < #count { N : mass(R, N) }.\n', "1:20-22", "no variable N"),
+        (
+            '%! because "Region {N} is lost."\nlost(R) :- rim(R), 1 < #count { N : mass(R, N) }.\n',
+            "1:20-22",
+            "no variable N",
+        ),
         ('%! because "Region {R} is lost.\nlost(R) :- rim(R).\n', "1:12-12", "not closed"),
         ('lost(R) :- rim(R).\n%! because "It is lost."\n', "2:3-24", "no rule stands behind"),
         ('%! because "It is lost."\n#const n = 3.\nlost(R) :- rim(R).\n', "1:3-24", "no rule stands behind"),
@@ -165,7 +169,7 @@ def test_a_query_atom_that_is_not_certain_is_not_explained(tmp_path: Path) -> No
         ("%! because lost\nlost(R) :- rim(R).\n", "1:3-15", "one string"),
         ('lost(R) :-\n%! because "Within."\n  rim(R).\n', "2:1-20", "within a rule"),
         ('%! says lost(R) "{Q} is lost"\nlost(R) :- rim(R).\n', "1:18-20", "no argument Q"),
-        ('%! says lost(R)\nlost(R) :- rim(R).\n', "1:3-15", "words of a predicate"),
+        ("%! says lost(R)\nlost(R) :- rim(R).\n", "1:3-15", "words of a predicate"),
     ],
 )
 def test_wrong_sentences_are_located_errors(tmp_path: Path, text: str, place: str, message: str) -> None:
