@@ -75,7 +75,7 @@ def smaller_changes(name: str, facts: list[str], atom: str, size: int) -> list[t
 
 @pytest.mark.parametrize("name", sorted(INPUTS))
 @given(data=st.data())
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=3, deadline=None)
 def test_changes_of_random_facts_are_least(name: str, data: st.DataObject) -> None:
     facts = data.draw(random_facts(name, 7))
     decisions = best_decisions(encoding_path(name), text_of(facts))
