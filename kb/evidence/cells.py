@@ -42,6 +42,7 @@ def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
     data = {"cell": cell, "impression": step, "level": level, "least": least, "most": most, "status": now.status[cell]}
     allowed = f"the map allowed level {least}" if least == most else f"the map allowed the levels {least} to {most}"
     status = now.status[cell]
+    below: tuple[Reason, ...]
     if cell == OWN_FIELD:
         because, below = f"predicted: the robot fills its own square; {where}", (command_reason(now),)
     elif status == "p":

@@ -81,17 +81,28 @@ def explain_verdict(beliefs: Beliefs, task: Task) -> Reason | None:
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 
 
+def explain_goal(beliefs: Beliefs, goal: str, step: int) -> Reason:
+    """Return a goal with the facts that it is about and what its parameters mean, as believed at a step.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    goal : the goal as goal.lp states it, without a full stop.
+    step : the number of the step.
+    """
+    name, arguments = atom_parts(goal)
+    if name in STEP_WORDS:
+        name, arguments = atom_parts(arguments[0])
+    facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
+    below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
+    bound = tuple(_bindings(beliefs, arguments, step))
+    says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
+    return Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+
+
 def _goal_reasons(beliefs: Beliefs, task: Task, step: int) -> Iterator[Reason]:
     """Yield a reason for each goal: the facts that it is about, as believed at a step."""
-    for goal in task.goals:
-        name, arguments = atom_parts(goal)
-        if name in STEP_WORDS:
-            name, arguments = atom_parts(arguments[0])
-        facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
-        below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
-        bound = tuple(_bindings(beliefs, arguments, step))
-        says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
-        yield Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+    yield from (explain_goal(beliefs, goal, step) for goal in task.goals)
 
 
 def _meant(beliefs: Beliefs, arguments: Sequence[str], step: int) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""The record of a run as the robot wrote it: commands, impressions, beliefs and decisions; nothing of the true table."""
+"""The record of a run as the robot wrote it: commands, impressions, beliefs and decisions, nothing of the truth."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property

@@ -71,8 +71,7 @@ def comparison_words(info: Json, sides: Sequence[str], values: Mapping[str, str]
     if info["signs"] == ["="] and sides[0] == sides[1]:
         texts = written
     parts = [
-        f"{left} {SIGN_WORDS[sign]} {right}"
-        for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
+        f"{left} {SIGN_WORDS[sign]} {right}" for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
     ]
     return ("it is not so that " if info["negated"] else "") + " and ".join(parts)
 

@@ -156,7 +156,9 @@ class _SentenceReader:
                 self._read_predicate(one)
             elif word != "because":
                 what = f"this annotation begins with {word or 'nothing'}"
-                self.complain(one.span, what, did_you_mean(word, {"because", "says"}) or "it begins with because or says")
+                self.complain(
+                    one.span, what, did_you_mean(word, {"because", "says"}) or "it begins with because or says"
+                )
             elif not inside:
                 self.complain(one.span, "no rule stands behind this sentence", "put it directly before its rule")
             elif sentence is not None:
