@@ -13,14 +13,14 @@ from typing import Any
 
 import clingo
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-Line = Mapping[str, Any]
+PROJECT = Path(__file__).resolve().parent.parent.parent
+StepLine = Mapping[str, Any]
 Tree = Mapping[str, Any]
-COMPASS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+TOUCH_DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 ENDS = {"measured", "cells", "touch", "command", "task", "convention", "negation", "computed", "rejected"}
 
 
-def complaints(lines: Sequence[Line], tree: Tree) -> Iterator[str]:
+def complaints(lines: Sequence[StepLine], tree: Tree) -> Iterator[str]:
     """Yield what is wrong with a tree of reasons; nothing when every node is confirmed.
 
     Parameters
@@ -35,19 +35,19 @@ def complaints(lines: Sequence[Line], tree: Tree) -> Iterator[str]:
         waiting += below
         if not below and node["kind"] not in ENDS:
             yield f"{node['claim']} ends in nothing"
-        check = CHECKS.get(node["kind"])
+        check = NODE_CHECKS.get(node["kind"])
         if check is not None:
             yield from check(lines, node)
 
 
-def _fact(lines: Sequence[Line], node: Tree) -> Iterator[str]:
+def _fact(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     """Yield a complaint about a fact that its step does not state."""
     step = int(re.fullmatch(r"step (\d+)", node["source"])[1])  # type: ignore[index]
     if f"{node['claim']}." not in lines[step]["belief"]["facts"]:
         yield f"{node['claim']} is not believed at step {step}"
 
 
-def _cells(lines: Sequence[Line], node: Tree) -> Iterator[str]:
+def _cells(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     """Yield complaints about cells: wrong levels, cells that do not cover the square they are said to show."""
     data = node.get("data", {})
     if "cell" in data:
@@ -61,7 +61,7 @@ def _cells(lines: Sequence[Line], node: Tree) -> Iterator[str]:
             yield f"cell {cell} of impression {impression} is not named"
 
 
-def covers(lines: Sequence[Line], step: int, impression: int, cell: int, square: Sequence[int]) -> bool:
+def covers(lines: Sequence[StepLine], step: int, impression: int, cell: int, square: Sequence[int]) -> bool:
     """Return whether a cell of an impression covers a square of the map frame, as believed at a step (DESIGN 4).
 
     The square under an offset is the robot's square plus the rotated offset, rounded; both ways round for a half.
@@ -81,7 +81,7 @@ def covers(lines: Sequence[Line], step: int, impression: int, cell: int, square:
 
 
 def believed_place(
-    lines: Sequence[Line], step: int, impression: int
+    lines: Sequence[StepLine], step: int, impression: int
 ) -> tuple[tuple[float, float], float, tuple[float, float]]:
     """Return where an impression was received as believed at a step (robot frame), the frame's angle and its origin."""
     places: list[tuple[float, float]] = []
@@ -111,14 +111,14 @@ def offsets_of_cells() -> list[list[tuple[int, int]]]:
     return cells
 
 
-def _touch(lines: Sequence[Line], node: Tree) -> Iterator[str]:
+def _touch(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     """Yield a complaint about a touch that was another one."""
     data = node["data"]
-    if lines[data["impression"]]["touch"][COMPASS.index(data["direction"])] != data["colour"]:
+    if lines[data["impression"]]["touch"][TOUCH_DIRECTIONS.index(data["direction"])] != data["colour"]:
         yield f"{node['claim']}: impression {data['impression']} felt something else"
 
 
-def _command(lines: Sequence[Line], node: Tree) -> Iterator[str]:
+def _command(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     """Yield a complaint about a command that was not given."""
     action = lines[node["data"]["step"]]["action"]
     word = "woke" if action is None else action["do"]
@@ -126,14 +126,14 @@ def _command(lines: Sequence[Line], node: Tree) -> Iterator[str]:
         yield f"{node['claim']}: the command of step {node['data']['step']} was {word}"
 
 
-def _rule(lines: Sequence[Line], node: Tree) -> Iterator[str]:
+def _rule(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     """Yield a complaint about a rule that does not give its head from what the node rests on."""
     match = re.fullmatch(r"(.*\.lp):(\d+)", node.get("source", ""))
     if match is None:
         if not node["claim"].startswith("verdict("):
             yield f"{node['claim']}: no rule is named"
         return
-    path = ROOT / match[1]
+    path = PROJECT / match[1]
     rule = node["data"]["rule"]
     written = " ".join(" ".join(path.read_text().splitlines()[int(match[2]) - 1 :]).split())
     if not written.startswith(rule):
@@ -169,4 +169,4 @@ def _constants(path: Path) -> str:
     return "\n".join(line for line in path.read_text().splitlines() if line.startswith("#const")) + "\n"
 
 
-CHECKS = {"fact": _fact, "cells": _cells, "touch": _touch, "command": _command, "rule": _rule}
+NODE_CHECKS = {"fact": _fact, "cells": _cells, "touch": _touch, "command": _command, "rule": _rule}

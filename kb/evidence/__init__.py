@@ -14,5 +14,5 @@ beliefs    reasons for the facts of the world model
 goals      reasons for commands and verdicts
 cells      what each of the 160 cells of an impression is laid to
 
-Public names: `Record`, `Beliefs`, `Reason`, `explain_cell`, `explain_command`, `explain_verdict`.
+Public names: `Record`, `FactExplainer`, `Reason`, `explain_cell`, `explain_command`, `explain_verdict`.
 """

@@ -53,7 +53,7 @@ class Prover(Protocol):
         """Return the reason why an answer holds an atom; leaf : returns the reason of an input of the encoding."""
 
 
-class Beliefs:
+class FactExplainer:
     """Explains the facts of the world model of a run.
 
     Parameters

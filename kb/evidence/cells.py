@@ -1,7 +1,7 @@
-"""What each of the 160 cells of an impression is laid to: predicted by the map, explained by a fact, or noise."""
+"""The account of each of the 160 cells of an impression: predicted by the map, explained by a fact, or noise."""
 
 from geometry.kernels.arrays import Square
-from kb.evidence.beliefs import Beliefs
+from kb.evidence.beliefs import FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.sightings import REACH, cells_by_offset, sightings
@@ -10,7 +10,7 @@ from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.perception.retina import FIELDS, OWN_FIELD
 
 
-def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
+def explain_cell(beliefs: FactExplainer, cell: int, step: int) -> Reason:
     """Return the account of a cell of the impression of a step.
 
     Parameters
@@ -57,7 +57,7 @@ def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
     return Reason(claim, because, ReasonKind.CELLS, f"impression {step}", below, data)
 
 
-def _explaining(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
+def _explaining(beliefs: FactExplainer, cell: int, step: int) -> tuple[Reason, ...]:
     """Return the reason of the fact to which an explained cell is laid."""
     for fact, cells in beliefs.record.steps[step].explained.items():
         if cell in cells:
@@ -66,7 +66,7 @@ def _explaining(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
     return ()
 
 
-def _moved_things(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
+def _moved_things(beliefs: FactExplainer, cell: int, step: int) -> tuple[Reason, ...]:
     """Return the reasons of the moved things that lie under a cell, by their outlines: that they were moved."""
     now = beliefs.record.steps[step]
     under = set(squares_under(beliefs.record, cell, step))

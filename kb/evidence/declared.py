@@ -1,4 +1,4 @@
-"""What the predicates of the encodings mean, by the comments that declare them (`%*! name(A, B)   text *%`)."""
+"""The meanings of the predicates of the encodings, by the comments that declare them (`%*! name(A, B)   text *%`)."""
 
 import re
 from functools import cache

@@ -38,7 +38,7 @@ class ReasonKind(StrEnum):
 
 
 class Depth(StrEnum):
-    """How much of a tree is shown."""
+    """The part of a tree that is shown."""
 
     SHORT = "short"
     MID = "mid"

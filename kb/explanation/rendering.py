@@ -31,7 +31,10 @@ def render(found: Proof | Absence, depth: str = "mid") -> str:
         if depth != "short":
             lines += [f"  {found.rival.sentence}"] if found.rival else []
             if found.proof is not None:
-                lines += ["Then it would hold:", *_lines(found.proof.root, DEPTHS[depth], RIVALS_SHOWN[depth], 1, set())]
+                lines += [
+                    "Then it would hold:",
+                    *_lines(found.proof.root, DEPTHS[depth], RIVALS_SHOWN[depth], 1, set()),
+                ]
         return "\n".join(lines)
     if depth == "short":
         return short_sentence(found.root)

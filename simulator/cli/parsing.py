@@ -1,6 +1,7 @@
 """The command line of `utak`: its subcommands and their options."""
 
 import argparse
+from typing import Any
 
 from simulator.cli.commands import explain, query, repl, routes, run, test, warm
 from simulator.cli.commands.files import check, new, show
@@ -13,6 +14,22 @@ EXIT_CODES = (
 )
 
 
+class IntermixedParser(argparse.ArgumentParser):
+    """A parser that takes options also between positional arguments, which argparse takes in one piece only."""
+
+    _within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Return the options and the arguments that are left, as argparse does."""
+        if self._within:
+            return super().parse_known_args(args, namespace)
+        self._within = True
+        try:
+            return super().parse_known_intermixed_args(args, namespace)
+        finally:
+            self._within = False
+
+
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     top = argparse.ArgumentParser(
@@ -20,7 +37,7 @@ def build_parser() -> argparse.ArgumentParser:
         description="Utak, a simulated robot that sees coarsely, believes with confidence and solves spatial tasks.",
         epilog=EXIT_CODES,
     )
-    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=IntermixedParser)
     for command in COMMANDS:
         command.add(parts)
     return top

@@ -4,9 +4,9 @@ import re
 from collections.abc import Sequence
 
 from kb.evidence.atoms import atom_parts
-from kb.evidence.beliefs import Beliefs, plain_fact
+from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
-from kb.evidence.goals import Task, explain_command, explain_goal, explain_verdict
+from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
 from kb.evidence.proving import EncodingProver
 from kb.evidence.reason import Reason
 from kb.evidence.record import MissingRecordError, Record
@@ -15,7 +15,7 @@ from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
 from simulator.episode.episode import Episode, EpisodeLine
 
-VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
+QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
 
 
 class Questions:
@@ -40,8 +40,8 @@ class Questions:
         result: EpisodeLine | None = None,
         rule_files: Sequence[str] = (),
     ) -> None:
-        self._task = Task(tuple(map(str, header["task"]["goals"])), result)
-        self.beliefs = Beliefs(Record(lines), EncodingProver(rule_files))
+        self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
+        self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
 
     @property
     def last_step(self) -> int:
@@ -135,7 +135,7 @@ def _one_fact(text: str) -> str:
     Variables are no terms of facts: the text is checked with names of the same length in their place.
     """
     written = text.strip().removesuffix(".").strip()
-    checked = VARIABLE.sub(lambda match: "v" * len(match[0]), written)
+    checked = QUESTION_VARIABLE.sub(lambda match: "v" * len(match[0]), written)
     try:
         found = facts_from_text(f"{checked}.", "why")
     except BadInputError as bad:
