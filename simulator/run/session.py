@@ -9,7 +9,8 @@ from kb.task.task import Task
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
-from simulator.scenario.expectation import Snapshot, should_fail, unmet
+from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
+from simulator.scenario.points import ExpectationOutcome, judge_expectations
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
@@ -86,6 +87,8 @@ class Result:
     reason : the reason in words.
     steps : the number of commands.
     unmet : the expectations that the truth does not meet, as text.
+    came : what came instead of each of them, in words.
+    outcomes : what came of each expectation that a test tests, with its points.
     """
 
     believed: bool
@@ -94,6 +97,8 @@ class Result:
     reason: str
     steps: int
     unmet: tuple[str, ...] = field(default=())
+    came: tuple[str, ...] = field(default=())
+    outcomes: tuple[ExpectationOutcome, ...] = field(default=())
 
     @property
     def line(self) -> EpisodeLine:
@@ -146,11 +151,13 @@ class Session:
     def end(self) -> Result:
         """Compare the verdict with the truth, write the result and return it."""
         verdict = self.robot.verdict
-        expectations = self.scenario.expectations
-        missed = unmet(expectations, self.scenario.world, self._track) if expectations is not None else []
-        achieved = None if expectations is None else not missed and not should_fail(expectations)
+        expected = self.scenario.expectations or ()
+        missed = shortfalls(expected, self.scenario.world, self._track, str(verdict.verdict))
+        achieved = None if self.scenario.expectations is None else not missed and not should_fail(expected)
+        outcomes = judge_expectations(expected, missed, verdict.believed, verdict.reason)
         steps = self._track[-1].step
-        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, tuple(map(str, missed)))
+        unmet, came = tuple(map(str, missed)), tuple(missed.values())
+        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes)
         self._log.write(result.line)
         return result
 

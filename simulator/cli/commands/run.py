@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
 
+SETTINGS_OPTIONS = ("seed", "noise", "paths", "max_steps", "pull")  # the fields of Settings that options state
+
 
 def add(parts: Any) -> None:
     """Declare the subcommand."""
@@ -75,10 +77,13 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
 
     from simulator.scenario.settings import Settings, kb_files_named
 
-    names = ("seed", "noise", "paths", "max_steps", "pull")
-    given = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
-    kept = {name: value for name, value in (recorded or {}).items() if name in names}
-    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+    kept = {name: value for name, value in (recorded or {}).items() if name in SETTINGS_OPTIONS}
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given_settings(options)})
+
+
+def given_settings(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields of `Settings` that the command line states, by name, without the files of rules."""
+    return {name: getattr(options, name) for name in SETTINGS_OPTIONS if getattr(options, name) is not None}
 
 
 def exit_code(result: "Result") -> int:
@@ -109,8 +114,8 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
     print(
         f"{result.verdict} in {result.steps} steps{truth}: {escape_controls(result.reason, lines=False)}", file=stream
     )
-    for expected in result.unmet:
-        print(f"not met: {expected}", file=sys.stderr)
+    for expected, came in zip(result.unmet, result.came, strict=True):
+        print(f"not met: {expected}: {came}", file=sys.stderr)
 
 
 def _progress_printer(watch: bool) -> Any:
