@@ -105,7 +105,8 @@ def files_section() -> str:
         "expect.lp": EXPECTATION_VOCABULARY,
         "trial.lp": TRIAL_VOCABULARY,
     }
-    lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/language/vocabulary.py, simulator/scenario/trialfile.py).", ""]
+    where = "kb/language/vocabulary.py, simulator/scenario/trialfile.py"
+    lines = ["## Fact files", "", f"What may stand in the files of a scenario ({where}).", ""]
     for name, vocabulary in parts.items():
         forms = [_form(predicate, slots) for predicate, slots in vocabulary.items()]
         lines.append(f"- **{name}**: " + ", ".join(f"`{form}`" for form in forms))
