@@ -73,6 +73,8 @@ class RobotProtocol(Protocol):
 
 # Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
+# Lets a robot go on with another task or other options of the run.
+RobotRedirector = Callable[[RobotProtocol, Task, Settings], None]
 
 
 @dataclass(frozen=True)
@@ -130,10 +132,23 @@ class Session:
         self._log = log
         self._track: list[Snapshot] = []
 
-    def wake(self) -> EpisodeLine:
-        """Write the header, let the robot wake, write step 0 and return that line."""
-        self._log.write(header(self.scenario, self.settings))
+    def wake(self, head: EpisodeLine | None = None) -> EpisodeLine:
+        """Write the header, let the robot wake, write step 0 and return that line.
+
+        head : the header to write; None for that of the scenario and the settings.
+        """
+        self._log.write(header(self.scenario, self.settings) if head is None else head)
         return self._record(self.robot.wake())
+
+    def change(self, scenario: Scenario, settings: Settings, redirect: RobotRedirector) -> None:
+        """Go on with another scenario in the same world, and with other options.
+
+        scenario : the task and the expectations from now on. settings : the options from now on; with another seed, the
+        randomness begins anew. redirect : lets the robot go on with them.
+        """
+        self.table.disturb(settings.noise, settings.seed if settings.seed != self.settings.seed else None)
+        self.scenario, self.settings = scenario, settings
+        redirect(self.robot, scenario.task, settings)
 
     def step(self) -> EpisodeLine:
         """Let the robot act once, write what happened, and return the last line.
@@ -168,6 +183,13 @@ class Session:
         """
         self.wake()
         watch(self)
+        return self.go_on(watch)
+
+    def go_on(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+        """Run from the present step to the end, and return the result.
+
+        watch : called with this session after every step.
+        """
         while not self.finished:
             self.step()
             watch(self)
