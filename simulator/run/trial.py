@@ -54,12 +54,12 @@ def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioT
         raise BadInputError([Problem(where, SourceSpan(1, 1, 1), "a test needs expect.lp, which is missing")])
     session = Session(scenario, settings or Settings(), make_robot, EpisodeLog(None))
     result = session.run()
-    faults = list(_faults(result, should_fail(scenario.expectations)))
+    faults = list(faults_of(result, should_fail(scenario.expectations)))
     end = f"{result.verdict} in {result.steps} steps: {result.reason}"
     return ScenarioTrial(not faults, "; ".join([*faults, end]), result)
 
 
-def _faults(result: Result, to_fail: bool) -> Iterator[str]:
+def faults_of(result: Result, to_fail: bool) -> Iterator[str]:
     """Yield the reasons why the test fails."""
     if to_fail:
         if result.believed:
