@@ -5,7 +5,7 @@ from contextlib import closing
 from typing import Any
 
 from simulator.scenario.untrusted import SCENARIO_FILES
-from simulator.sweep.executors.tasks import DIED, ERROR, TIME, Executor, TaskOutcome
+from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, Executor, TaskOutcome
 from simulator.sweep.plan import SweepPlan, SweepRun
 from simulator.sweep.results import ResultRow, ResultsProtocol, RowForm
 
@@ -56,7 +56,7 @@ def problem_of(row: ResultRow) -> str:
     if row.get("passed", "") not in (True, False, None):
         return "passed is true, false or null"
     if failed is not None:
-        right = isinstance(failed, dict) and failed.get("how") in (TIME, DIED, ERROR)
+        right = isinstance(failed, dict) and failed.get("how") in (TOO_LONG, DIED, RAISED)
         return "" if right and isinstance(failed.get("reason"), str) else "it does not tell how the run failed"
     types = {"believed": bool, "verdict": str, "reason": str, "steps": int, "unmet": list}
     if not isinstance(result, dict) or not all(type(result.get(name)) is kind for name, kind in types.items()):

@@ -12,8 +12,8 @@ from simulator.terminal.streams import escape_controls
 MARK_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 MARK_SHAPES = ("circle", "square", "diamond", "triangle")  # with the colours, each of 28 noises has a mark of its own
 # Pixels; layout.
-PANEL_WIDTH, PANEL_GAP, MARGIN, MARK_GAP, ROW_PADDING, MARK_RADIUS = 300.0, 40.0, 16.0, 13.0, 12.0, 4.0
-TITLE_HEIGHT, LEGEND_ROW_HEIGHT, AXIS_HEIGHT, TICK_LENGTH = 28.0, 18.0, 44.0, 4.0
+PANEL_WIDTH, PANEL_GAP, MARGIN, MARK_GAP, SCENARIO_PADDING, MARK_RADIUS = 300.0, 40.0, 16.0, 13.0, 12.0, 4.0
+TITLE_HEIGHT, NOISES_ROW_HEIGHT, AXIS_HEIGHT, TICK_LENGTH = 28.0, 18.0, 44.0, 4.0
 CHARACTER_WIDTH = 7.0  # pixels of a character in the text's size, about
 MAX_NAME_LENGTH = 40  # characters of a scenario's name
 MAX_TICKS = 6  # of an axis
@@ -36,8 +36,8 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
     name_width = CHARACTER_WIDTH * max((len(_short_name(name)) for name in scenarios), default=0)
     left = MARGIN + name_width + MARGIN
     legend = list(_legend(noises, left))
-    top = TITLE_HEIGHT + LEGEND_ROW_HEIGHT * (1 + max((row for row, _ in legend), default=0)) + MARGIN
-    row_height = MARK_GAP * len(noises) + ROW_PADDING
+    top = TITLE_HEIGHT + NOISES_ROW_HEIGHT * (1 + max((row for row, _ in legend), default=0)) + MARGIN
+    row_height = MARK_GAP * len(noises) + SCENARIO_PADDING
     bottom = top + row_height * len(scenarios)
     right = left + PANEL_WIDTH + PANEL_GAP
     width, height = right + PANEL_WIDTH + 2 * MARGIN, bottom + AXIS_HEIGHT + MARGIN
@@ -65,7 +65,7 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
     for count in counts:
         if count.noise is not None:
             number = noises.index(count.noise)
-            y = top + scenarios.index(count.scenario) * row_height + ROW_PADDING / 2 + MARK_GAP * (number + 0.5)
+            y = top + scenarios.index(count.scenario) * row_height + SCENARIO_PADDING / 2 + MARK_GAP * (number + 0.5)
             parts += _marks(count, number, y, percent, commands)
     return "\n".join([*parts, "</svg>"]) + "\n"
 
@@ -95,7 +95,7 @@ def _legend(noises: Sequence[float], left: float) -> Iterator[tuple[int, str]]:
         width = 3 * MARK_RADIUS + CHARACTER_WIDTH * len(label) + MARGIN
         if x + width > end and x > left:
             x, row = left, row + 1
-        y = TITLE_HEIGHT + LEGEND_ROW_HEIGHT * (row + 0.5)
+        y = TITLE_HEIGHT + NOISES_ROW_HEIGHT * (row + 0.5)
         yield row, _mark(number, x + MARK_RADIUS, y) + _text(x + 3 * MARK_RADIUS, y + 4, label)
         x += width
 

@@ -2,14 +2,14 @@
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from simulator.scenario.settings import Settings
 from simulator.sweep.contents import ScenarioContents
 from simulator.sweep.executors.code_identity import code_identity
-from simulator.sweep.executors.tasks import Task
+from simulator.sweep.executors.tasks import WorkerTask
 
 SWEEP_VERSION = 1  # of the form of results; docs/sweeps.md
 RUN_FUNCTION = "simulator.sweep.one_run:run_one"  # what a worker does for a run
@@ -43,7 +43,7 @@ class SweepPlan:
     scenarios: tuple[ScenarioContents, ...]
     seeds: tuple[tuple[int, int], ...]
     noises: tuple[float, ...]
-    settings: Settings = Settings()
+    settings: Settings = field(default_factory=Settings)
     rules: tuple[tuple[str, str], ...] = ()
     seconds: float | None = None
 
@@ -77,7 +77,7 @@ class SweepPlan:
             "made_with": code_identity(),
         }
 
-    def task(self, run: SweepRun) -> Task:
+    def task(self, run: SweepRun) -> WorkerTask:
         """Return the task of a run, with the texts of all files that it needs."""
         contents = next(one for one in self.scenarios if one.name == run.scenario)
         argument = {
@@ -89,7 +89,7 @@ class SweepPlan:
             "max_steps": self.settings.max_steps,
             "pull": self.settings.pull,
         }
-        return Task(RUN_FUNCTION, argument, self.seconds)
+        return WorkerTask(RUN_FUNCTION, argument, self.seconds)
 
     def _runs(self) -> Iterator[SweepRun]:
         for contents in self.scenarios:

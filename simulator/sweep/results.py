@@ -49,7 +49,7 @@ class RowForm(NamedTuple):
 
 
 class ResultsProtocol(Protocol):
-    """Where results go."""
+    """Takes the results of a sweep, one run at a time."""
 
     @property
     def known(self) -> dict[RowKey, ResultRow]:
@@ -152,7 +152,7 @@ class ResultsFile:
                 raise CannotOpenError(str(self._path), why) from None
 
     def _take(self, number: int, row: ResultRow) -> None:
-        """Take over a row of an existing file."""
+        """Keep a row of an existing file."""
         key = self._form.key_of(row)
         problem = self._form.check(row)
         try:

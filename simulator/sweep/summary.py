@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from statistics import NormalDist, median
 from typing import Any
 
-from simulator.sweep.executors.tasks import DIED, ERROR, TIME
+from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG
 from simulator.sweep.results import ResultRow
 
 CONFIDENCE_LEVEL = 0.95  # of the intervals of rates; a convention
 UPPER_PERCENTILE = 0.95  # of the steps; a convention
-FAILURE_WORDS = {TIME: "took too long", DIED: "died", ERROR: "raised an error"}
+FAILURE_WORDS = {TOO_LONG: "took too long", DIED: "died", RAISED: "raised an error"}
 MAX_LISTED_RUNS = 10  # of each kind, below the table; a convention
 
 
 @dataclass(frozen=True)
 class SweepCount:
-    """What came out of the runs of one scenario at one noise, or of several.
+    """Counts what came out of the runs of one scenario at one noise, or of several.
 
     Attributes
     ----------
@@ -159,10 +159,7 @@ def table_of(counts: Sequence[SweepCount]) -> str:
     shown = [*counts, every] if len(counts) != 1 else list(counts)
     lines = [list(_cells(shown[0]))] + [list(_cells(count).values()) for count in shown]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    text = [
-        "  ".join(cell.ljust(width) if i == 0 else cell.rjust(width) for i, (cell, width) in enumerate(zip(line, widths, strict=True)))
-        for line in lines
-    ]  # fmt: skip
+    text = ["  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]) for line in lines]
     text += _listed("believed done, but not achieved", every.false_claims)
     for how, words in FAILURE_WORDS.items():
         text += _listed(words, [row for row in every.failed if row["failed"]["how"] == how])

@@ -115,7 +115,7 @@ def _executor(options: argparse.Namespace, plan: "SweepPlan") -> "Executor":
     from simulator.run.warming import warm
     from simulator.scenario.scenario import read_scenario
     from simulator.sweep.contents import written
-    from simulator.sweep.executors.tasks import Task
+    from simulator.sweep.executors.tasks import WorkerTask
     from simulator.sweep.plan import PREPARATION_FUNCTION
 
     carrying = False
@@ -123,7 +123,7 @@ def _executor(options: argparse.Namespace, plan: "SweepPlan") -> "Executor":
         with written(contents.files) as folder:
             carrying |= any(stage.carried for stage in stages(read_scenario(folder).task))
     paths = plan.settings.paths
-    preparation = Task(PREPARATION_FUNCTION, {"carrying": carrying, "paths": paths})
+    preparation = WorkerTask(PREPARATION_FUNCTION, {"carrying": carrying, "paths": paths})
     if options.dask is not None:
         from simulator.sweep.executors.cluster import run_on_dask
 
@@ -228,10 +228,10 @@ def _report(options: argparse.Namespace, plan: "SweepPlan", rows: "list[ResultRo
 
 def _exit_code(rows: "list[ResultRow]") -> int:
     """Return the exit code: 0 when every run has a result, whatever it is."""
-    from simulator.sweep.executors.tasks import ERROR
+    from simulator.sweep.executors.tasks import RAISED
 
     hows = {row["failed"]["how"] for row in rows if row["failed"] is not None}
-    return exits.worst(exits.OUR_BUG if how == ERROR else exits.LIMIT for how in hows)
+    return exits.worst(exits.OUR_BUG if how == RAISED else exits.LIMIT for how in hows)
 
 
 def _usage(problem: str) -> int:

@@ -17,7 +17,7 @@ from uuid import uuid4
 from kb.language.diagnostics import CannotOpenError
 from simulator.sweep.executors.cluster_worker import MISMATCH, end_processes, run_task
 from simulator.sweep.executors.code_identity import code_identity
-from simulator.sweep.executors.tasks import DIED, Task, TaskOutcome
+from simulator.sweep.executors.tasks import DIED, TaskOutcome, WorkerTask
 
 MAX_CONNECTING_SECONDS = 10.0  # seconds until a scheduler must answer; a convention
 MAX_WORKERLESS_SECONDS = 60.0  # seconds without any worker after which a sweep stops; a convention
@@ -28,9 +28,9 @@ INSTALL_HINT = "the library distributed is not installed: pip install 'utak[dask
 
 
 def run_on_dask(
-    tasks: Sequence[Task],
+    tasks: Sequence[WorkerTask],
     address: str,
-    preparation: Task | None = None,
+    preparation: WorkerTask | None = None,
     max_workerless_seconds: float = MAX_WORKERLESS_SECONDS,
 ) -> Generator[tuple[int, TaskOutcome], None, None]:
     """Carry tasks out on the workers of a Dask scheduler and yield (index, outcome) as they end.
@@ -66,7 +66,9 @@ def run_on_dask(
 class _Sent:
     """The tasks that are with the scheduler; few more than the workers can do at once."""
 
-    def __init__(self, client: Any, address: str, sweep: str, tasks: Sequence[Task], preparation: Task | None) -> None:
+    def __init__(
+        self, client: Any, address: str, sweep: str, tasks: Sequence[WorkerTask], preparation: WorkerTask | None
+    ) -> None:
         self._client, self._address, self._sweep = client, address, sweep
         self._tasks, self._preparation = tasks, None if preparation is None else list(preparation)
         self._identity = code_identity()
@@ -166,8 +168,11 @@ def _connect(address: str) -> Any:
     except ImportError:
         raise CannotOpenError(f"--dask {address}", INSTALL_HINT) from None
     logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)  # what matters is reported as an error
+    make_client: Any = distributed.Client
     try:
-        return distributed.Client(address, timeout=MAX_CONNECTING_SECONDS, set_as_default=False)
+        comm: Any = distributed.comm
+        comm.get_address_host_port(address, strict=True)
+        return make_client(address, timeout=MAX_CONNECTING_SECONDS, set_as_default=False)
     except (OSError, TimeoutError):
         why = f"no Dask scheduler answers within {MAX_CONNECTING_SECONDS:g} s"
         raise CannotOpenError(address, why) from None

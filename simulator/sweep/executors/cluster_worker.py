@@ -9,7 +9,7 @@ from typing import Any
 
 from simulator.sweep.executors.code_identity import code_identity, difference
 from simulator.sweep.executors.task_process import TaskProcess
-from simulator.sweep.executors.tasks import Task
+from simulator.sweep.executors.tasks import WorkerTask
 
 IDLE_SECONDS = 60.0  # after which a worker process ends that gets no more tasks, as when the client died; a convention
 MISMATCH = "mismatch"  # the key of an answer that refuses the task
@@ -23,7 +23,7 @@ class _Crews:
         self._processes: dict[tuple[str, int], TaskProcess] = {}
         self.preparing = threading.Lock()  # so that processes of one machine do not compile the same kernels at once
 
-    def process(self, sweep: str, preparation: Task | None) -> TaskProcess:
+    def process(self, sweep: str, preparation: WorkerTask | None) -> TaskProcess:
         """Return the process of the current thread for a sweep."""
         key = (sweep, threading.get_ident())
         with self._lock:
@@ -47,7 +47,7 @@ def run_task(sweep: str, identity: dict[str, str], preparation: list[Any] | None
     ----------
     sweep : the name of the sweep.
     identity : the client's code and libraries; `utak` and `code` must be the same here.
-    preparation, task : the fields of a `Task`.
+    preparation, task : the fields of a `WorkerTask`.
 
     Returns
     -------
@@ -57,10 +57,10 @@ def run_task(sweep: str, identity: dict[str, str], preparation: list[Any] | None
     ours, theirs = ({name: one[name] for name in ("utak", "code")} for one in (here, identity))
     if ours != theirs:
         return {MISMATCH: difference(ours, theirs)}
-    process = _CREWS.process(sweep, None if preparation is None else Task(*preparation))
+    process = _CREWS.process(sweep, None if preparation is None else WorkerTask(*preparation))
     with _CREWS.preparing:
         process.prepare()
-    outcome = process.run(Task(*task))
+    outcome = process.run(WorkerTask(*task))
     return {**outcome._asdict(), "differs": difference(here, identity)}
 
 

@@ -6,21 +6,21 @@ from collections.abc import Generator, Sequence
 from typing import NamedTuple
 
 from simulator.sweep.executors.task_process import TaskProcess
-from simulator.sweep.executors.tasks import Task, TaskOutcome
+from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 MAX_JOINING_SECONDS = 10.0  # seconds until a thread whose process was killed has ended; a convention
 
 
 class _Ended(NamedTuple):
-    """What a thread reports: an outcome, or the exception that ended the thread."""
+    """Tells how a task ended in a thread: an outcome, or the exception that ended the thread."""
 
-    index: int
+    number: int
     outcome: TaskOutcome | None
     error: BaseException | None = None
 
 
 def run_in_processes(
-    tasks: Sequence[Task], jobs: int, preparation: Task | None = None
+    tasks: Sequence[WorkerTask], jobs: int, preparation: WorkerTask | None = None
 ) -> Generator[tuple[int, TaskOutcome], None, None]:
     """Carry tasks out in worker processes and yield (index, outcome) as they end.
 
@@ -62,7 +62,7 @@ def run_in_processes(
             found = ended.get()
             if found.outcome is None:
                 raise found.error or RuntimeError("a worker ended without an outcome")
-            yield found.index, found.outcome
+            yield found.number, found.outcome
     finally:
         stopping.set()
         for process in processes:

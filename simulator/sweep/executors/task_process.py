@@ -8,11 +8,11 @@ import time
 from contextlib import suppress
 from typing import Any
 
-from simulator.sweep.executors.tasks import DIED, TIME, Task, TaskOutcome
+from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 from simulator.sweep.executors.worker import READY
 from utak_command import isolated_command
 
-MAX_START_SECONDS = 60.0  # seconds of wall-clock time until a worker process must be ready; a convention
+MAX_WORKER_START_SECONDS = 60.0  # seconds of wall-clock time until a worker process must be ready; a convention
 MAX_PREPARATION_SECONDS = 900.0  # seconds for its preparation, which may compile all kernels; a convention
 MAX_ATTEMPTS = 2  # of a task whose process ends: the first end may have had another cause; a convention
 
@@ -26,13 +26,13 @@ class TaskProcess:
     idle_seconds : the process ends when no task comes for so long; 0 for never.
     """
 
-    def __init__(self, preparation: Task | None = None, idle_seconds: float = 0.0) -> None:
+    def __init__(self, preparation: WorkerTask | None = None, idle_seconds: float = 0.0) -> None:
         self._preparation, self._idle_seconds = preparation, idle_seconds
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._closed = False
 
-    def run(self, task: Task) -> TaskOutcome:
+    def run(self, task: WorkerTask) -> TaskOutcome:
         """Carry out a task in the process and return the outcome.
 
         A task whose process ends is carried out once more in a new one; when that ends, too, the task has failed.
@@ -41,7 +41,7 @@ class TaskProcess:
         for _ in range(MAX_ATTEMPTS):
             begun = time.monotonic()
             outcome = self._attempt(task)
-            if outcome.failure in (DIED, TIME):  # the process did not tell how long it took
+            if outcome.failure in (DIED, TOO_LONG):  # the process did not tell how long it took
                 outcome = outcome._replace(seconds=time.monotonic() - begun)
             if outcome.failure != DIED or self._closed:
                 break
@@ -60,7 +60,7 @@ class TaskProcess:
         if process is not None:
             _end(process)
 
-    def _attempt(self, task: Task) -> TaskOutcome:
+    def _attempt(self, task: WorkerTask) -> TaskOutcome:
         """Carry out a task once."""
         process = self._process
         if process is None or process.poll() is not None:
@@ -68,7 +68,7 @@ class TaskProcess:
             if process is None:
                 return TaskOutcome(None, DIED, "it was broken off")
         outcome = _exchange(process, task)
-        if outcome.failure in (DIED, TIME):
+        if outcome.failure in (DIED, TOO_LONG):
             with self._lock:
                 self._process = None
             _end(process)
@@ -100,17 +100,17 @@ class TaskProcess:
         return process
 
 
-def _begin(process: "subprocess.Popen[bytes]", preparation: Task | None) -> str:
+def _begin(process: "subprocess.Popen[bytes]", preparation: WorkerTask | None) -> str:
     """Wait until a new process is ready, prepare it, and return what went wrong; "" for nothing."""
-    line, late = _next_line(process, MAX_START_SECONDS)
+    line, late = _next_line(process, MAX_WORKER_START_SECONDS)
     if line != READY:
-        return f"it took more than {MAX_START_SECONDS:g} seconds" if late else _how_it_ended(process)
+        return f"it took more than {MAX_WORKER_START_SECONDS:g} seconds" if late else _how_it_ended(process)
     if preparation is None:
         return ""
     return _exchange(process, preparation._replace(seconds=MAX_PREPARATION_SECONDS)).reason
 
 
-def _exchange(process: "subprocess.Popen[bytes]", task: Task) -> TaskOutcome:
+def _exchange(process: "subprocess.Popen[bytes]", task: WorkerTask) -> TaskOutcome:
     """Send a task to a process and return the outcome; a process that takes too long is killed."""
     assert process.stdin is not None
     request = {"function": task.function, "argument": task.argument}
@@ -122,7 +122,7 @@ def _exchange(process: "subprocess.Popen[bytes]", task: Task) -> TaskOutcome:
             found: dict[str, Any] = json.loads(line)
             return TaskOutcome(**found)
         if late:
-            return TaskOutcome(None, TIME, f"it took more than {task.seconds:g} seconds")
+            return TaskOutcome(None, TOO_LONG, f"it took more than {task.seconds:g} seconds")
     return TaskOutcome(None, DIED, _how_it_ended(process))
 
 

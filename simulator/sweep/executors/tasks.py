@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 from kb.language.diagnostics import BadInputError, CannotOpenError
 
 # How a task can fail: it took too long, its process ended, or it raised an exception.
-TIME, DIED, ERROR = "time", "died", "error"
+TOO_LONG, DIED, RAISED = "time", "died", "error"
 MAX_REASON_LENGTH = 500  # characters of a failure's reason; a convention
 
 
-class Task(NamedTuple):
+class WorkerTask(NamedTuple):
     """A call of a function by its name.
 
     Attributes
@@ -36,7 +36,7 @@ class TaskOutcome(NamedTuple):
     Attributes
     ----------
     value : what the function returned; None when the task failed.
-    failure : "" or how it failed: `TIME`, `DIED` or `ERROR`.
+    failure : "" or how it failed: `TOO_LONG`, `DIED` or `RAISED`.
     reason : why it failed, in words; "" when it did not.
     seconds : the wall-clock time that it took.
     """
@@ -49,7 +49,7 @@ class TaskOutcome(NamedTuple):
 
 # Carries tasks out and yields (index of the task, outcome) as they end, in any order, each task once. Closing the
 # iterator ends what is under way.
-Executor = Callable[[Sequence[Task]], Generator[tuple[int, TaskOutcome], None, None]]
+Executor = Callable[[Sequence[WorkerTask]], Generator[tuple[int, TaskOutcome], None, None]]
 
 
 def named_function(name: str) -> Callable[[Any], Any]:
@@ -59,7 +59,7 @@ def named_function(name: str) -> Callable[[Any], Any]:
     return found
 
 
-def carry_out(task: Task) -> TaskOutcome:
+def carry_out(task: WorkerTask) -> TaskOutcome:
     """Call the function of a task in this process, without a limit of time, and return the outcome.
 
     An exception of the function, or a value that is no JSON, is an outcome that failed.
@@ -69,7 +69,7 @@ def carry_out(task: Task) -> TaskOutcome:
         value = named_function(task.function)(task.argument)
         json.dumps(value)
     except Exception as error:
-        return TaskOutcome(None, ERROR, reason_of(error), time.monotonic() - begun)
+        return TaskOutcome(None, RAISED, reason_of(error), time.monotonic() - begun)
     return TaskOutcome(value, seconds=time.monotonic() - begun)
 
 

@@ -11,7 +11,7 @@ import threading
 from typing import Any
 
 from kb.language.operating_system import end_with_parent, read_lines_from_parent
-from simulator.sweep.executors.tasks import Task, carry_out
+from simulator.sweep.executors.tasks import WorkerTask, carry_out
 
 READY = b"ready\n"  # the first line that a worker writes
 
@@ -30,7 +30,7 @@ def main(idle_seconds: str = "0") -> None:
         line = next(lines)
         limit.stop()
         request: dict[str, Any] = json.loads(line)
-        outcome = carry_out(Task(request["function"], request["argument"]))
+        outcome = carry_out(WorkerTask(request["function"], request["argument"]))
         answers.write(json.dumps(outcome._asdict()).encode("ascii") + b"\n")
         answers.flush()
 
@@ -50,7 +50,7 @@ class _IdleLimit:
             self._timer.start()
 
     def stop(self) -> None:
-        """A task has arrived."""
+        """Wait no longer: a task has arrived."""
         if self._timer is not None:
             self._timer.cancel()
 
