@@ -11,12 +11,13 @@ import stat
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
-from simulator.episode.output_files import keep_first, open_for_writing
+from simulator.episode.output_files import is_json_lines, keep_first, open_for_writing
 
 STDOUT_NAME = "-"  # the name of a file that stands for the standard output
 MAX_RESULTS_BYTES = 2_000_000_000  # bytes; a convention
@@ -32,13 +33,13 @@ class RowForm(NamedTuple):
 
     Attributes
     ----------
-    header : the first line; its key `utak` names the kind of file.
+    header : the first line; its key `utak` names the kind of file. None for no header, and then no file is resumed.
     names : the names of the values in a row that are its key.
     keys : the keys of all rows, in order.
     check : returns what is wrong with a row, "" for nothing.
     """
 
-    header: dict[str, Any]
+    header: dict[str, Any] | None
     names: tuple[str, ...]
     keys: Sequence[RowKey]
     check: Callable[[ResultRow], str] = lambda row: ""
@@ -72,7 +73,7 @@ def open_results(path: Path | str | None, form: RowForm, force: bool = False) ->
 
     Parameters
     ----------
-    path : the file; `-` for the standard output, None to keep nothing.
+    path : the file; `-` for the standard output, None to keep nothing. A file without header is overwritten.
     form : the form of the file.
     force : whether to begin anew, whatever the file holds.
 
@@ -89,22 +90,26 @@ def open_results(path: Path | str | None, form: RowForm, force: bool = False) ->
         return PassingResults(form, None)
     if path == STDOUT_NAME:
         return PassingResults(form, sys.stdout)
-    kind = re.compile(rb'\s*\{\s*"utak"\s*:\s*"' + re.escape(form.header["utak"].encode()) + b'"')
-    start = encode_row({"utak": form.header["utak"]})[:-2]  # the first bytes of every such file
-
-    def is_ours(head: bytes) -> bool:
-        return bool(kind.match(head)) or start.startswith(head)
-
-    stream = open_for_writing(path, is_ours, "file of results", force)
-    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-        return PassingResults(form, stream)
+    stream = open_for_writing(path, partial(_is_ours, form), "file of results", force)
     try:
+        if form.header is None or not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+            keep_first(stream, 0)
+            return PassingResults(form, stream)
         if not os.path.samestat(os.fstat(stream.fileno()), os.stat(path)):  # noqa: PTH116
             raise CannotOpenError(str(path), "another process has just replaced it")
-        return ResultsFile(Path(path), stream, form, force)
+        return ResultsFile(Path(path), stream, form, form.header, force)
     except BaseException:
         stream.close()
         raise
+
+
+def _is_ours(form: RowForm, head: bytes) -> bool:
+    """Return whether a file with these first bytes is of a form, even when its first line was cut short."""
+    if form.header is None:
+        return is_json_lines(head)
+    kind = form.header["utak"].encode()
+    start = encode_row({"utak": form.header["utak"]})[:-2]  # the first bytes of every such file
+    return re.match(rb'\s*\{\s*"utak"\s*:\s*"' + re.escape(kind) + b'"', head) is not None or start.startswith(head)
 
 
 class ResultsFile:
@@ -115,21 +120,22 @@ class ResultsFile:
     path : its name.
     stream : it, open for reading and writing, and locked.
     form : its form.
+    header : its first line.
     force : whether to begin anew, whatever it holds.
     """
 
-    def __init__(self, path: Path, stream: BinaryIO, form: RowForm, force: bool) -> None:
-        self._path, self._stream, self._form = path, stream, form
+    def __init__(self, path: Path, stream: BinaryIO, form: RowForm, header: ResultRow, force: bool) -> None:
+        self._path, self._stream, self._form, self._header = path, stream, form, header
         self.known: dict[RowKey, ResultRow] = {}
         self._keys = frozenset(form.keys)
         lines = [] if force else complete_result_lines(path)
         if lines:
-            _compare_headers(str(path), _decoded(str(path), 1, lines[0]), form.header)
+            _compare_headers(str(path), _decoded(str(path), 1, lines[0]), header)
             for number, line in enumerate(lines[1:], 2):
                 self._take(number, _decoded(str(path), number, line))
         keep_first(stream, sum(map(len, lines)))
         if not lines:
-            self._write(encode_row(form.header))
+            self._write(encode_row(header))
 
     def append(self, row: ResultRow) -> None:
         """Write the row of a run that has ended, at once. Raises CannotOpenError when it cannot be written."""
@@ -146,7 +152,7 @@ class ResultsFile:
             if ordered == list(self.known):
                 return
             try:
-                self._replace(encode_row(self._form.header) + b"".join(encode_row(self.known[key]) for key in ordered))
+                self._replace(encode_row(self._header) + b"".join(encode_row(self.known[key]) for key in ordered))
             except OSError as error:
                 why = f"its lines cannot be put in order: {error.strerror}"
                 raise CannotOpenError(str(self._path), why) from None
@@ -208,7 +214,8 @@ class PassingResults:
         self.known: dict[RowKey, ResultRow] = {}
         self._left: Iterator[RowKey] = iter(form.keys)
         self._next = next(self._left, None)
-        self._pass(form.header)
+        if form.header is not None:
+            self._pass(form.header)
 
     def append(self, row: ResultRow) -> None:
         """Add a row, and write those whose turn it is."""

@@ -171,7 +171,7 @@ def _connect(address: str) -> Any:
     make_client: Any = distributed.Client
     try:
         comm: Any = distributed.comm
-        comm.get_address_host_port(address, strict=True)
+        comm.get_address_host_port(address)
         return make_client(address, timeout=MAX_CONNECTING_SECONDS, set_as_default=False)
     except (OSError, TimeoutError):
         why = f"no Dask scheduler answers within {MAX_CONNECTING_SECONDS:g} s"
