@@ -2,6 +2,7 @@
 
 run     run the robot on a scenario
 test    run scenarios as tests
+sweep   run scenarios with many seeds and noises
 query   ask what Utak believes
 repl    step through a run and ask
 explain tell why: facts, commands, verdicts, cells
