@@ -6,5 +6,5 @@ query   ask what Utak believes
 repl    step through a run and ask
 routes  find distinct routes on a map
 warm    compile the geometry kernels
-files   the subcommands that read and write files of scenarios: check, show, new
+files   the subcommands that read and write files of scenarios: check, show, new, import
 """
