@@ -2,10 +2,22 @@
 
 import argparse
 
-from simulator.cli.commands import query, repl, routes, run, test, warm
+from simulator.cli.commands import query, repl, routes, run, schema, test, warm
 from simulator.cli.commands.files import check, import_scenario, new, show
 
-COMMANDS = (run, test, check, show, new, import_scenario, query, repl, routes, warm)  # in the order of the help text
+COMMANDS = (
+    run,
+    test,
+    check,
+    show,
+    new,
+    import_scenario,
+    query,
+    repl,
+    routes,
+    schema,
+    warm,
+)  # in the order of the help text
 # The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "

@@ -8,7 +8,8 @@ import shapely
 from geometry.motion.se2 import Motion, Translate
 from kb.body import Command, Grasp, Release, Turn
 from kb.language.source_text import read_source
-from simulator.episode.episode import EPISODE_VERSION, EpisodeLine
+from simulator.episode.episode import EpisodeLine
+from simulator.episode.wellformed import EPISODE_VERSION
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World

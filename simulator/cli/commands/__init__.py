@@ -5,6 +5,7 @@ test    run scenarios as tests
 query   ask what Utak believes
 repl    step through a run and ask
 routes  find distinct routes on a map
+schema  print the JSON Schema of episodes and answers
 warm    compile the geometry kernels
 files   the subcommands that read and write files of scenarios: check, show, new, import
 """
