@@ -4,6 +4,7 @@ Rooms in reading order:
 
 world     the true table: its contents, physics and the robot's senses
 scenario  a folder with a world, a task and expectations: reading and checking
+importing worlds and tasks of other formats, made into scenarios
 episode   the record of a run as JSON lines: writing, reading and checking
 run       the robot in a world: sessions, tests and stories
 explaining  questions about a run: why facts, commands, verdicts and cells are as they are

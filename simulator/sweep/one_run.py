@@ -62,7 +62,9 @@ def _ran(folder: Path, rules: list[str], argument: dict[str, Any], make: RobotMa
     settings = Settings(**options, kb_files=tuple(str(folder / name) for name in rules))
     result = Session(scenario, settings, make, EpisodeLog(None)).run()
     expectations = scenario.expectations
-    passed = None if expectations is None else not list(faults_of(result, result.outcomes, expects_verdict(expectations)))
+    passed = None
+    if expectations is not None:
+        passed = not list(faults_of(result, result.outcomes, expects_verdict(expectations)))
     entry = {**result.line["result"], "unmet": list(result.unmet)}
     return {"result": entry, "passed": passed}
 
