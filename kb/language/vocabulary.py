@@ -165,6 +165,8 @@ class BeliefPredicate(NamedTuple):
 THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
+JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
+LINK_ARGUMENT = pattern_argument("link", "l[0-9]+", "l1")  # a link of the pathgraph
 CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
 LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)  # Utak's frame
 COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
@@ -215,6 +217,13 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
         (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
     ),
     ("unseen", 2): BeliefPredicate((ROOM_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
+    ("junction", 4): BeliefPredicate(
+        (JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
+    ),
+    ("link", 5): BeliefPredicate(
+        (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
+    ),
+    ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
 }
 
 

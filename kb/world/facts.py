@@ -13,10 +13,12 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.raster.contours import Ring, outline
-from kb.localisation.hypotheses.explanation import Accommodation
+from kb.localisation.field_account import Accommodation
 from kb.mapping.occupancy import OPEN
 from kb.world.corners import Corner
+from kb.world.evidence import evidence
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel
+from kb.world.pathgraph import pathgraph_facts
 from kb.world.rooms import Rooms
 
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
@@ -63,26 +65,37 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
         robot frame is turned against the grid of squares, in degrees, counter-clockwise positive, -44 to 45. pose: the
         kind of the explanation, such as predicted, blocked or lost. cells: how many of the 160 fields were predicted,
         explained or noise; kinds without any are left out. bound: the bindings, as given. facts: the facts of the world
-        model as text, sorted, with full stops.
+        model as text, sorted, with full stops. Further keys say what all this rests on (`kb.world.evidence`).
     """
-    cells = Counter(str(status) for status in accommodated.cells)
+    cells = Counter(str(status) for status in accommodated.fields.status)
     east, north = model.frame.place_to_utak(*model.place)
+    facts = sorted(f"{fact}." for fact in model_facts(model, places))
     return {
         "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
         "lattice": model.frame.angle,
         "pose": accommodated.explanation.how,
         "cells": {status: cells[status] for status in sorted(cells)},
         "bound": dict(sorted(bound.items())),
-        "facts": sorted(f"{fact}." for fact in model_facts(model, places)),
+        "facts": facts,
+        **evidence(model, places.rooms, accommodated, _kind_facts(facts)),
     }
+
+
+def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
+    """Return for each node the fact of kind/3 that says what it is likely to be: for objects that they are objects."""
+    kinds = [
+        fact for fact in facts if fact.startswith("kind(") and not ("verge," in fact and "kind(verge," not in fact)
+    ]
+    return {fact[len("kind(") : fact.index(",")]: fact for fact in kinds}
 
 
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """Yield the world model, its rooms, doors and corners as facts without their full stops.
 
     The predicates are node/1, kind/3, child/2, offset/3, held/1, rect/5, segment/7, shape/3, colour/3, movable/2, in/2,
-    adjacent/2, room/1, unseen/2, door/1, width/2, connects/3 and corner/3. Coordinates are hundredths of squares in the
-    robot frame, those of offset/3 relative to the parent node; confidences are percent.
+    adjacent/2, room/1, unseen/2, door/1, width/2, connects/3, corner/3, junction/4, link/5 and crosses/2.
+    Coordinates are hundredths of squares in the robot frame, those of offset/3 relative to the parent node; confidences
+    are percent.
 
     Parameters
     ----------
@@ -95,7 +108,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     ------
     str
         One fact, such as `kind(o1,object,95)`: first those of the robot, the floor and the verge, then all outlines,
-        the objects by number, rooms, doors and corners.
+        the objects by number, rooms, doors, corners and the pathgraph.
     """
     yield from _root_facts(model)
     parts = ((FLOOR_NODE, model.floor), (VERGE_NODE, model.verge))
@@ -107,6 +120,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     for side, corner in sorted(places.corners.items()):
         east, north = model.place_to_utak(*corner.point)
         yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
+    yield from pathgraph_facts(model, places.rooms)
 
 
 def _root_facts(model: WorldModel) -> Iterator[str]:

@@ -1,0 +1,14 @@
+"""Evidence: why a fact is believed, from the record of a run, down to the cells of impressions.
+
+Modules in reading order:
+
+record     the steps of a run as the robot recorded them: commands, impressions, beliefs, decisions
+reason     a tree of reasons, as text in three depths and as JSON values
+sightings  which cells of which impressions show a square
+witness    reasons that are cells: why a square, an outline or a colour is believed
+inputs     reasons for what encodings were given
+beliefs    reasons for the facts of the world model
+cells      what each of the 160 cells of an impression is laid to
+
+Public names: `Record`, `Reason`, `explain_fact`, `explain_cell`.
+"""
