@@ -53,7 +53,7 @@ class Prover(Protocol):
         """Return the reason why an answer holds an atom; leaf : returns the reason of an input of the encoding."""
 
 
-class Beliefs:
+class FactExplainer:
     """Explains the facts of the world model of a run.
 
     Parameters
@@ -98,7 +98,7 @@ class Beliefs:
         return Reason(fact, _in_words(name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
-        """Return the reason of an atom of an encoding's newest answer from one step to another; None when none holds it.
+        """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it.
 
         step : the step from which to look back. oldest : the first step that counts.
         """
@@ -179,7 +179,9 @@ class Beliefs:
 
     def _squares(self, node: str, step: int) -> Reason:
         """Return the reason of the squares of a node: the cells that show them."""
-        what = {FLOOR: "the squares of the floor", VERGE: "the squares of the verge"}.get(node, f"the squares of {node}")
+        what = {FLOOR: "the squares of the floor", VERGE: "the squares of the verge"}.get(
+            node, f"the squares of {node}"
+        )
         return seen_reason(self.record, step, node_squares(self.record.steps[step], node), node != FLOOR, what)
 
     def _segment_reasons(self, node: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
@@ -257,11 +259,16 @@ class Beliefs:
         now = self.record.steps[step]
         counts = {letter: now.status.count(letter) for letter in "pen"}
         because = (
-            f"the motion ended as predicted: of 160 cells {counts['p']} are as predicted, {counts['e']} show what is new, "
-            f"{counts['n']} contradict the map"
+            f"the motion ended as predicted: of 160 cells {counts['p']} are as predicted, {counts['e']} show what is "
+            f"new, {counts['n']} contradict the map"
         )
         return Reason(
-            f"the impression was {now.pose}", because, ReasonKind.MEASURED, f"step {step}", (command_reason(now),), counts
+            f"the impression was {now.pose}",
+            because,
+            ReasonKind.MEASURED,
+            f"step {step}",
+            (command_reason(now),),
+            counts,
         )
 
     def _facts(self, starts: list[str], step: int) -> list[Reason]:

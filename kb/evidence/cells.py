@@ -1,7 +1,7 @@
-"""What each of the 160 cells of an impression is laid to: predicted by the map, explained by a fact, or noise."""
+"""The account of each of the 160 cells of an impression: predicted by the map, explained by a fact, or noise."""
 
 from geometry.kernels.arrays import Square
-from kb.evidence.beliefs import Beliefs
+from kb.evidence.beliefs import FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.sightings import REACH, cells_by_offset, sightings
@@ -10,7 +10,7 @@ from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.perception.retina import FIELDS, OWN_FIELD
 
 
-def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
+def explain_cell(beliefs: FactExplainer, cell: int, step: int) -> Reason:
     """Return the account of a cell of the impression of a step.
 
     Parameters
@@ -42,6 +42,7 @@ def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
     data = {"cell": cell, "impression": step, "level": level, "least": least, "most": most, "status": now.status[cell]}
     allowed = f"the map allowed level {least}" if least == most else f"the map allowed the levels {least} to {most}"
     status = now.status[cell]
+    below: tuple[Reason, ...]
     if cell == OWN_FIELD:
         because, below = f"predicted: the robot fills its own square; {where}", (command_reason(now),)
     elif status == "p":
@@ -56,7 +57,7 @@ def explain_cell(beliefs: Beliefs, cell: int, step: int) -> Reason:
     return Reason(claim, because, ReasonKind.CELLS, f"impression {step}", below, data)
 
 
-def _explaining(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
+def _explaining(beliefs: FactExplainer, cell: int, step: int) -> tuple[Reason, ...]:
     """Return the reason of the fact to which an explained cell is laid."""
     for fact, cells in beliefs.record.steps[step].explained.items():
         if cell in cells:
@@ -65,7 +66,7 @@ def _explaining(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
     return ()
 
 
-def _moved_things(beliefs: Beliefs, cell: int, step: int) -> tuple[Reason, ...]:
+def _moved_things(beliefs: FactExplainer, cell: int, step: int) -> tuple[Reason, ...]:
     """Return the reasons of the moved things that lie under a cell, by their outlines: that they were moved."""
     now = beliefs.record.steps[step]
     under = set(squares_under(beliefs.record, cell, step))

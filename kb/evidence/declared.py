@@ -1,4 +1,4 @@
-"""What the predicates of the encodings mean, by the comments that declare them (`%*! name(A, B)   text *%`)."""
+"""The meanings of the predicates of the encodings, by the comments that declare them (`%*! name(A, B)   text *%`)."""
 
 import re
 from functools import cache
@@ -7,6 +7,9 @@ from pathlib import Path
 from kb.reasoning.solver import ENCODING_FOLDERS
 
 DECLARATION = re.compile(r"%\*!\s*(?P<name>[a-z_]\w*)(?:\((?P<arguments>[^)]*)\))?\s+(?P<text>.*?)\*%", re.DOTALL)
+
+# A name of an argument; an A that begins a sentence is an article.
+NAME_IN_TEXT = re.compile(r"(?<!\. )(?<!^)\b[A-Z]\w*\b|^(?!A )[A-Z]\w*\b|(?<=\. )(?!A )[A-Z]\w*\b")
 
 
 @cache
@@ -28,10 +31,8 @@ def meaning(encoding: str, name: str, arguments: tuple[str, ...]) -> str:
     encoding : the name of the encoding, without `.lp`.
     name, arguments : the predicate and the arguments of the atom.
     """
-    for folder in ENCODING_FOLDERS:
-        path = folder / f"{encoding}.lp"
-        if path.exists() and (name, len(arguments)) in _declarations(path):
-            names, text = _declarations(path)[name, len(arguments)]
-            values = dict(zip(names, arguments, strict=True))
-            return re.sub(r"\b[A-Z]\w*\b", lambda match: values.get(match[0], match[0]), text)
-    return ""
+    paths = [path for folder in ENCODING_FOLDERS if (path := folder / f"{encoding}.lp").exists()]
+    known = _declarations(paths[0]) if paths else {}
+    names, text = known.get((name, len(arguments)), ((), ""))
+    values = dict(zip(names, arguments, strict=False))
+    return NAME_IN_TEXT.sub(lambda match: values.get(match[0], match[0]), text)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from kb.evidence.atoms import atom_parts
-from kb.evidence.beliefs import ROBOT, ROBOT_ALIAS, Beliefs
+from kb.evidence.beliefs import ROBOT, ROBOT_ALIAS, FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.reasoning.decisions import SolverCall
@@ -32,7 +32,7 @@ GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its firs
 
 
 @dataclass(frozen=True)
-class Task:
+class RecordedTask:
     """The task of a run and its end, as an episode states them.
 
     Attributes
@@ -45,7 +45,7 @@ class Task:
     result: Mapping[str, Any] | None = None
 
 
-def explain_command(beliefs: Beliefs, task: Task, step: int) -> Reason:
+def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Reason:
     """Return the reason of the command before the impression of a step: goal, facts, and what was chosen among what.
 
     Parameters
@@ -68,7 +68,7 @@ def explain_command(beliefs: Beliefs, task: Task, step: int) -> Reason:
     return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
 
 
-def explain_verdict(beliefs: Beliefs, task: Task) -> Reason | None:
+def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
     """Return the reason of the verdict, with the goals, the facts that they are about and the last choices.
 
     None while the run goes on.
@@ -81,20 +81,31 @@ def explain_verdict(beliefs: Beliefs, task: Task) -> Reason | None:
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 
 
-def _goal_reasons(beliefs: Beliefs, task: Task, step: int) -> Iterator[Reason]:
+def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
+    """Return a goal with the facts that it is about and what its parameters mean, as believed at a step.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    goal : the goal as goal.lp states it, without a full stop.
+    step : the number of the step.
+    """
+    name, arguments = atom_parts(goal)
+    if name in STEP_WORDS:
+        name, arguments = atom_parts(arguments[0])
+    facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
+    below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
+    bound = tuple(_bindings(beliefs, arguments, step))
+    says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
+    return Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+
+
+def _goal_reasons(beliefs: FactExplainer, task: RecordedTask, step: int) -> Iterator[Reason]:
     """Yield a reason for each goal: the facts that it is about, as believed at a step."""
-    for goal in task.goals:
-        name, arguments = atom_parts(goal)
-        if name in STEP_WORDS:
-            name, arguments = atom_parts(arguments[0])
-        facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
-        below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
-        bound = tuple(_bindings(beliefs, arguments, step))
-        says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
-        yield Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+    yield from (explain_goal(beliefs, goal, step) for goal in task.goals)
 
 
-def _meant(beliefs: Beliefs, arguments: Sequence[str], step: int) -> Iterator[str]:
+def _meant(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[str]:
     """Yield the facts `bound(Parameter, Node)` for the arguments of a goal, where they are facts."""
     now = beliefs.record.steps[step]
     for argument in arguments:
@@ -102,7 +113,7 @@ def _meant(beliefs: Beliefs, arguments: Sequence[str], step: int) -> Iterator[st
             yield f"bound({argument},{now.bound[argument]})"
 
 
-def _bindings(beliefs: Beliefs, arguments: Sequence[str], step: int) -> Iterator[Reason]:
+def _bindings(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[Reason]:
     """Yield the reasons why parameters of a goal mean what they do, where no fact says so."""
     now = beliefs.record.steps[step]
     for argument in dict.fromkeys(arguments):
@@ -113,7 +124,7 @@ def _bindings(beliefs: Beliefs, arguments: Sequence[str], step: int) -> Iterator
                 yield found
 
 
-def _facts_about(beliefs: Beliefs, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
+def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
     """Yield the believed facts that decide a goal."""
     now = beliefs.record.steps[step]
     nodes = [_node(beliefs, argument, step) for argument in (*arguments, "", "")][:2]
@@ -123,7 +134,7 @@ def _facts_about(beliefs: Beliefs, name: str, arguments: Sequence[str], step: in
             yield from (fact for fact in now.facts if fact.startswith(start))
 
 
-def _node(beliefs: Beliefs, argument: str, step: int) -> str:
+def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
     """Return the node, or the name of the corner, that an argument of a goal means; '' for none."""
     if argument == ROBOT_ALIAS:
         return ROBOT
@@ -133,7 +144,7 @@ def _node(beliefs: Beliefs, argument: str, step: int) -> str:
     return beliefs.record.steps[step].bound.get(argument, "")
 
 
-def _choices(beliefs: Beliefs, step: int) -> Iterator[Reason]:
+def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
     """Yield the reasons of the last choice of each of the planner's encodings at a step, and what it refused."""
     latest: dict[str, SolverCall] = {}
     for call in beliefs.record.decisions(step):

@@ -17,6 +17,10 @@ class ReasonKind(StrEnum):
     """An atom that a rule derived or chose."""
     NEGATION = "negation"
     """Something of which nothing is known."""
+    COMPUTED = "computed"
+    """A comparison, a sum or a condition in a rule."""
+    REJECTED = "rejected"
+    """Another choice, and why it was not made."""
     INPUT = "input"
     """What an encoding was given."""
     MEASURED = "measured"
@@ -34,7 +38,7 @@ class ReasonKind(StrEnum):
 
 
 class Depth(StrEnum):
-    """How much of a tree is shown."""
+    """The part of a tree that is shown."""
 
     SHORT = "short"
     MID = "mid"
@@ -42,9 +46,7 @@ class Depth(StrEnum):
 
 
 # Kinds that end a branch of a complete tree.
-LEAF_KINDS = frozenset(
-    {ReasonKind.MEASURED, ReasonKind.CELLS, ReasonKind.TOUCH, ReasonKind.COMMAND, ReasonKind.TASK, ReasonKind.CONVENTION}
-)
+LEAF_KINDS = frozenset(ReasonKind) - {ReasonKind.FACT, ReasonKind.RULE, ReasonKind.INPUT}
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,14 @@ class Reason:
         return entry
 
     def walk(self) -> Iterator["Reason"]:
-        """Yield this reason and all below it, each before what it rests on."""
-        yield self
-        for reason in self.rests_on:
-            yield from reason.walk()
+        """Yield this reason and all below it, each object once, before what it rests on."""
+        waiting, seen = [self], set[int]()
+        while waiting:
+            reason = waiting.pop()
+            if id(reason) not in seen:
+                seen.add(id(reason))
+                yield reason
+                waiting += reversed(reason.rests_on)
 
     def text(self, depth: Depth = Depth.MID) -> str:
         """Return the tree as indented lines.

@@ -1,4 +1,4 @@
-"""The record of a run as the robot wrote it: commands, impressions, beliefs and decisions; nothing of the true table."""
+"""The record of a run as the robot wrote it: commands, impressions, beliefs and decisions, nothing of the truth."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -8,7 +8,7 @@ from geometry.kernels.arrays import XY, Square
 from kb.perception.frame import Frame
 from kb.reasoning.decisions import SolverCall
 
-Line = Mapping[str, Any]  # the JSON object of one step of an episode
+RecordLine = Mapping[str, Any]  # the JSON object of one step of an episode
 
 
 class MissingRecordError(Exception):
@@ -16,7 +16,7 @@ class MissingRecordError(Exception):
 
 
 class RecordedStep:
-    """What the robot recorded in one step.
+    """The record of one step, as the robot wrote it.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class RecordedStep:
     why : the reason of the command, in words.
     """
 
-    def __init__(self, line: Line, before: "RecordedStep | None") -> None:
+    def __init__(self, line: RecordLine, before: "RecordedStep | None") -> None:
         self.number: int = line["step"]
         self.action: Mapping[str, Any] | None = line["action"]
         self.retina: tuple[int, ...] = tuple(line["retina"])
@@ -107,13 +107,13 @@ class RecordedStep:
 
     @cached_property
     def frame(self) -> Frame:
-        """Where the robot frame lies in the map frame, as believed."""
+        """The place of the robot frame in the map frame, as believed."""
         x, y = self._recorded("origin")
         return Frame(self._recorded("lattice"), (x, y))
 
     @cached_property
     def places(self) -> tuple[XY, ...]:
-        """Where each impression up to this one was received as believed now: (east, north), squares, robot frame."""
+        """The places of all impressions up to this one, as believed now: (east, north), squares, robot frame."""
         given = self._belief.get("seen_from")
         if given is not None:
             return tuple((east, north) for east, north in given)
@@ -143,7 +143,7 @@ class Record:
     steps : what the robot recorded in each of them.
     """
 
-    def __init__(self, lines: Sequence[Line]) -> None:
+    def __init__(self, lines: Sequence[RecordLine]) -> None:
         steps: list[RecordedStep] = []
         for line in lines:
             steps.append(RecordedStep(line, steps[-1] if steps else None))

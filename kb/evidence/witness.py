@@ -43,7 +43,9 @@ def seen_reason(record: Record, step: int, squares: Sequence[Square], occupied: 
         because = f"no cell alone shows it, the counts of several together do, such as {'; '.join(map(str, telling))}"
     data = {"squares": [list(square) for square in chosen], "occupied": occupied}
     if not telling:
-        return Reason(claim, "nothing was seen there yet, so it is assumed", ReasonKind.CELLS, "", (), {**data, "cells": []})
+        return Reason(
+            claim, "nothing was seen there yet, so it is assumed", ReasonKind.CELLS, "", (), {**data, "cells": []}
+        )
     numbers = sorted({one.impression for one in telling})
     source = f"impression{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
     cells = [[one.impression, one.cell, one.level, list(one.square)] for one in telling]
@@ -98,7 +100,9 @@ def command_reason(step: RecordedStep) -> Reason:
     """Return the reason that is the command before an impression."""
     if step.action is None:
         return Reason("the robot woke", "", ReasonKind.COMMAND, "step 0", (), {"step": 0})
-    values = ", ".join(f"{value:g}" if isinstance(value, float) else str(value) for value in list(step.action.values())[1:])
+    values = ", ".join(
+        f"{value:g}" if isinstance(value, float) else str(value) for value in list(step.action.values())[1:]
+    )
     claim = f"the command was {step.action['do']}({values})" if values else f"the command was {step.action['do']}"
     return Reason(claim, step.why, ReasonKind.COMMAND, f"step {step.number}", (), {"step": step.number})
 

@@ -107,7 +107,7 @@ class TracedDecision:
             return ProofNode("given", atom, words)
         instance = self.program.instance(support.unit, support.values)
         kind = "chosen" if support.unit.rule.kind == "choice" else "derived"
-        children = tuple(self._children(atom, support))
+        children = tuple({node.claim: node for node in self._children(atom, support)}.values())
         return ProofNode(kind, atom, words, instance, children, self._rivals_of(atom))
 
     def _rivals_of(self, atom: str) -> tuple[RivalChoice, ...]:

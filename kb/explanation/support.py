@@ -113,9 +113,7 @@ def element_atoms(one: CountedElement, info: Json) -> Iterator[str]:
 Needs = Callable[[Support, Mapping[str, int]], Iterable[str] | None]
 
 
-def _best_ready(
-    options: Sequence[Support], heights: Mapping[str, int], needs: Needs
-) -> tuple[int, Support] | None:
+def _best_ready(options: Sequence[Support], heights: Mapping[str, int], needs: Needs) -> tuple[int, Support] | None:
     """Return (height, instance) of the best instance all of whose atoms have heights; None when there is none."""
     best: tuple[tuple[int, int, int], Support] | None = None
     for order, support in enumerate(options):
@@ -169,9 +167,7 @@ def founded_elements(
     return tuple(
         one
         for one in elements
-        if all(
-            atom in heights and (below is None or heights[atom] < below) for atom in element_atoms(one, info)
-        )
+        if all(atom in heights and (below is None or heights[atom] < below) for atom in element_atoms(one, info))
     )
 
 

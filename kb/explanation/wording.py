@@ -54,7 +54,7 @@ def comparison_claim(info: Json, sides: Sequence[str], values: Mapping[str, str]
     sides : its sides computed. values : the values of all its variables; None when some are not known, then the computed
         sides stand in the claim.
     """
-    texts = list(sides) if values is None else [substituted(text, values) for text in info["sides"]]
+    texts = list(sides) if values is None else [_unwrapped(substituted(text, values)) for text in info["sides"]]
     parts = [texts[0]]
     for sign, text in zip(info["signs"], texts[1:], strict=True):
         parts += [sign, text]
@@ -63,7 +63,7 @@ def comparison_claim(info: Json, sides: Sequence[str], values: Mapping[str, str]
 
 def comparison_words(info: Json, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
     """Return a comparison in plain words; parameters as of `comparison_claim`."""
-    written = list(sides) if values is None else [substituted(text, values) for text in info["sides"]]
+    written = list(sides) if values is None else [_unwrapped(substituted(text, values)) for text in info["sides"]]
     texts = [
         text if text in (side, f'"{side}"') or ".." in text or _is_quoted(side) else f"{text} = {side}"
         for text, side in zip(written, sides, strict=True)
@@ -71,8 +71,7 @@ def comparison_words(info: Json, sides: Sequence[str], values: Mapping[str, str]
     if info["signs"] == ["="] and sides[0] == sides[1]:
         texts = written
     parts = [
-        f"{left} {SIGN_WORDS[sign]} {right}"
-        for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
+        f"{left} {SIGN_WORDS[sign]} {right}" for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
     ]
     return ("it is not so that " if info["negated"] else "") + " and ".join(parts)
 
@@ -131,6 +130,19 @@ def split_atom(atom: str) -> tuple[str, tuple[str, ...]]:
     except (BadInputError, ValueError):
         return atom, ()
     return fact.name, tuple(map(str, fact.args))
+
+
+def _unwrapped(text: str) -> str:
+    """Return arithmetic without brackets around all of it, and without those that clingo puts around products."""
+    text = re.sub(r"\(((?:[\w-]+[*/\\])+[\w-]+)\)(?![*/\\])", r"\1", text)
+    if text.startswith("(") and text.endswith(")"):
+        depth = 0
+        for index, char in enumerate(text):
+            depth += (char == "(") - (char == ")")
+            if depth == 0 and index < len(text) - 1:
+                return text
+        return text[1:-1]
+    return text
 
 
 def _is_quoted(text: str) -> bool:

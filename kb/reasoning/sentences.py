@@ -23,6 +23,7 @@ ANNOTATION_MARK = "%!"  # begins a comment that is an annotation
 PLACEHOLDER = re.compile(r"\{(_*[A-Z][A-Za-z0-9_']*)(?:/(100?))?\}")  # a variable, and by what it is divided
 STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 PREDICATE_FORM = re.compile(r"(_*[a-z][A-Za-z0-9_']*)(?:\(([^()]*)\))?")
+ONE_OF_SEVERAL = re.compile(r"(?<![\w.-])1 (square|field|command|impression|parameter)s\b")  # a plural after 1
 Place = tuple[int, int]  # line and column, from 1
 
 
@@ -105,7 +106,8 @@ def fill(template: str, values: Mapping[str, str]) -> str:
     >>> fill("door {D} is {W/100} squares wide", {"D": "d1", "W": "250"})
     'door d1 is 2.5 squares wide'
     """
-    return PLACEHOLDER.sub(lambda match: _shown(values.get(match[1], "some"), match[2]), template)
+    text = PLACEHOLDER.sub(lambda match: _shown(values.get(match[1], "some"), match[2]), template)
+    return ONE_OF_SEVERAL.sub(r"1 \1", text)
 
 
 def placeholders(template: str) -> tuple[str, ...]:
@@ -156,7 +158,9 @@ class _SentenceReader:
                 self._read_predicate(one)
             elif word != "because":
                 what = f"this annotation begins with {word or 'nothing'}"
-                self.complain(one.span, what, did_you_mean(word, {"because", "says"}) or "it begins with because or says")
+                self.complain(
+                    one.span, what, did_you_mean(word, {"because", "says"}) or "it begins with because or says"
+                )
             elif not inside:
                 self.complain(one.span, "no rule stands behind this sentence", "put it directly before its rule")
             elif sentence is not None:

@@ -57,8 +57,10 @@ def relaxed_rules(program: ParsedProgram) -> Iterator[str]:
         if statement.kind == "constraint":
             names = _tuple(unit.names)
             yield _rule(f"trace__broken({number},{names})", unit.node.body)
-            yield f":~ trace__broken({number},{names}). [1@1,{number},{names}]" if unit.names else (
-                f":~ trace__broken({number},()). [1@1,{number}]"
+            yield (
+                f":~ trace__broken({number},{names}). [1@1,{number},{names}]"
+                if unit.names
+                else (f":~ trace__broken({number},()). [1@1,{number}]")
             )
         elif statement.kind != "weak" and _is_first(program, number):
             yield str(statement.node)
@@ -76,7 +78,10 @@ def literal_info(literal: AST) -> dict[str, Any]:
     text = str(literal)
     if literal.ast_type == ASTType.ConditionalLiteral:
         info = {"kind": "conditional", "text": text, "negated": False}
-        return info | {"literal": literal_info(literal.literal), "conditions": [list(map(literal_info, literal.condition))]}
+        return info | {
+            "literal": literal_info(literal.literal),
+            "conditions": [list(map(literal_info, literal.condition))],
+        }
     atom, negated = literal.atom, literal.sign == Sign.Negation
     if atom.ast_type == ASTType.SymbolicAtom:
         kind = {Sign.NoSign: "atom", Sign.Negation: "not", Sign.DoubleNegation: "notnot"}[Sign(literal.sign)]

@@ -121,4 +121,6 @@ def _texts(values: clingo.Symbol) -> list[str]:
 
 def _literals(values: clingo.Symbol) -> list[Any]:
     """Return literals as JSON values: an atom as text, the tuple of a comparison or an aggregate as a list of texts."""
-    return [_texts(one) if one.type == clingo.SymbolType.Function and not one.name else str(one) for one in values.arguments]
+    return [
+        _texts(one) if one.type == clingo.SymbolType.Function and not one.name else str(one) for one in values.arguments
+    ]

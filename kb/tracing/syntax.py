@@ -291,9 +291,7 @@ class _HiddenNamer(Transformer):
 
     def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Return an aggregate with named hidden variables in the conditions of its elements."""
-        return node.update(
-            elements=[one.update(condition=self._conjunction(one.condition)) for one in node.elements]
-        )
+        return node.update(elements=[one.update(condition=self._conjunction(one.condition)) for one in node.elements])
 
     def visit_Aggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Return a set of conditional literals with named hidden variables in its literals and conditions."""
