@@ -7,6 +7,7 @@ scenario  a folder with a world, a task and expectations: reading and checking
 episode   the record of a run as JSON lines: writing, reading and checking
 run       the robot in a world: sessions, tests and stories
 explaining  questions about a run: why facts, commands, verdicts and cells are as they are
+testing     scenarios as tests: records, JUnit, the process for pytest
 terminal  what users see: streams, exit codes, the prompt
 cli       the command `utak` and its subcommands
 """

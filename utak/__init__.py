@@ -16,7 +16,7 @@ mind        another mind in the same body
 episode     the record of a run, and its steps
 beliefs     what is believed after a step, and the answers to questions about it
 errors      what is raised besides ValueError and TypeError
-explaining  why something is believed: where explanations are plugged in
+explaining  why something is believed or was done
 drawing     pictures of the table and of what is believed, as SVG
 markup      tables and captions for notebooks, as HTML
 gym         TABLETOP as a Gymnasium environment (extra `gym`)
@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from kb.reasoning.query import QueryLimitError
     from utak.beliefs import Answer, World
     from utak.episode import Episode, Step
-    from utak.errors import ExplanationUnavailableError, RunNotRepeatedError
+    from utak.errors import RunNotRepeatedError
+    from utak.explaining import Explanation
     from utak.mind import Mind, Verdict
     from utak.run import Plan, Run
     from utak.scenario import Scenario
@@ -43,7 +44,7 @@ __all__ = [
     "BadInputError",
     "CannotOpenError",
     "Episode",
-    "ExplanationUnavailableError",
+    "Explanation",
     "Grasp",
     "Impression",
     "Mind",
@@ -67,7 +68,7 @@ _MODULES = {
     "QueryLimitError": "kb.reasoning.query",
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
-    **dict.fromkeys(("ExplanationUnavailableError", "RunNotRepeatedError"), "utak.errors"),
+    **dict.fromkeys(("Explanation", "RunNotRepeatedError"), "utak.errors"),
     **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
     **dict.fromkeys(("Plan", "Run"), "utak.run"),
     "Scenario": "utak.scenario",

@@ -14,10 +14,11 @@ from simulator.episode.episode import Episode as EpisodeRecord
 from simulator.episode.episode import encode, read_episode
 from simulator.episode.output_files import is_episode, write_whole
 from simulator.episode.record import recorded_world
+from simulator.explaining.questions import Questions
 from simulator.terminal.action_in_words import describe
 from utak.beliefs import World, world_of
 from utak.drawing import table_svg
-from utak.explaining import explain
+from utak.explaining import Explanation, questions
 from utak.markup import framed, table
 
 MAX_STEPS_SHOWN = 200  # steps of an episode that a notebook lists; a convention
@@ -86,6 +87,16 @@ class Step:
         """The true name of the thing in hand; None with empty hands."""
         name = self.line["held"]
         return None if name is None else str(name)
+
+    def explain(self) -> Explanation:
+        """Return why the command was given: the goals and facts behind it, and what was not chosen.
+
+        Raises
+        ------
+        BadInputError
+            The episode does not record what is needed.
+        """
+        return Explanation(questions(self._record, self._rules).why_step(self.number))
 
     def __repr__(self) -> str:
         """Return the number, the command and its reason."""
@@ -216,27 +227,55 @@ class Episode(Sequence[Step]):
         """What is believed after the last step."""
         return self[-1].world
 
-    def why(self, fact: str, step: int = -1) -> Any:
-        """Return why a fact is believed, or why the verdict was given.
+    def why(self, fact: str, step: int = -1) -> Explanation:
+        """Return why a fact is believed, or why a goal or the verdict stands as it does.
 
         Parameters
         ----------
         fact : str
-            A fact of the world model, such as `shape(o1, square, 95)`, or `verdict(done)`.
+            A fact of the world model, such as `shape(o1, square, 95)`, one of the goals, or `verdict(done)`. Names with
+            a capital letter stand for anything: the first fact that fits is explained.
         step : int
-            The number of the step; by default the last one.
+            The number of the step, counted from the end when negative; by default the last one.
 
         Returns
         -------
-        object
-            The explanation, which prints itself.
+        Explanation
+            A tree of reasons, which prints itself.
 
         Raises
         ------
-        ExplanationUnavailableError
-            There is no explanation of it.
+        BadInputError
+            The text is no fact, the fact is not believed then, or the episode does not record what is needed.
         """
-        return explain(self.record, fact, self[step].number)
+        return Explanation(self._questions.why(fact, self[step].number))
+
+    def why_cell(self, cell: int, step: int = -1) -> Explanation:
+        """Return what a cell of the impression of a step is laid to.
+
+        Parameters
+        ----------
+        cell : int
+            The number of the cell, 0 to 159, in the order of an impression.
+        step : int
+            The number of the step.
+
+        Returns
+        -------
+        Explanation
+            A tree of reasons, which prints itself.
+
+        Raises
+        ------
+        BadInputError
+            There is no such cell, or the episode does not record what is needed.
+        """
+        return Explanation(self._questions.why_cell(cell, self[step].number))
+
+    @cached_property
+    def _questions(self) -> Questions:
+        """What answers questions about this episode."""
+        return questions(self.record, self.rules)
 
     def __repr__(self) -> str:
         """Return the number of commands and how the run ended."""

@@ -148,20 +148,44 @@ POINT_CHECK = list_of(number(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2
 RING_CHECK = list_of(POINT_CHECK, 3)  # a closed boundary
 RINGS_CHECK = list_of(RING_CHECK, 1)  # the outer ring and the holes of a polygon
 THING_CHECK = keys({"colour": text(), "rings": RINGS_CHECK})  # a thing in the header
+# The options of a run.
+OPTIONS_CHECK = keys(
+    {
+        "seed": whole_number(0, 2**63 - 1),
+        "noise": number(0, 1),
+        "paths": one_of(*PATH_CHOICES),
+        "max_steps": whole_number(0, 1_000_000),
+        "pull": one_of(True, False),
+        "kb": list_of(text()),
+    },
+    optional=("pull",),
+)
+# The task of a run.
+TASK_CHECK = keys(
+    {
+        "parameters": names_to(text()),
+        "claims": list_of(lambda value, at: iter(())),
+        "goals": list_of(text()),
+        "expect": or_null(list_of(text())),
+    }
+)
+
+
+def stages(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+    """Check the stages before a fork: yield complaints about them."""
+    stage = keys({"until": whole_number(0, 1_000_000), "options": OPTIONS_CHECK, "task": TASK_CHECK})
+    complaints = list(list_of(stage, 1)(value, at))
+    yield from complaints
+    if not complaints:
+        ends = [one["until"] for one in value]
+        if ends != sorted(ends):
+            yield at, "stages in the order of their steps are wanted"
+
+
 # The first line of an episode.
 HEADER_CHECK = keys(
     {
-        "options": keys(
-            {
-                "seed": whole_number(0, 2**63 - 1),
-                "noise": number(0, 1),
-                "paths": one_of(*PATH_CHOICES),
-                "max_steps": whole_number(0, 1_000_000),
-                "pull": one_of(True, False),
-                "kb": list_of(text()),
-            },
-            optional=("pull",),
-        ),
+        "options": OPTIONS_CHECK,
         "world": keys(
             {
                 "table": list_of(whole_number(1, MAX_TABLE_SIDE), 2, 2),
@@ -171,15 +195,10 @@ HEADER_CHECK = keys(
                 "movable": names_to(THING_CHECK),
             }
         ),
-        "task": keys(
-            {
-                "parameters": names_to(text()),
-                "claims": list_of(lambda value, at: iter(())),
-                "goals": list_of(text()),
-                "expect": or_null(list_of(text())),
-            }
-        ),
-    }
+        "task": TASK_CHECK,
+        "forked": stages,
+    },
+    optional=("forked",),
 )
 # The line of a step.
 STEP_CHECK = keys(

@@ -65,6 +65,24 @@ class Tabletop:
         self._obstacles: dict[str | None, Obstacles] = {}
         self._carried: CarriedThing | None = None  # the held thing where it lies now; None until it moves
 
+    def disturb(self, noise: float, seed: int | None) -> None:
+        """Disturb motions by another noise from now on.
+
+        Parameters
+        ----------
+        noise : as for the table.
+        seed : the seed of a new random generator; None to go on with the one there is.
+
+        Raises
+        ------
+        ValueError : the noise is not from 0 to 1.
+        """
+        if not 0.0 <= noise <= 1.0:
+            raise ValueError(f"noise must be from 0 to 1, not {noise}")
+        self.noise = noise
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
+
     def move(self, east: float, north: float) -> None:
         """Walk straight by (east, north) squares in Utak's frame; no effect while an object is held."""
         self.motion = None
