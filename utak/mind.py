@@ -7,6 +7,7 @@ from typing import Any
 from kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
 from kb.task.task import Task
 from planner.decision import Decision
+from simulator.run.session import RobotProtocol
 from simulator.scenario.settings import Settings
 
 VERDICTS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
@@ -129,7 +130,8 @@ class MindRobot:
 
     def __init__(self, body: Body, task: Task, settings: Settings, mind: Mind) -> None:
         self.mind = mind
-        self._body, self._most = body, settings.max_steps
+        self._body, self._task, self._most = body, task, settings.max_steps
+        self._last: Impression | None = None  # the newest impression
         self._next: Command | Verdict = Verdict("limit", "the robot has not been woken yet")
         self._steps = 0
         mind.begin(task)
@@ -156,6 +158,17 @@ class MindRobot:
         found = self._next if isinstance(self._next, Verdict) else Verdict("limit", "the run was not finished")
         return MindVerdict(found.kind == "done", found.kind, found.reason)
 
+    def redirect(self, task: Task, settings: Settings) -> None:
+        """Go on with another task or other options; a mind that had ended is asked again.
+
+        The mind begins with the task when it is another one. Its answer to the newest impression counts from now on.
+        """
+        before, self._task, self._most = self._task, task, settings.max_steps
+        if task != before:
+            self.mind.begin(task)
+        if self._last is not None and (task != before or self.finished):
+            self._next = self._asked(self._last)
+
     @property
     def decision(self) -> Decision:
         """The next command with its reason; without a command at the end."""
@@ -163,18 +176,28 @@ class MindRobot:
             return Decision(None, self._next.reason)
         return Decision(self._next, f"{type(self.mind).__name__} chose it")
 
-    def _report(self, command: Command | None, impression: Impression) -> MindReport:
-        """Ask the mind for the next command, and return the report."""
+    def _asked(self, impression: Impression) -> Command | Verdict:
+        """Return what the mind answers to an impression: a command, or the verdict; also when commands are used up."""
         chosen = self.mind.step(impression)
         if not isinstance(chosen, (*COMMANDS, Verdict)):
             kinds = ", ".join(kind.__name__ for kind in (*COMMANDS, Verdict))
             raise TypeError(f"{type(self.mind).__name__}.step must return one of {kinds}, not {chosen!r}")
         if not isinstance(chosen, Verdict) and self._steps >= self._most:
             chosen = Verdict("limit", f"not done after {self._steps} commands")
-        self._next = chosen
+        return chosen
+
+    def _report(self, command: Command | None, impression: Impression) -> MindReport:
+        """Ask the mind for the next command, and return the report."""
+        self._next, self._last = self._asked(impression), impression
         name = type(self.mind).__name__
         facts = [str(fact) for fact in self.mind.facts()]
         return MindReport(command, impression, {"facts": facts}, f"{name} {'wakes' if command is None else 'chose it'}")
+
+
+def redirect_mind(robot: RobotProtocol, task: Task, settings: Settings) -> None:
+    """Let a robot with another mind go on with another task or other options."""
+    assert isinstance(robot, MindRobot)
+    robot.redirect(task, settings)
 
 
 def mind_maker(mind: Callable[[], Mind]) -> Callable[[Body, Task, Settings], MindRobot]:

@@ -1,25 +1,26 @@
 """The robot in a scenario, step by step: what it does, believes and plans; forks of a run."""
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from copy import deepcopy
+from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from kb.body import Command, Impression
 from simulator.episode.episode import Episode as EpisodeRecord
 from simulator.episode.episode import EpisodeLog
 from simulator.episode.record import action_entry, header
-from simulator.run.robots import make_robot
-from simulator.run.session import RobotMaker, Session
+from simulator.run.robots import make_robot, redirect_robot
+from simulator.run.session import RobotMaker, RobotRedirector, Session
 from simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
 from simulator.terminal.action_in_words import describe
 from utak.beliefs import World
 from utak.episode import Episode, Step
 from utak.errors import RunNotRepeatedError
 from utak.markup import framed
-from utak.mind import Mind, mind_maker
+from utak.mind import Mind, mind_maker, redirect_mind
 from utak.scenario import Scenario
 
 
@@ -109,36 +110,24 @@ class Run:
         CannotOpenError
             A file with rules cannot be read.
         """
-        if not 0.0 <= noise <= 1.0:
-            raise ValueError(f"noise must be from 0 to 1, not {noise}")
-        if seed < 0 or max_steps < 0:
-            raise ValueError(f"seed and max_steps must be 0 or greater, not {seed} and {max_steps}")
-        if paths not in PATH_CHOICES:
-            raise ValueError(f"no such path-finder: {paths!r}; one of {', '.join(PATH_CHOICES)} is meant")
         files = kb_files_named([str(file) for file in rules])
         settings = Settings(int(seed), float(noise), paths, max_steps, files, pull)
-        make: RobotMaker = make_robot if mind is None else mind_maker(mind)
-        session = _begin(scenario, settings, make)
-        self._set(scenario, settings, partial(_begin, scenario, settings, make), session, (session.line,))
+        _check(settings)
+        ways = _OWN_MIND if mind is None else RobotWays(mind_maker(mind), redirect_mind)
+        self._set(scenario, settings, ways, partial(_begin, scenario, settings, ways.make))
 
-    def _set(
-        self,
-        scenario: Scenario,
-        settings: Settings,
-        begin: Callable[[], Session],
-        session: Session,
-        lines: tuple[dict[str, Any], ...],
-    ) -> None:
-        """Set all that a run consists of.
+    def _set(self, scenario: Scenario, settings: Settings, ways: "RobotWays", begin: Callable[[], Session]) -> None:
+        """Set all that a run consists of, and begin it.
 
-        begin : makes the session anew, at the step at which this run began. lines : the lines of the episode so far.
+        ways : how its robot is made and redirected. begin : makes the session anew, where this run begins.
         """
         self.scenario, self.settings = scenario, settings
-        self._begin = begin
-        self._began_at = len(lines) - 1
-        self._lines = list(lines)
+        self._ways, self._begin = ways, begin
         self._head = header(scenario.content, settings)
+        session = begin()
         self._session: Session | None = session
+        self._lines = [session.line]
+        self._first_own = 1  # the number of the first step that is not repeated by `begin`
         self._result: dict[str, Any] | None = None
         self._end_if_finished(session)
 
@@ -169,6 +158,75 @@ class Run:
         while self.step() is not None:
             pass
         return self.episode
+
+    def fork(
+        self,
+        *,
+        seed: int | None = None,
+        noise: float | None = None,
+        goal: str | None = None,
+        start: str | None = None,
+        expect: str | None = None,
+        max_steps: int | None = None,
+    ) -> "Run":
+        """Return a copy of this run that goes on independently; without arguments it goes on exactly like this one.
+
+        The mind and the table are copied. A mind that cannot be copied is made anew, and the run is repeated up to this
+        step.
+
+        Parameters
+        ----------
+        seed : int, optional
+            The seed of all randomness from now on; the same random numbers go on if None.
+        noise : float, optional
+            How much motions are disturbed from now on, 0 to 1.
+        goal : str, optional
+            Another goal from now on, as in `goal.lp`. What is known is kept. What is held is released first.
+        start : str, optional
+            The parameters of that goal, as in `start.lp`; those of this run if None.
+        expect : str, optional
+            What a test expects of that goal, as in `expect.lp`.
+        max_steps : int, optional
+            The number of commands after which the robot gives up, those already given included.
+
+        Returns
+        -------
+        Run
+            The copy. The header of its episode says at which step it was forked (docs/files.md).
+
+        Raises
+        ------
+        ValueError
+            An option is out of its range, or `start` or `expect` is given without `goal`.
+        BadInputError
+            Texts have errors.
+        RunNotRepeatedError
+            The mind could not be copied, and does not repeat its commands.
+        """
+        if goal is None and (start is not None or expect is not None):
+            raise ValueError("start and expect belong to another goal: give goal, too")
+        scenario = self.scenario if goal is None else self.scenario.with_task(goal, start, expect)
+        given: dict[str, Any] = {"seed": seed, "noise": noise, "max_steps": max_steps}
+        settings = replace(self.settings, **{name: value for name, value in given.items() if value is not None})
+        _check(settings)
+        copied = Run.__new__(Run)
+        copied.scenario, copied.settings, copied._ways = scenario, settings, self._ways
+        copied._lines, copied._head, copied._result = list(self._lines), self._head, self._result
+        copied._begin, copied._first_own = self._begin, self._first_own
+        session = self._copied_session()
+        if scenario is not self.scenario or settings != self.settings:
+            copied._begin = partial(
+                _redirected, self._begin, self._lines[self._first_own :], scenario, settings, self._ways
+            )
+            copied._first_own = len(self._lines)
+            stage = {"until": len(self._lines) - 1, "options": self._head["options"], "task": self._head["task"]}
+            stages = [*self._head.get("forked", ()), stage]
+            copied._head = header(scenario.content, settings) | {"forked": stages}
+            copied._result = None
+            session.change(scenario.content, settings, self._ways.redirect)
+            copied._end_if_finished(session)
+        copied._session = session
+        return copied
 
     def __iter__(self) -> Iterator[Step]:
         """Yield the steps that are still to come."""
@@ -246,13 +304,34 @@ class Run:
         if session.finished:
             self._result = session.end().line["result"]
 
+    def _copied_session(self) -> Session:
+        """Return a session in the state of this run's last step, which shares nothing with this run."""
+        if self._session is None:
+            return self._repeated()
+        try:
+            return deepcopy(self._session)
+        except Exception:  # of whatever kind: a mind may hold files, locks or generators
+            return self._repeated()
+
     def _repeated(self) -> Session:
         """Return a new session at the last complete step of this run."""
-        session = self._begin()
-        for line in self._lines[self._began_at + 1 :]:
-            if session.step() != line:
-                raise RunNotRepeatedError(f"step {line['step']} came out otherwise when the run was repeated")
-        return session
+        return _repeat(self._begin, self._lines[self._first_own :])
+
+
+class RobotWays(NamedTuple):
+    """How the robot of a run is made, and how it is told to go on with another task or other options.
+
+    Attributes
+    ----------
+    make : makes it from its body, the task and the settings.
+    redirect : lets it go on with another task or other settings.
+    """
+
+    make: RobotMaker
+    redirect: RobotRedirector
+
+
+_OWN_MIND = RobotWays(make_robot, redirect_robot)
 
 
 def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:
@@ -260,3 +339,38 @@ def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:
     session = Session(scenario.content, settings, make, EpisodeLog(None))
     session.wake()
     return session
+
+
+def _repeat(begin: Callable[[], Session], lines: Sequence[dict[str, Any]]) -> Session:
+    """Return a new session that went through some steps again.
+
+    Raises RunNotRepeatedError when one came out otherwise.
+    """
+    session = begin()
+    for line in lines:
+        if session.finished or session.step() != line:
+            raise RunNotRepeatedError(f"step {line['step']} came out otherwise when the run was repeated")
+    return session
+
+
+def _redirected(
+    begin: Callable[[], Session],
+    lines: Sequence[dict[str, Any]],
+    scenario: Scenario,
+    settings: Settings,
+    ways: RobotWays,
+) -> Session:
+    """Return a new session that went through some steps again, and then goes on with other options."""
+    session = _repeat(begin, lines)
+    session.change(scenario.content, settings, ways.redirect)
+    return session
+
+
+def _check(settings: Settings) -> None:
+    """Raise ValueError when an option is out of its range."""
+    if not 0.0 <= settings.noise <= 1.0:
+        raise ValueError(f"noise must be from 0 to 1, not {settings.noise}")
+    if settings.seed < 0 or settings.max_steps < 0:
+        raise ValueError(f"seed and max_steps must be 0 or greater, not {settings.seed} and {settings.max_steps}")
+    if settings.paths not in PATH_CHOICES:
+        raise ValueError(f"no such path-finder: {settings.paths!r}; one of {', '.join(PATH_CHOICES)} is meant")

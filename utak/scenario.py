@@ -1,6 +1,7 @@
 """A scenario: a world with a task, and what a test expects, from a folder or from texts."""
 
 import textwrap
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -9,7 +10,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from kb.language.diagnostics import BadInputError
+from kb.task.task import Task, read_task
 from simulator.scenario import scenario as files
+from simulator.scenario.expectation import read_expectations
 from simulator.scenario.picture import draw
 from utak.drawing import table_svg
 from utak.markup import framed
@@ -98,14 +101,41 @@ class Scenario:
         texts = {name: textwrap.dedent(world).strip("\n") + "\n", "start.lp": start, "goal.lp": goal}
         if expect is not None:
             texts["expect.lp"] = expect
-        with TemporaryDirectory(prefix="utak") as folder:
-            for file, text in texts.items():
-                Path(folder, file).write_bytes(text.encode("utf-8", errors="surrogateescape"))
-            try:
-                return Scenario("", files.read_scenario(folder))
-            except BadInputError as bad:
-                problems = [problem._replace(file=Path(problem.file).name) for problem in bad.problems]
-                raise BadInputError(problems) from None
+        return Scenario("", _read_texts(texts, files.read_scenario))
+
+    def with_task(self, goal: str, start: str | None = None, expect: str | None = None) -> "Scenario":
+        """Return a scenario with another task in the same world.
+
+        Parameters
+        ----------
+        goal : str
+            What shall hold, as in `goal.lp`.
+        start : str, optional
+            The parameters and what is claimed of them, as in `start.lp`; those of this scenario if None.
+        expect : str, optional
+            What a test expects, as in `expect.lp`; None for nothing.
+
+        Returns
+        -------
+        Scenario
+            The scenario, checked; it bears the same name.
+
+        Raises
+        ------
+        BadInputError
+            Texts have errors; the message names every one with its place.
+        """
+        texts = {"start.lp": _start_text(self.content.task) if start is None else start, "goal.lp": goal}
+        if expect is not None:
+            texts["expect.lp"] = expect
+        world = self.content.world
+
+        def read(folder: Path) -> files.Scenario:
+            task = read_task(folder / "start.lp", folder / "goal.lp")
+            expected = None if expect is None else read_expectations(folder / "expect.lp", world)
+            return files.Scenario(world, task, expected)
+
+        return Scenario(self.name, _read_texts(texts, read))
 
     @cached_property
     def picture(self) -> str:
@@ -142,3 +172,21 @@ class Scenario:
     def __deepcopy__(self, memo: dict[int, Any]) -> "Scenario":
         """Return the scenario itself: it never changes."""
         return self
+
+
+def _read_texts(texts: dict[str, str], read: Callable[[Path], files.Scenario]) -> files.Scenario:
+    """Return what is read from a folder with some texts as files; errors name the files without the folder."""
+    with TemporaryDirectory(prefix="utak") as folder:
+        for file, text in texts.items():
+            Path(folder, file).write_bytes(text.encode("utf-8", errors="surrogateescape"))
+        try:
+            return read(Path(folder))
+        except BadInputError as bad:
+            raise BadInputError(problem._replace(file=Path(problem.file).name) for problem in bad.problems) from None
+
+
+def _start_text(task: Task) -> str:
+    """Return the parameters and claims of a task as start.lp states them."""
+    parameters = [f"{one.kind}({one.name})." for one in task.parameters.values()]
+    claims = [f"confidence({claim.fact}, {claim.confidence})." for claim in task.claims]
+    return "\n".join([*parameters, *claims])
