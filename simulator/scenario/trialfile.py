@@ -33,7 +33,7 @@ ANSWER_HINT = f"one of {', '.join(PLAIN_ANSWERS)}, rows(N) or row(VALUE, ...)"
 
 
 class TrialPlan(NamedTuple):
-    """What trial.lp says.
+    """The plan of a trial, as trial.lp states it.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ def _check_file_name(term: Term) -> Complaint | None:
 
 
 # The questions of a trial.
-QUESTIONS: Vocabulary = {"asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))}
+TRIAL_QUESTIONS: Vocabulary = {"asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))}
 # The predicates of trial.lp.
 TRIAL_VOCABULARY: Vocabulary = {
     "seed": (integer_argument("a seed", 0, 2**31 - 1),),
@@ -84,8 +84,8 @@ TRIAL_VOCABULARY: Vocabulary = {
     "max_steps": (integer_argument("a number of steps", 0, MAX_TRIAL_STEPS),),
     "no_pull": (),
     "rules": (ArgumentType("a file of rules", _check_file_name),),
-    **QUESTIONS,
-    "weight": (fact_argument("what is weighed", QUESTIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
+    **TRIAL_QUESTIONS,
+    "weight": (fact_argument("what is weighed", TRIAL_QUESTIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
 }
 OPTION_PREDICATES = ("seed", "noise", "paths", "max_steps", "no_pull")  # each may be stated once
 
