@@ -75,7 +75,9 @@ def _check_file_name(term: Term) -> Complaint | None:
 
 
 # The questions of a trial.
-TRIAL_QUESTIONS: Vocabulary = {"asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))}
+TRIAL_QUESTIONS: Vocabulary = {
+    "asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))
+}
 # The predicates of trial.lp.
 TRIAL_VOCABULARY: Vocabulary = {
     "seed": (integer_argument("a seed", 0, 2**31 - 1),),
@@ -177,7 +179,7 @@ def answers_as_wanted(asked: Fact, kind: str, rows: Sequence[Sequence[int | str]
 def _rows_in_words(rows: Sequence[Sequence[int | str]], more: bool) -> str:
     """Return the number of rows of an answer, and the first of them, in words."""
     shown = "; ".join(", ".join(map(str, row)) for row in rows[:5])
-    return f"{len(rows)}{' or more' * more} row{'s' * (len(rows) != 1)}: {shown}{' ...' * (len(rows) > 5)}"
+    return f"{len(rows)} row{'s' * (len(rows) != 1)}{' or more' * more}: {shown}{' ...' * (len(rows) > 5)}"
 
 
 def _text(fact: Fact) -> str:
