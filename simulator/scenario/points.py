@@ -1,4 +1,4 @@
-"""What a test expects, expectation by expectation: met or not, what came instead, and the points."""
+"""The outcome of each expectation of a test: met or not, what came instead, and the points."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
