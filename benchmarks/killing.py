@@ -84,9 +84,18 @@ def finish(command: Sequence[str], file: Path) -> Reference:
     return Reference(ended.returncode, file.read_bytes() if file.exists() else b"", time.monotonic() - begun)
 
 
-def kill_after(command: Sequence[str], seconds: float, draw: random.Random, a_worker: bool = False) -> Killed:
+def kill_after(
+    command: Sequence[str],
+    seconds: float,
+    draw: random.Random,
+    a_worker: bool = False,
+    max_orphan_seconds: float = MAX_ORPHAN_SECONDS,
+) -> Killed:
     """Start a command, kill it or one of its worker processes after some seconds, and wait for its end."""
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    with (
+        tempfile.TemporaryFile("w+") as errors,  # no pipe: that would be open as long as a process that is left over
+        subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=errors) as process,
+    ):
         time.sleep(seconds)
         running = process.poll() is None
         descendants = sorted(descendants_of(process.pid))
@@ -95,8 +104,10 @@ def kill_after(command: Sequence[str], seconds: float, draw: random.Random, a_wo
                 process.kill()
             elif descendants:
                 os.kill(draw.choice(descendants), SIGKILL)
-        _, errors = process.communicate(timeout=MAX_COMMAND_SECONDS)
-    return Killed(process.returncode, running, errors, still_there(descendants))
+        process.wait(timeout=MAX_COMMAND_SECONDS)
+        errors.seek(0)
+        printed = errors.read()
+    return Killed(process.returncode, running, printed, still_there(descendants, max_orphan_seconds))
 
 
 def descendants_of(pid: int) -> Iterator[int]:
@@ -113,9 +124,9 @@ def descendants_of(pid: int) -> Iterator[int]:
         waiting += children.get(one, [])
 
 
-def still_there(pids: Sequence[int]) -> list[int]:
+def still_there(pids: Sequence[int], seconds: float = MAX_ORPHAN_SECONDS) -> list[int]:
     """Return those processes that are still there after some seconds."""
-    end = time.monotonic() + MAX_ORPHAN_SECONDS
+    end = time.monotonic() + seconds
     while True:
         left = [pid for pid in pids if _is_alive(pid)]
         if not left or time.monotonic() > end:
@@ -132,14 +143,17 @@ def _is_alive(pid: int) -> bool:
 def run_faults(scenario: Path, file: Path, reference: Reference, moment: float, draw: random.Random) -> Iterator[str]:
     """Kill a run, and yield what is wrong with what is left."""
     killed = kill_after(run_command(scenario, file), moment, draw)
-    reported = len(re.findall(r"^step \d+: ", killed.errors, re.MULTILINE))
-    recorded = 0
-    if file.exists() and complete_lines(file):
-        recorded = len(read_episode(file).steps)
-    if recorded < reported:
-        yield f"{reported} steps were reported, {recorded} are in the file"
+    yield from lost_steps(killed, file)
     again = finish(run_command(scenario, file, *(["--resume"] if file.exists() else [])), file)
     yield from _differences(again, reference, killed)
+
+
+def lost_steps(killed: Killed, file: Path) -> Iterator[str]:
+    """Yield that steps were lost which a killed run had reported as done. Raises BadInputError for a damaged file."""
+    reported = len(re.findall(r"^step \d+: ", killed.errors, re.MULTILINE))
+    recorded = len(read_episode(file).steps) if file.exists() and complete_lines(file) else 0
+    if recorded < reported:
+        yield f"{reported} steps were reported, {recorded} are in the file"
 
 
 def sweep_faults(scenario: Path, file: Path, reference: Reference, moment: float, draw: random.Random) -> Iterator[str]:
