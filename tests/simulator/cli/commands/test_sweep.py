@@ -69,6 +69,7 @@ def test_what_is_wrong_is_refused_before_anything_is_run(
     assert main(["sweep", str(scenario), "-o", str(results)]) == 65
     assert "results of another sweep: runs is 7 there and 1 here" in capsys.readouterr().err
     assert main(["sweep", str(scenario), "-o", str(scenario / "goal.lp")]) == 66
+    assert main(["sweep", str(scenario), "--svg", str(scenario / "goal.lp")]) == 66
     assert main(["sweep", str(tmp_path / "nowhere"), "-o", str(results)]) == 66
     (scenario / "goal.lp").write_text("at(utak, cornr(northeast)).")
     assert main(["sweep", str(scenario), "-o", str(results)]) == 65
