@@ -129,6 +129,7 @@ def test_the_laws_look_at_a_house_that_is_there() -> None:
         assert len(list(laws.modules(ROOT, (package,)))) > 30, package
     assert (ROOT / laws.PURE_WORLD).is_dir()
     assert (ROOT / laws.NUMBA_IN).exists()
+    assert (ROOT / laws.DASK_IN).exists()
     assert all((ROOT / room).is_dir() for room in laws.CLINGO_IN)
 
 
