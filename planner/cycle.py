@@ -166,6 +166,37 @@ class Robot:
         """Set `decision` to the next command, or the verdict, for what is believed now."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
+    def redirect(self, task: Task, options: Options) -> None:
+        """Go on with another task or other options, from all that is known; decide anew where they ask for it.
+
+        What was decided and tried for the task so far is forgotten when the task, the path-finder, the user's encodings
+        or the leave to pull are others. A held object is released first then. Where things of the task began is where
+        they are believed now.
+
+        Parameters
+        ----------
+        task : the goals from now on, and what is said of their parameters.
+        options : how the robot works from now on. The limit of commands counts those already given, too.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        before, self.options = self.options, options
+        decider = self.decider
+        kept = (before.paths, before.kb_files, before.pull) == (options.paths, options.kb_files, options.pull)
+        if not kept or task != decider.task:
+            rules = tuple(Path(file) for file in options.kb_files)
+            self.knowledge.rules = rules
+            self.decider = Decider(task, options.paths, rules, options.pull)
+            self._decide()
+            held = self.model.held
+            if held is not None and self.decision.command is not None:
+                self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")
+        self.finished = False
+        self._test()
+
     def _restart(self, impression: Impression) -> Accommodation | None:
         """Forget all beliefs and begin anew from an impression; a held object is released first.
 

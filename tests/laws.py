@@ -27,11 +27,12 @@ MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
-    "simulator": {"numpy", "shapely"},
+    "simulator": {"numpy", "shapely", "distributed"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
 NUMBA_IN = "geometry/kernels/jit.py"
-CLINGO_IN = ("kb/reasoning", "kb/three_valued")
+CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
+DASK_IN = "simulator/sweep/executors/cluster.py"
 MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
 MAX_LINES = 400  # of a module, its docstrings left out
 PERSON_PER_THOUSAND = 1.0  # "he", "his", "him" in 1,000 words of comments and docstrings
@@ -92,7 +93,7 @@ def relative_imports(root: Path) -> Iterator[str]:
 
 
 def others_used(root: Path) -> Iterator[str]:
-    """Packages use only the libraries that they may; numba is met in one module, clingo in two rooms."""
+    """Packages use only the libraries that they may; numba is met in one module, clingo in three rooms."""
     for path in modules(root):
         name = short(path, root)
         for library in {module.split(".")[0] for module, _ in imports(path)}:
@@ -102,6 +103,8 @@ def others_used(root: Path) -> Iterator[str]:
                 yield f"{name} uses {library}"
             if library == "numba" and name != NUMBA_IN:
                 yield f"{name} uses numba, which {NUMBA_IN} alone may"
+            if library == "distributed" and name != DASK_IN:
+                yield f"{name} uses distributed, which {DASK_IN} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 

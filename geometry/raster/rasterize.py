@@ -63,7 +63,7 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
     (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion. All False without a
     motion; what lies off the table is left out.
     """
-    edges, covered = _boundary_edges(shape), np.zeros((height, width), np.bool_)
+    edges, covered = outline_edges(shape), np.zeros((height, width), np.bool_)
     if not len(edges) or not len(motions):
         return covered
     moved = np.array([motion.points(edges.reshape(-1, 2)) for motion in motions])
@@ -92,7 +92,23 @@ def covered_areas(shape: Any, width: int, height: int) -> Floats:
     -------
     (height, width) float64, row 0 in the south; exact but for rounding (about 1e-12).
     """
-    return _covered_areas(_boundary_edges(shape), width, height)
+    return _covered_areas(outline_edges(shape), width, height)
+
+
+def squares_within(edges: Floats, width: int, height: int) -> npt.NDArray[np.bool_]:
+    """Return the squares of a table that the shape with some edges covers: `squares` for a shape that moves often.
+
+    Parameters
+    ----------
+    edges : (n, 4) rows x0, y0, x1, y1 of closed rings, the interior on their left, in squares, as `outline_edges`
+        returns them; in any order.
+    width, height : size of the table in squares.
+
+    Returns
+    -------
+    (height, width) bool array, row 0 in the south, as `squares` returns it.
+    """
+    return _covered_areas(edges, width, height) > MIN_COVERED_AREA
 
 
 def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
@@ -109,7 +125,7 @@ def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
-def _boundary_edges(shape: Any) -> Floats:
+def outline_edges(shape: Any) -> Floats:
     """Return all boundary edges of a shape, the interior on their left: (n, 4) float64, rows x0, y0, x1, y1.
 
     They are in the unit and frame of the shape, a shapely geometry; (0, 4) when it has no polygon.

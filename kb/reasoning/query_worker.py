@@ -26,6 +26,7 @@ from kb.three_valued.known_words import check_body, names_in_facts
 from kb.three_valued.open_world import Beliefs, FactRow
 from kb.three_valued.term_values import Bindings
 from kb.three_valued.uncertain_values import Value
+from kb.tracing.requests import respond
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
 # Seconds of processor time for one request; a convention, well above every limit at which the parent ends the process.
@@ -204,8 +205,8 @@ _messages: list[QueryError] = []
 def _respond(line: bytes) -> Response:
     """Return the response to one request, a line of JSON: JSON values by key, never an exception.
 
-    A request with "read" has the response of `read_rule_text`, one with "program" that of `solve_with_rules`, any other
-    that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
+    A request with "read" has the response of `read_rule_text`, one with "trace" that of kb.tracing.requests, one with
+    "program" that of `solve_with_rules`, any other that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
     0) in the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
     """
     _messages.clear()
@@ -213,6 +214,8 @@ def _respond(line: bytes) -> Response:
         request = json.loads(line)
         if "read" in request:
             return read_rule_text(request["read"])
+        if "trace" in request:
+            return respond(request["trace"])
         if "program" in request:
             return solve_with_rules(request["program"], request["rules"], request["heads"], request["conflicts"])
         found = answer_query(request["facts"], request["query"], request["rules"], request.get("max_rows"))

@@ -7,7 +7,11 @@ import shapely
 
 from geometry.motion.se2 import Motion, Translate
 from kb.body import Command, Grasp, Release, Turn
-from kb.language.source_text import read_source
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.language.reader import parse_facts
+from kb.language.source_text import read_source, source_from_bytes
+from kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_facts
+from kb.task.task import Task, task_of
 from simulator.episode.episode import EpisodeLine
 from simulator.episode.wellformed import EPISODE_VERSION
 from simulator.scenario.scenario import Scenario
@@ -41,14 +45,13 @@ def motion_entry(motion: Motion | None) -> EpisodeLine | None:
 def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
     """Return the first line of an episode: options, world and task, without times and paths."""
     world, task = scenario.world, scenario.task
-    rules = [read_source(path).text for path in settings.kb_files]
     options = {
         "seed": settings.seed,
         "noise": settings.noise,
         "paths": settings.paths,
         "max_steps": settings.max_steps,
         "pull": settings.pull,
-        "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
+        "kb": [rules_sum(path) for path in settings.kb_files],
     }
     task_entry = {
         "parameters": {name: parameter.kind for name, parameter in task.parameters.items()},
@@ -63,6 +66,44 @@ def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
         "world": _world_entry(world),
         "task": task_entry,
     }
+
+
+def rules_sum(path: str) -> str:
+    """Return the SHA-256 sum of a file of rules, in hexadecimal digits, by which an episode names it."""
+    return hashlib.sha256(read_source(path).text.encode()).hexdigest()
+
+
+def recorded_task(name: str, entry: EpisodeLine) -> Task:
+    """Return the task in an episode's header.
+
+    Parameters
+    ----------
+    name : the name of the episode, for messages.
+    entry : the task as `header` states it.
+
+    Returns
+    -------
+    The task.
+
+    Raises
+    ------
+    BadInputError : the entry states no task; the place in it is line 1 of the episode.
+    """
+    try:
+        claims = [f"confidence({fact}, {int(confidence)})." for fact, confidence in entry["claims"]]
+        parameters = [f"{kind}({parameter})." for parameter, kind in entry["parameters"].items()]
+        start, goal = (
+            source_from_bytes(name, "\n".join(lines).encode("utf-8"))
+            for lines in ([*parameters, *claims], [f"{fact}." for fact in entry["goals"]])
+        )
+        start_facts, goal_facts = parse_facts(start), parse_facts(goal)
+        problems = check_facts(start, start_facts, START_VOCABULARY) + check_facts(goal, goal_facts, GOAL_VOCABULARY)
+        if problems:
+            raise BadInputError(problems)
+        return task_of(start, start_facts, goal, goal_facts)
+    except (BadInputError, TypeError, ValueError) as bad:
+        why = bad.problems[0].what if isinstance(bad, BadInputError) else "a claim is no fact with a confidence"
+        raise BadInputError([Problem(name, SourceSpan(1, 1, 1), f"task: {why}: the episode is damaged")]) from None
 
 
 def _world_entry(world: World) -> EpisodeLine:

@@ -87,6 +87,8 @@ TASK = Keys(
         "expect": Noted("the facts of expect.lp; null without it", OrNull(ListOf(TEXT))),
     }
 )
+# The part of a run before a fork: until which step, with which options and task.
+RUN_STAGE = Keys({"until": STEP_NUMBER, "options": OPTIONS, "task": TASK})
 # The first line of an episode.
 HEADER = Keys(
     {
@@ -95,7 +97,9 @@ HEADER = Keys(
         "options": OPTIONS,
         "world": WORLD,
         "task": TASK,
-    }
+        "forked": Noted("the stages before, of a run that goes on otherwise, in order", ListOf(RUN_STAGE, 1)),
+    },
+    frozenset({"forked"}),
 )
 DIGITS = Characters(f"[0-7]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} digits from 0 to 7")
 FIELD_NUMBER = Whole(0, RETINA_FIELDS - 1)

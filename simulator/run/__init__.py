@@ -6,9 +6,10 @@ session     one run, step by step, with its record
 embodiment  the robot's body: commands in, impressions out
 robots      the robot of the planner, made for a body and a task
 trial       a run as a test, judged by expect.lp
+forking     a recorded run, repeated up to a step, which goes on otherwise
 story       a run or a recorded episode, read step by step
 interrupts  Ctrl-C during a step
 warming     compilation of geometry's kernels before the first run
 
-Public names: `Session`, `Result`, `make_robot`, `run_trial`, `open_story`, `warm`.
+Public names: `Session`, `Result`, `make_robot`, `run_trial`, `open_story`, `repeat_until`, `warm`.
 """

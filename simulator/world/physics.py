@@ -5,14 +5,16 @@ hand moves things.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
 
-from geometry.motion.first_contact import ContactBody, Obstacles
+from geometry.kernels.arrays import Floats
+from geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
 from geometry.motion.se2 import Motion, Rotate, Translate, direction
-from simulator.world.senses import Senses
+from geometry.raster.rasterize import outline_edges
+from simulator.world.senses import ImpressionCodes, Senses, felt_colours, gray_levels
 from simulator.world.table import Table
 from simulator.world.world import World
 
@@ -56,13 +58,30 @@ class Tabletop:
         self._random = np.random.default_rng(seed)
         self._table = Table(world)
         self._senses = Senses(world.heading)
-        # Kept as long as the held object stays the same: nothing else moves meanwhile.
-        self._obstacles: Obstacles | None = None
-        self._immovable = [
-            world.verge,
-            _table_edge(world.width, world.height),
-            *(thing.polygon for thing in world.fixed),
-        ]
+        immovable = [world.verge, _table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
+        self._immovable = [obstacle_part(polygon) for polygon in immovable]
+        self._parts = {name: obstacle_part(polygon) for name, polygon in self.polygons.items()}
+        # What stands in the way of the thing held, by name, or of Utak alone (None); kept until another thing moves.
+        self._obstacles: dict[str | None, Obstacles] = {}
+        self._carried: CarriedThing | None = None  # the held thing where it lies now; None until it moves
+
+    def disturb(self, noise: float, seed: int | None) -> None:
+        """Disturb motions by another noise from now on.
+
+        Parameters
+        ----------
+        noise : as for the table.
+        seed : the seed of a new random generator; None to go on with the one there is.
+
+        Raises
+        ------
+        ValueError : the noise is not from 0 to 1.
+        """
+        if not 0.0 <= noise <= 1.0:
+            raise ValueError(f"noise must be from 0 to 1, not {noise}")
+        self.noise = noise
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
 
     def move(self, east: float, north: float) -> None:
         """Walk straight by (east, north) squares in Utak's frame; no effect while an object is held."""
@@ -98,17 +117,25 @@ class Tabletop:
         slips = self.noise > 0.0 and float(self._random.random()) < self.noise
         if not slips:
             self.held = self._table.movable_at(*square)
-            self._obstacles = None
 
     def release(self) -> None:
         """Release the held object."""
         self.motion = None
         self.held = None
-        self._obstacles = None
+        self._carried = None
 
     def look(self) -> tuple[tuple[int, ...], tuple[str | None, ...]]:
         """Return the impression at Utak's place: 160 gray levels and 8 touches. Changes nothing."""
-        return self._senses.retina(self._table, self.utak), self._senses.touch(self._table, self.utak)
+        sensed = self.sense()
+        return gray_levels(sensed), felt_colours(sensed)
+
+    def sense(self) -> ImpressionCodes:
+        """Return the impression at Utak's place in numbers: (168,) uint8, a new array. Changes nothing.
+
+        First the 160 gray levels, 0 to 7, then the colours of the 8 adjacent squares, clockwise from north in Utak's
+        frame, as the places of their letters in the alphabet from 1; 0 for floor.
+        """
+        return self._senses.impression(self._table, self.utak)
 
     def _disturbed_translation(self, east: float, north: float) -> Translate:
         """Return a translation in the table frame, disturbed by noise; east and north are in Utak's frame."""
@@ -127,20 +154,75 @@ class Tabletop:
         """Move Utak and the held object as far as nothing blocks them."""
         if not any(wanted[:2]) if isinstance(wanted, Translate) else not wanted.degrees:
             return
-        carried = None if self.held is None else self.polygons[self.held]
-        if self._obstacles is None:
-            others = [self.polygons[name] for name in self.polygons if name != self.held]
-            self._obstacles = Obstacles([*self._immovable, *others])
-        fraction = self._obstacles.first_contact(ContactBody(carried, [self.utak]), wanted).fraction
+        carried = self._held_thing()
+        body = ContactBody(None, [self.utak]) if carried is None else carried.body
+        fraction = self._standing_obstacles().first_contact(body, wanted).fraction
         if fraction <= 0.0:
             return
         motion = wanted.part(fraction)
         if isinstance(motion, Translate):
             self.utak = (self.utak[0] + motion.dx, self.utak[1] + motion.dy)
-        if self.held is not None:
-            self.polygons[self.held] = motion.carry(carried)
-            self._table.update(self.held, self.polygons[self.held])
+        if carried is not None:
+            self._carry(carried.after(motion))
         self.motion = motion
+
+    def _held_thing(self) -> "CarriedThing | None":
+        """Return the held thing, ready to be moved with Utak; None with empty hands."""
+        if self.held is not None and self._carried is None:
+            self._carried = carried_thing(self.polygons[self.held], self.utak)
+        return self._carried
+
+    def _carry(self, carried: "CarriedThing") -> None:
+        """Put the held thing where it lies after a motion."""
+        assert self.held is not None
+        self._carried = carried
+        self.polygons[self.held] = carried.polygon
+        self._table.update(self.held, carried.outline)
+        self._parts.pop(self.held, None)
+        if self._obstacles.keys() - {self.held}:
+            self._obstacles = {self.held: self._obstacles[self.held]}
+
+    def _standing_obstacles(self) -> Obstacles:
+        """Return all that stands in the way of Utak and of what is held."""
+        if self.held not in self._obstacles:
+            for name in self.polygons.keys() - self._parts.keys():
+                self._parts[name] = obstacle_part(self.polygons[name])
+            others = [self._parts[name] for name in self.polygons if name != self.held]
+            self._obstacles[self.held] = Obstacles([*self._immovable, *others])
+        return self._obstacles[self.held]
+
+
+class CarriedThing(NamedTuple):
+    """A held thing where it lies, in the forms that its next motion needs.
+
+    Attributes
+    ----------
+    polygon : its outline, shapely Polygon, squares, table frame.
+    outline : (n, 4) its edges, for its projection onto squares.
+    body : itself and Utak as one rigid body.
+    has_tiny_edges : whether rounding could tell the edges of `body` otherwise, so that they are made anew.
+    """
+
+    polygon: Any
+    outline: Floats
+    body: ContactBody
+    has_tiny_edges: bool
+
+    def after(self, motion: Motion) -> "CarriedThing":
+        """Return the thing as it lies after a motion, to the last digit as if it were made from its new polygon."""
+        polygon = motion.carry(self.polygon)
+        outline = motion.points(self.outline.reshape(-1, 2)).reshape(-1, 4)
+        body = self.body.after(motion)
+        if self.has_tiny_edges:
+            body = ContactBody(polygon, body.points.tolist())
+        return CarriedThing(polygon, outline, body, self.has_tiny_edges)
+
+
+def carried_thing(polygon: Any, utak: tuple[float, float]) -> CarriedThing:
+    """Return a thing that was just grasped by Utak; squares, table frame."""
+    outline = outline_edges(polygon)
+    lengths = np.hypot(outline[:, 2] - outline[:, 0], outline[:, 3] - outline[:, 1])
+    return CarriedThing(polygon, outline, ContactBody(polygon, [utak]), bool((lengths <= 2 * MIN_EDGE_LENGTH).any()))
 
 
 def _require_finite(*values: float) -> bool:

@@ -179,7 +179,8 @@ def test_test_runs_scenarios(scene: Path, capsys: pytest.CaptureFixture[str]) ->
     good = expecting(shutil.copytree(scene, scene.parent / "good"), "within(0).")
     assert main(["test", str(scene.parent)]) == 1
     seen = capsys.readouterr()
-    assert f"FAILED {good}: not met: within(0); Utak does not believe that the task is done; limit in 30" in seen.out
+    reasons = "not met: within(0): 30 commands were given; Utak does not believe that the task is done"
+    assert f"FAILED {good}: {reasons}; limit in 30" in seen.out
     assert "1 of 2 passed" in seen.err
     scripted_robot.install(DoneRobot)
     assert main(["test", str(good)]) == 0

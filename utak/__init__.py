@@ -1,0 +1,89 @@
+"""Utak from Python: scenarios, runs and episodes, what the robot believes, and other minds in its body.
+
+    import utak
+    scenario = utak.Scenario.read("examples/go_next_room")
+    run = utak.Run(scenario)
+    episode = run.finish()
+    episode[2].world.query("shape(X, square, C)")
+
+Nothing is loaded before a name is used, so `import utak` takes a few milliseconds.
+
+Modules in reading order:
+
+scenario    a world with a task, from a folder or from texts
+run         the robot in a scenario, step by step; forks of a run
+mind        another mind in the same body
+episode     the record of a run, and its steps
+beliefs     what is believed after a step, and the answers to questions about it
+errors      what is raised besides ValueError and TypeError
+explaining  why something is believed or was done
+drawing     pictures of the table and of what is believed, as SVG
+markup      tables and captions for notebooks, as HTML
+gym         TABLETOP as a Gymnasium environment (extra `gym`)
+"""
+
+from importlib import import_module
+
+TYPE_CHECKING = False  # not imported from typing, which takes most of the time of `import utak`
+if TYPE_CHECKING:
+    from typing import Any
+
+    from kb.body import Grasp, Impression, Move, Push, Release, Turn
+    from kb.language.diagnostics import BadInputError, CannotOpenError
+    from kb.reasoning.query import QueryLimitError
+    from utak.beliefs import Answer, World
+    from utak.episode import Episode, Step
+    from utak.errors import RunNotRepeatedError
+    from utak.explaining import Explanation
+    from utak.mind import Mind, Verdict
+    from utak.run import Plan, Run
+    from utak.scenario import Scenario
+
+__all__ = [
+    "Answer",
+    "BadInputError",
+    "CannotOpenError",
+    "Episode",
+    "Explanation",
+    "Grasp",
+    "Impression",
+    "Mind",
+    "Move",
+    "Plan",
+    "Push",
+    "QueryLimitError",
+    "Release",
+    "Run",
+    "RunNotRepeatedError",
+    "Scenario",
+    "Step",
+    "Turn",
+    "Verdict",
+    "World",
+]
+
+_MODULES = {
+    **dict.fromkeys(("Grasp", "Impression", "Move", "Push", "Release", "Turn"), "kb.body"),
+    **dict.fromkeys(("BadInputError", "CannotOpenError"), "kb.language.diagnostics"),
+    "QueryLimitError": "kb.reasoning.query",
+    **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
+    **dict.fromkeys(("Episode", "Step"), "utak.episode"),
+    **dict.fromkeys(("Explanation", "RunNotRepeatedError"), "utak.errors"),
+    **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
+    **dict.fromkeys(("Plan", "Run"), "utak.run"),
+    "Scenario": "utak.scenario",
+}
+
+
+def __getattr__(name: str) -> "Any":
+    """Return a public name; its module is imported when the name is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module 'utak' has no attribute {name!r}")
+    value = getattr(import_module(_MODULES[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Return the public names."""
+    return sorted({*globals(), *__all__})
