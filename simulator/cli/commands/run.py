@@ -15,10 +15,12 @@ from simulator.terminal.streams import escape_controls
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from simulator.episode.episode import EpisodeLine
     from simulator.run.session import Result, Session
     from simulator.scenario.scenario import Scenario
     from simulator.scenario.settings import Settings
 
+DUMP_HELP = "write program and facts of every decision into this folder, as plain clingo reads them"
 SETTINGS_OPTIONS = ("seed", "noise", "paths", "max_steps", "pull")  # the fields of Settings that options state
 
 
@@ -41,7 +43,12 @@ def add(parts: Any) -> None:
     part.add_argument(
         "--from-kb", action="append", metavar="FILE", default=[], help="a file of rules of the repeated run; repeatable"
     )
-    part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
+    part.add_argument("--dump-asp", metavar="DIR", help=DUMP_HELP)
+    part.add_argument(
+        "--force",
+        action="store_true",
+        help="let --log overwrite a file that is no episode, and --dump-asp fill a folder",
+    )
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
     part.add_argument(
         "--watch",
@@ -122,7 +129,7 @@ def _run(options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Se
     head = _recorded_header(options) or {}
     settings = settings_of(options, head.get("options"))
     before = stages_until(options.log, head, None, scenario, [*options.kb, *options.from_kb]) if head else []
-    with EpisodeLog(options.log, options.resume, options.force) as log:
+    with EpisodeLog(options.log, options.resume, options.force, _dumper(options)) as log:
         if not before:
             return Session(scenario, settings, make_robot, log).run(watch)
         return repeat_stages(before, scenario, settings, make_robot, redirect_robot, log).go_on(watch)
@@ -136,11 +143,20 @@ def _run_fork(options: argparse.Namespace, scenario: "Scenario", watch: "Callabl
 
     episode = read_episode(options.origin)
     settings = settings_of(options, options_at(episode.header, options.at))
-    with EpisodeLog(options.log, force=options.force) as log:
+    with EpisodeLog(options.log, force=options.force, listen=_dumper(options)) as log:
         session = repeat_until(
             options.origin, episode, options.at, scenario, settings, make_robot, redirect_robot, log, options.from_kb
         )
         return session.go_on(watch)
+
+
+def _dumper(options: argparse.Namespace) -> "Callable[[EpisodeLine], None]":
+    """Return the function that writes the decisions of each line for --dump-asp; without it one that does nothing."""
+    if options.dump_asp is None:
+        return lambda line: None
+    from simulator.episode.program_dump import ProgramDump
+
+    return ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add
 
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
