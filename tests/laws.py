@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-HOUSE = ("geometry", "kb", "planner", "simulator")
+HOUSE = ("geometry", "kb", "planner", "simulator", "utak")
 MEASURED = (*HOUSE, "benchmarks")
 PATCHED_PACKAGES = (*MEASURED, "utak_command")  # in which tests patch nothing
 MAY_IMPORT = {
@@ -22,12 +22,14 @@ MAY_IMPORT = {
     "kb": {"geometry"},
     "planner": {"geometry", "kb"},
     "simulator": {"geometry", "kb", "planner"},
+    "utak": {"geometry", "kb", "planner", "simulator"},  # the face for Python, imported by nobody
 }
 MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
     "simulator": {"numpy", "shapely"},
+    "utak": {"gymnasium", "numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
 NUMBA_IN = "geometry/kernels/jit.py"

@@ -6,6 +6,7 @@ its containing rectangle only.
 
 import math
 import string
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,6 +103,13 @@ class Table:
             self._paint(self._standing, project(thing.polygon), colour_code(thing.colour))
         self.colours: TableColours = self._standing.copy()
         self._paint_movable(0, 0, self.width, self.height)
+
+    def copy(self) -> "Table":
+        """Return a table in the same state, which changes independently."""
+        copied = copy(self)
+        copied._movable = dict(self._movable)
+        copied.colours = self.colours.copy()
+        return copied
 
     def update(self, name: str, edges: Floats) -> None:
         """Project a movable thing again after it has moved.
