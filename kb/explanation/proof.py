@@ -42,16 +42,19 @@ class TracedDecision:
     program : the encoding, with users' rules.
     facts : its input facts, as clingo writes them.
     answer : the shown atoms of its answer, likewise.
+    assumed : those of the facts that are not given really.
 
     Attributes
     ----------
-    program, facts, answer : as given.
+    program, facts, answer, assumed : as given.
     atoms : all atoms that hold, shown or not.
     supports : the rule instances that derive or may choose each atom.
     """
 
-    def __init__(self, program: DecisionProgram, facts: Sequence[str], answer: Sequence[str]) -> None:
-        self.program, self.facts, self.answer = program, tuple(facts), tuple(answer)
+    def __init__(
+        self, program: DecisionProgram, facts: Sequence[str], answer: Sequence[str], assumed: Sequence[str] = ()
+    ) -> None:
+        self.program, self.facts, self.answer, self.assumed = program, tuple(facts), tuple(answer), frozenset(assumed)
         found = program.ask({"task": "trace", "facts": list(facts), "answer": list(answer)})
         self.atoms = frozenset(found["atoms"])
         self.supports = supports_of(found, program.units)
@@ -104,7 +107,7 @@ class TracedDecision:
         words = atom_words(atom, self.program.words)
         support = self._chosen.get(atom)
         if support is None:
-            return ProofNode("given", atom, words)
+            return ProofNode("assumed" if atom in self.assumed else "given", atom, words)
         instance = self.program.instance(support.unit, support.values)
         kind = "chosen" if support.unit.rule.kind == "choice" else "derived"
         children = tuple({node.claim: node for node in self._children(atom, support)}.values())

@@ -128,8 +128,8 @@ def _line(node: ProofNode) -> str:
     """Return a node in one line: its claim, the reason, and the place of the rule."""
     if node.instance is not None:
         return f"{node.claim}: {node.sentence} [{node.instance.rule.file}:{node.instance.rule.line}]"
-    if node.kind == "given":
-        return f"{node.claim}: given" if node.words == node.claim else f"{node.claim}: {node.words} (given)"
+    if node.kind in ("given", "assumed"):
+        return f"{node.claim}: {node.kind}" if node.words == node.claim else f"{node.claim}: {node.words} ({node.kind})"
     return node.words if node.words == node.claim else f"{node.claim}: {node.words}"
 
 

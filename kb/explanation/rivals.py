@@ -12,7 +12,7 @@ MAX_PRICES_NAMED = 3  # prices that the sentence of a rival names for each side;
 
 
 def rivals_of(
-    program: DecisionProgram, facts: Sequence[str], answer: Sequence[str], heads: Sequence[str]
+    program: DecisionProgram, facts: Sequence[str], answer: Sequence[str], heads: Sequence[str], with_none: bool = True
 ) -> tuple[RivalChoice, ...]:
     """Return how each other way to choose compares with an answer.
 
@@ -21,13 +21,14 @@ def rivals_of(
     program : the encoding, with users' rules.
     facts, answer : its input facts and the shown atoms of its answer.
     heads : the atoms among which a rule chooses.
+    with_none : whether to choose none of them counts as another way.
 
     Returns
     -------
     One for each atom of `heads` that the answer does not hold, and one for choosing none of them where an answer allows
     that; those that come nearest to the answer first, forbidden ones last.
     """
-    request = {"task": "weigh", "facts": list(facts), "answer": list(answer), "heads": list(heads), "none": True}
+    request = {"task": "weigh", "facts": list(facts), "answer": list(answer), "heads": list(heads), "none": with_none}
     found = program.ask(request)
     chosen = found["chosen"]
     return tuple(sorted((_rival(program, chosen, other) for other in found["others"]), key=_order))
@@ -86,7 +87,7 @@ def _sentence(
 
 def _named(prices: Sequence[Price]) -> str:
     """Return the greatest prices in words, `30 (why), 5 (why)`."""
-    ordered = sorted(prices, key=lambda one: -abs(one.weight))
+    ordered = sorted((one for one in prices if one.weight), key=lambda one: -abs(one.weight))
     named = [f"{one.weight} ({one.instance.sentence.rstrip('.')})" for one in ordered[:MAX_PRICES_NAMED]]
     more = len(ordered) - MAX_PRICES_NAMED
     return ", ".join([*named, f"{more} more"] if more > 0 else named)

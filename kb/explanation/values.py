@@ -118,7 +118,7 @@ class ProofNode:
 
     Attributes
     ----------
-    kind : given (an input fact), derived, chosen, absent (a negated atom), negated (a negation of anything else),
+    kind : given (an input fact), assumed (a fact that is not given, but would be), derived, chosen, absent (a negated atom), negated (a negation of anything else),
         comparison, aggregate, each (a conditional literal), or stated (a literal that holds whatever is given).
     claim : the claim in the words of the program, such as `kind(a,object,95)` or `30 <= 35`.
     words : the claim in plain words.

@@ -9,7 +9,8 @@ syntax        statements with places for hidden variables; one alternative of ea
 instrument    helping rules that make clingo say which instances of rules hold
 answers       programs grounded once: whole answers, instances, best answers under assumptions
 alternatives  what a choice would have cost otherwise, or which constraints forbid it
-candidates    facts that might be given besides, over the values that are known or needed
+domains       the values that arguments may have: known ones, and numbers that rules need
+candidates    facts that might be given besides, so that an atom holds
 changes       the smallest changes of the facts that make an atom hold
 requests      all of this as requests and responses of JSON values
 

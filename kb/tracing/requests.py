@@ -8,6 +8,8 @@ import clingo
 
 from kb.tracing.alternatives import weigh
 from kb.tracing.answers import GroundedProgram, TraceError, instances
+from kb.tracing.candidates import CandidateFacts, candidate_facts
+from kb.tracing.changes import ChangeSearch
 from kb.tracing.instrument import condition_infos, is_choice, literal_info
 from kb.tracing.syntax import ProgramPart, parsed
 
@@ -25,6 +27,11 @@ def respond(request: Json) -> Json:
         - "statements": only the parts; what the program consists of, see `_statements`
         - "trace": all instances of its rules that hold in the answer, see `_trace`
         - "weigh": the costs of alternatives, with "heads" and "none" as of kb.tracing.alternatives.weigh
+        - "answer": the shown "atoms" of the best answer that holds "atom"; None when none does
+        - "candidates": the facts that might be given besides for "atom" to hold, where the atoms "known" hold now; the
+          attributes of kb.tracing.candidates.CandidateFacts by name
+        - "change": the least change with which "atom" holds, among "candidates" in the same form; the attributes of
+          kb.tracing.changes.FoundChange by name
 
     Returns
     -------
@@ -37,9 +44,31 @@ def respond(request: Json) -> Json:
         grounded = _grounded(parts, tuple(request["facts"]))
         if request["task"] == "trace":
             return _trace(grounded, request["answer"])
+        if request["task"] == "answer":
+            found = grounded.best_answer([(clingo.parse_term(request["atom"]), True)])
+            return {"atoms": None if found is None else sorted(found.atoms)}
+        if request["task"] == "candidates":
+            return _candidates(grounded, request["atom"], request["known"])
+        if request["task"] == "change":
+            return _change(grounded, request["atom"], request["candidates"])
         return weigh(grounded, request["answer"], request["heads"], request["none"])
     except TraceError as error:
         return {"failed": str(error)}
+
+
+def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> Json:
+    """Return the facts that might be given besides for an atom to hold, as JSON values."""
+    facts, atoms = ([clingo.parse_term(text) for text in texts] for texts in (grounded.facts, known))
+    found = candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))
+    return {**found._asdict(), "facts": list(found.facts), "relevant": sorted(map(list, found.relevant))}
+
+
+def _change(grounded: GroundedProgram, atom: str, candidates: Json) -> Json:
+    """Return the least change with which an atom holds, as JSON values."""
+    relevant = frozenset((name, arity) for name, arity in candidates["relevant"])
+    given = CandidateFacts(tuple(candidates["facts"]), relevant, candidates["by_choice"], candidates["cut"])
+    search = ChangeSearch(grounded.program, grounded.facts, given, clingo.parse_term(atom))
+    return search.least_change()._asdict()
 
 
 @lru_cache(maxsize=8)

@@ -15,10 +15,10 @@ from typing import Any, BinaryIO
 
 from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
+from simulator.episode.forms import KeyPath, complaints
 from simulator.episode.output_files import is_episode, keep_first, open_for_writing
-from simulator.episode.wellformed import HEADER_CHECK, RESULT_CHECK, STEP_CHECK, KeyPath, column
+from simulator.episode.wellformed import END, EPISODE_VERSION, HEADER, STEP, column
 
-EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
 
@@ -80,10 +80,11 @@ def read_episode(path: Path | str) -> Episode:
             raise _damaged(name, number + 2, f"step {number} is missing")
     problems: list[Problem] = []
     for number, raw in enumerate(lines):
-        check = HEADER_CHECK if number == 0 else STEP_CHECK if number < len(rows) else RESULT_CHECK
+        form = HEADER if number == 0 else STEP if number < len(rows) else END
         row = rows[number] if number < len(rows) else {"result": result}
         problems += (
-            _located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE)
+            _located(name, number + 1, raw, *complaint)
+            for complaint in islice(complaints(form, row), MAX_PROBLEMS_PER_FILE)
         )
         if problems:
             raise BadInputError(problems)

@@ -12,7 +12,8 @@ from kb.language.reader import parse_facts
 from kb.language.source_text import read_source, source_from_bytes
 from kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_facts
 from kb.task.task import Task, task_of
-from simulator.episode.episode import EPISODE_VERSION, EpisodeLine
+from simulator.episode.episode import EpisodeLine
+from simulator.episode.wellformed import EPISODE_VERSION
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World

@@ -60,6 +60,8 @@ def stages_until(
     if encode(head["world"]) != encode(header(scenario, Settings())["world"]):
         raise _unlike(name, 1, "the episode is of another world than the scenario's", "a fork keeps the world")
     entries = list(head.get("forked", ())) if step is None else _entries_until(head, step)
+    if [entry["until"] for entry in entries] != sorted(entry["until"] for entry in entries):
+        raise _unlike(name, 1, "forked: stages in the order of their steps are wanted: the episode is damaged")
     sums = {rules_sum(path): path for path in kb_files} if entries else {}
     return [
         RunStage(

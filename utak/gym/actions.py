@@ -9,7 +9,7 @@ from gymnasium import spaces
 
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
 
-KINDS = ("move", "push", "turn", "grasp", "release")  # by the number of `do`
+ACTION_KINDS = ("move", "push", "turn", "grasp", "release")  # by the number of `do`
 HALF_TURN = 180.0  # degrees: the greatest turn in one action; a convention
 STEP_TURNS = (90.0, -90.0, 15.0, -15.0)  # degrees: the turns of discrete actions; a convention
 # The squares of a discrete move in each direction, (east, north), clockwise from north.
@@ -62,7 +62,7 @@ def _dictionaries(stride: float) -> ActionForm:
     """
     space = spaces.Dict(
         {
-            "do": spaces.Discrete(len(KINDS)),
+            "do": spaces.Discrete(len(ACTION_KINDS)),
             "way": spaces.Box(-1.0, 1.0, (2,), np.float32),
             "turn": spaces.Box(-1.0, 1.0, (1,), np.float32),
             "direction": spaces.Discrete(len(DIRECTIONS)),
@@ -89,11 +89,11 @@ def _boxes(stride: float) -> ActionForm:
     The greatest preference says what is done. East and north are parts of the stride, and the compass point nearest to
     them is the direction of a grasp. The turn is a part of half a turn.
     """
-    space = spaces.Box(-1.0, 1.0, (len(KINDS) + 3,), np.float32)
+    space = spaces.Box(-1.0, 1.0, (len(ACTION_KINDS) + 3,), np.float32)
 
     def one(numbers: Sequence[float]) -> Command:
-        kinds, (east, north, turn) = numbers[: len(KINDS)], numbers[len(KINDS) :]
-        do = max(range(len(KINDS)), key=lambda kind: kinds[kind])
+        kinds, (east, north, turn) = numbers[: len(ACTION_KINDS)], numbers[len(ACTION_KINDS) :]
+        do = max(range(len(ACTION_KINDS)), key=lambda kind: kinds[kind])
         direction = round(math.degrees(math.atan2(east, north)) / 45.0) % len(DIRECTIONS) if do == 3 else 0
         return _command(do, stride * east, stride * north, HALF_TURN * turn, direction)
 
@@ -123,7 +123,7 @@ def _numbers(stride: float) -> ActionForm:
 
 
 def _command(do: int, east: float, north: float, degrees: float, direction: int) -> Command:
-    """Return the command of a kind, by its number in KINDS."""
+    """Return the command of a kind, by its number in ACTION_KINDS."""
     if do == 0:
         return Move(east, north)
     if do == 1:
@@ -134,4 +134,4 @@ def _command(do: int, east: float, north: float, degrees: float, direction: int)
         return Grasp(DIRECTIONS[direction])
     if do == 4:
         return Release()
-    raise ValueError(f"`do` is a number from 0 to {len(KINDS) - 1}, not {do}")
+    raise ValueError(f"`do` is a number from 0 to {len(ACTION_KINDS) - 1}, not {do}")

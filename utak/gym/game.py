@@ -8,7 +8,7 @@ from kb.body import Command
 from simulator.run.embodiment import carry_out
 from simulator.scenario.scenario import Scenario as ScenarioContent
 from simulator.world.physics import Tabletop
-from utak.gym.progress import Progress, time_limit
+from utak.gym.progress import ExpectationProgress, time_limit
 from utak.scenario import Scenario
 
 REWARDS = ("progress", "sparse", None)
@@ -31,7 +31,7 @@ class Rules(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """What comes of a command.
+    """The outcome of a command.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Game:
         """Put everything back to the start, and begin randomness anew with a seed."""
         self.table.restart(seed)
         self.steps = 0
-        self.progress = Progress(self._expectations if self._reward is not None else (), self._world)
+        self.progress = ExpectationProgress(self._expectations if self._reward is not None else (), self._world)
         self._see()
 
     def play(self, command: Command) -> Outcome:

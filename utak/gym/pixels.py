@@ -11,7 +11,7 @@ from simulator.world.world import VERGE_COLOUR
 from utak.drawing import LETTER_HUES
 
 MAX_BLOCK_PIXELS = 10  # pixels along the side of a square; a convention
-MAX_IMAGE_PIXELS = 640  # pixels along the longer side of an image, where squares are not smaller than one; a convention
+MAX_FRAME_PIXELS = 640  # pixels along the longer side of an image, where squares are not smaller than one; a convention
 FLOOR_RGB, VERGE_RGB, UTAK_RGB = (255, 255, 255), (212, 212, 212), (34, 170, 119)
 Image = npt.NDArray[np.uint8]  # (rows, columns, 3)
 
@@ -23,7 +23,7 @@ def image(table: Tabletop) -> Image:
     pixels = _PALETTE[colours]
     x, y = table.utak
     pixels[min(int(y), height - 1), min(int(x), width - 1)] = UTAK_RGB
-    block = max(1, min(MAX_BLOCK_PIXELS, MAX_IMAGE_PIXELS // max(height, width)))
+    block = max(1, min(MAX_BLOCK_PIXELS, MAX_FRAME_PIXELS // max(height, width)))
     return np.ascontiguousarray(pixels[::-1].repeat(block, axis=0).repeat(block, axis=1))
 
 

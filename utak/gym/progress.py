@@ -26,7 +26,7 @@ TIME_LIMIT = "within"  # the expectation about the number of commands
 Watch = Callable[[Snapshot], bool]  # sees one halt after the other, and returns whether the expectation is met now
 
 
-class Progress:
+class ExpectationProgress:
     """The progress of one play towards what is expected.
 
     Parameters

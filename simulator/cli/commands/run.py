@@ -55,6 +55,11 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     """Declare the options that determine a run."""
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
+    add_robot_settings(part)
+
+
+def add_robot_settings(part: argparse.ArgumentParser) -> None:
+    """Declare the options of a run besides seed and noise."""
     part.add_argument("--paths", choices=PATH_CHOICES, help="how routes are found (default skeleton)")
     part.add_argument(
         "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
