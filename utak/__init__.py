@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from utak.beliefs import Answer, World
     from utak.episode import Episode, Step
     from utak.errors import RunNotRepeatedError
-    from utak.explaining import Explanation
+    from utak.explaining import ReasonTree
     from utak.mind import Mind, Verdict
     from utak.run import Plan, Run
     from utak.scenario import Scenario
@@ -44,7 +44,6 @@ __all__ = [
     "BadInputError",
     "CannotOpenError",
     "Episode",
-    "Explanation",
     "Grasp",
     "Impression",
     "Mind",
@@ -52,6 +51,7 @@ __all__ = [
     "Plan",
     "Push",
     "QueryLimitError",
+    "ReasonTree",
     "Release",
     "Run",
     "RunNotRepeatedError",
@@ -68,7 +68,7 @@ _MODULES = {
     "QueryLimitError": "kb.reasoning.query",
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
-    **dict.fromkeys(("Explanation", "RunNotRepeatedError"), "utak.errors"),
+    **dict.fromkeys(("ReasonTree", "RunNotRepeatedError"), "utak.errors"),
     **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
     **dict.fromkeys(("Plan", "Run"), "utak.run"),
     "Scenario": "utak.scenario",

@@ -10,7 +10,7 @@ from planner.decision import Decision
 from simulator.run.session import RobotProtocol
 from simulator.scenario.settings import Settings
 
-VERDICTS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
+VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
 MIND_COMMANDS = (Move, Push, Turn, Grasp, Release)
 
 
@@ -32,8 +32,8 @@ class Verdict:
 
     def __post_init__(self) -> None:
         """Raise ValueError unless the kind is one of the four."""
-        if self.kind not in VERDICTS:
-            raise ValueError(f"no such verdict: {self.kind!r}; one of {', '.join(VERDICTS)} is meant")
+        if self.kind not in VERDICT_KINDS:
+            raise ValueError(f"no such verdict: {self.kind!r}; one of {', '.join(VERDICT_KINDS)} is meant")
 
 
 class Mind:

@@ -13,7 +13,7 @@ from utak.gym.actions import action_form
 from utak.gym.game import Game, Rules, Scenarios, games
 from utak.gym.pixels import Image, image
 
-MAX_LEVEL, MAX_COLOUR = 7, 26  # the greatest gray level, and the number of the last letter
+MAX_SEEN_LEVEL, MAX_FELT_COLOUR = 7, 26  # the greatest gray level, and the number of the last letter
 MAX_SEED = 2**31  # seeds that are drawn lie below; a convention
 
 Observation = dict[str, Any]  # retina and touch, uint8 arrays
@@ -29,8 +29,8 @@ class TabletopEnv(gymnasium.Env[Observation, Any]):
     An action is one command. Its form is chosen by `actions`:
 
     - "dict": `do` (0 move, 1 push, 2 turn, 3 grasp, 4 release), `way` (east and north as parts of `stride`, -1 to 1),
-      `turn` (a part of 180 degrees, -1 to 1), and `direction` (0 north, clockwise to 7 northwest). What the command does
-      not need is ignored.
+      `turn` (a part of 180 degrees, -1 to 1), and `direction` (0 north, clockwise to 7 northwest). Of these only what
+      the command needs is used.
     - "box": 8 numbers from -1 to 1: preferences for the five commands, of which the greatest wins, then the way and the
       turn as before. A grasp is towards the compass point nearest to (east,
       north).
@@ -139,8 +139,8 @@ def observation_space() -> spaces.Space[Any]:
     """Return the space of impressions."""
     return spaces.Dict(
         {
-            "retina": spaces.Box(0, MAX_LEVEL, (FIELD_COUNT,), np.uint8),
-            "touch": spaces.Box(0, MAX_COLOUR, (SENSED_NUMBERS - FIELD_COUNT,), np.uint8),
+            "retina": spaces.Box(0, MAX_SEEN_LEVEL, (FIELD_COUNT,), np.uint8),
+            "touch": spaces.Box(0, MAX_FELT_COLOUR, (SENSED_NUMBERS - FIELD_COUNT,), np.uint8),
         }
     )
 
