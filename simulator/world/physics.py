@@ -52,6 +52,7 @@ class Tabletop:
             raise ValueError(f"noise must be from 0 to 1, not {noise}")
         self.world, self.noise = world, noise
         self._senses = Senses(world.heading)
+        self._north = direction(world.heading)  # cosine and sine of Utak's heading
         immovable = [world.verge, _table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
         self._immovable = [obstacle_part(polygon) for polygon in immovable]
         self._parts_at_start = {thing.name: obstacle_part(thing.polygon) for thing in world.movable}
@@ -109,8 +110,9 @@ class Tabletop:
     def turn(self, degrees: float) -> None:
         """Turn the held object about Utak by `degrees`, counter-clockwise positive; no effect when nothing is held."""
         self.motion = None
-        if self.held is None or not _require_finite(degrees):
+        if self.held is None:
             return
+        _require_finite(degrees)
         if self.noise:
             degrees *= 1.0 + self.noise * float(self._random.standard_normal())
         self._move_until_contact(Rotate(degrees, self.utak))
@@ -157,9 +159,8 @@ class Tabletop:
 
     def _disturbed_translation(self, east: float, north: float) -> Translate:
         """Return a translation in the table frame, disturbed by noise; east and north are in Utak's frame."""
-        if not (_require_finite(east) and _require_finite(north)):
-            return Translate(0.0, 0.0)
-        cosine, sine = direction(self.world.heading)
+        _require_finite(east, north)
+        cosine, sine = self._north
         dx, dy = east * cosine - north * sine, east * sine + north * cosine
         if self.noise:
             length = 1.0 + self.noise * float(self._random.standard_normal())
@@ -221,36 +222,40 @@ class CarriedThing(NamedTuple):
     polygon : its outline, shapely Polygon, squares, table frame.
     outline : (n, 4) its edges, for its projection onto squares.
     body : itself and Utak as one rigid body.
-    has_tiny_edges : whether rounding could tell the edges of `body` otherwise, so that they are made anew.
+    is_made_anew : whether all of them are made anew after each motion, not moved: a polygon has holes, or edges so
+        small that rounding could decide which of them `body` has.
     """
 
     polygon: Any
     outline: Floats
     body: ContactBody
-    has_tiny_edges: bool
+    is_made_anew: bool
 
     def after(self, motion: Motion) -> "CarriedThing":
         """Return the thing as it lies after a motion, to the last digit as if it were made from its new polygon."""
-        polygon = motion.carry(self.polygon)
-        outline = motion.points(self.outline.reshape(-1, 2)).reshape(-1, 4)
         body = self.body.after(motion)
-        if self.has_tiny_edges:
-            body = ContactBody(polygon, body.points.tolist())
-        return CarriedThing(polygon, outline, body, self.has_tiny_edges)
+        if self.is_made_anew:
+            polygon = motion.carry(self.polygon)
+            return CarriedThing(polygon, outline_edges(polygon), ContactBody(polygon, body.points.tolist()), True)
+        corners = shapely.get_coordinates(self.polygon)
+        points = motion.points(np.concatenate([corners, self.outline.reshape(-1, 2)]))
+        polygon = shapely.polygons(points[: len(corners)])
+        return CarriedThing(polygon, points[len(corners) :].reshape(-1, 4), body, False)
 
 
 def carried_thing(polygon: Any, utak: tuple[float, float]) -> CarriedThing:
     """Return a thing that was just grasped by Utak; squares, table frame."""
     outline = outline_edges(polygon)
     lengths = np.hypot(outline[:, 2] - outline[:, 0], outline[:, 3] - outline[:, 1])
-    return CarriedThing(polygon, outline, ContactBody(polygon, [utak]), bool((lengths <= 2 * MIN_EDGE_LENGTH).any()))
+    is_made_anew = len(polygon.interiors) > 0 or bool((lengths <= 2 * MIN_EDGE_LENGTH).any())
+    return CarriedThing(polygon, outline, ContactBody(polygon, [utak]), is_made_anew)
 
 
-def _require_finite(*values: float) -> bool:
-    """Return True; raise ValueError when a value is infinite or no number."""
-    if not all(math.isfinite(value) for value in values):
-        raise ValueError(f"a command with {values}: not a finite number")
-    return True
+def _require_finite(*values: float) -> None:
+    """Raise ValueError when a value is infinite or no number."""
+    for value in values:
+        if not math.isfinite(value):
+            raise ValueError(f"a command with {values}: not a finite number")
 
 
 def _table_edge(width: int, height: int) -> Any:

@@ -4,7 +4,6 @@ The verge and fixed things are projected once. A movable thing is projected agai
 its containing rectangle only.
 """
 
-import math
 import string
 from copy import copy
 from typing import Any, NamedTuple
@@ -13,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.rasterize import outline_edges, squares_within
+from geometry.raster.rasterize import outline_edges, window_of
 from simulator.world.world import VERGE_COLOUR, World
 
 TableColours = npt.NDArray[np.uint8]  # numbers of colours: the places of their letters in the alphabet, 0 for floor
@@ -73,11 +72,7 @@ def project_edges(edges: Floats) -> Projection:
     """
     if not len(edges):
         return Projection(0, 0, np.zeros((0, 0), dtype=bool))
-    x0, y0 = edges[:, :2].min(axis=0).tolist()
-    x1, y1 = edges[:, :2].max(axis=0).tolist()
-    west, south = math.floor(x0), math.floor(y0)
-    moved = edges - (west, south, west, south)
-    return Projection(west, south, squares_within(moved, math.ceil(x1) - west, math.ceil(y1) - south))
+    return Projection(*window_of(edges))
 
 
 class Table:
