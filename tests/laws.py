@@ -27,9 +27,10 @@ MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
-    "simulator": {"numpy", "shapely"},
+    "simulator": {"numpy", "shapely", "PIL"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
+PILLOW_IN = "simulator/replay/gif.py"  # an optional library
 NUMBA_IN = "geometry/kernels/jit.py"
 CLINGO_IN = ("kb/reasoning", "kb/three_valued")
 MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
@@ -92,7 +93,7 @@ def relative_imports(root: Path) -> Iterator[str]:
 
 
 def others_used(root: Path) -> Iterator[str]:
-    """Packages use only the libraries that they may; numba is met in one module, clingo in two rooms."""
+    """Packages use only the libraries they may; numba and pillow are met in one module each, clingo in two rooms."""
     for path in modules(root):
         name = short(path, root)
         for library in {module.split(".")[0] for module, _ in imports(path)}:
@@ -102,6 +103,8 @@ def others_used(root: Path) -> Iterator[str]:
                 yield f"{name} uses {library}"
             if library == "numba" and name != NUMBA_IN:
                 yield f"{name} uses numba, which {NUMBA_IN} alone may"
+            if library == "PIL" and name != PILLOW_IN:
+                yield f"{name} uses PIL, which {PILLOW_IN} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 

@@ -2,10 +2,10 @@
 
 import argparse
 
-from simulator.cli.commands import query, repl, routes, run, test, warm
+from simulator.cli.commands import query, repl, replay, routes, run, test, warm
 from simulator.cli.commands.files import check, new, show
 
-COMMANDS = (run, test, check, show, new, query, repl, routes, warm)  # in the order of the help text
+COMMANDS = (run, test, check, show, new, query, repl, replay, routes, warm)  # in the order of the help text
 # The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "

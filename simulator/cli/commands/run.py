@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any, TextIO
 from simulator.scenario.settings import PATH_CHOICES
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
-from simulator.terminal.action_in_words import describe
 from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
 from simulator.terminal.streams import escape_controls
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from simulator.episode.episode import Episode, EpisodeLine
     from simulator.run.session import Result, Session
     from simulator.scenario.settings import Settings
 
@@ -25,13 +27,14 @@ def add(parts: Any) -> None:
     part.add_argument(
         "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
     )
+    part.add_argument("--html", metavar="FILE", help="write the whole run as a page that plays it in any browser")
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
-    part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
+    part.add_argument("--force", action="store_true", help="let --log and --html overwrite files of other kinds")
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
     part.add_argument(
         "--watch",
         action="store_true",
-        help="draw the true table, which the robot does not see, on stderr after every step",
+        help="draw the true table, which the robot does not see, on stderr after every step; on a terminal in place",
     )
     part.set_defaults(execute=execute)
 
@@ -62,9 +65,23 @@ def execute(options: argparse.Namespace) -> int:
     refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
     settings = settings_of(options, _recorded_options(options))
+    if options.html is not None:
+        from simulator.replay.output import check_page_path, write_page
+
+        check_page_path(options.html, options.force)
+    lines: list[EpisodeLine] = []
+    tell = _progress_printer(options.watch)
+
+    def note(session: Session) -> None:
+        if options.html is not None and len(lines) <= session.line["step"]:
+            lines.append(session.line)
+        tell(session)
+
     with EpisodeLog(options.log, options.resume, options.force) as log:
         session = Session(scenario, settings, make_robot, log)
-        result = session.run(_progress_printer(options.watch))
+        result = session.run(note)
+    if options.html is not None:
+        write_page(options.html, _recorded(session, lines, result), options.force)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 
@@ -113,22 +130,26 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
         print(f"not met: {expected}", file=sys.stderr)
 
 
-def _progress_printer(watch: bool) -> Any:
-    """Return the function that prints after each step: nothing, one line on a terminal, or the table as a picture."""
-    if not watch and not sys.stderr.isatty():
+def _progress_printer(watch: bool) -> "Callable[[Session], None]":
+    """Return what prints after each step: nothing, one line on a terminal, or the table as a picture."""
+    from simulator.replay.watching import TableWatch, step_in_words
+
+    if watch:
+        return TableWatch().tell
+    if not sys.stderr.isatty():
         return lambda session: None
+    return lambda session: print(step_in_words(session.line), file=sys.stderr)
 
-    def tell(session: "Session") -> None:
-        from simulator.scenario.picture import draw
 
-        line, table = session.line, session.table
-        if watch:
-            print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
-            print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
-        why = escape_controls(line["why"], lines=False)
-        print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
+def _recorded(session: "Session", lines: "list[EpisodeLine]", result: "Result") -> "Episode":
+    """Return a run as the episode that `--log` would have."""
+    import json
 
-    return tell
+    from simulator.episode.episode import Episode, encode
+    from simulator.episode.record import header
+
+    first, *steps = (json.loads(encode(line)) for line in (header(session.scenario, session.settings), *lines))
+    return Episode(first, tuple(steps), result.line["result"])
 
 
 def _seed(text: str) -> int:
