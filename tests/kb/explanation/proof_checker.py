@@ -121,7 +121,9 @@ def _faults_of_rival(decision: Decision, rival: RivalChoice, heads: set[str]) ->
             yield f"{rival.atom} is possible at {cost}"
         if rival.forbidden_by:
             lines = {one.rule.line for one in rival.forbidden_by}
-            rest = "\n".join(str(part) for part in _statements(decision.encoding) if part.location.begin.line not in lines)
+            rest = "\n".join(
+                str(part) for part in _statements(decision.encoding) if part.location.begin.line not in lines
+            )
             if _best_cost(rest, f"{decision.facts}\n{force}") is None:
                 yield f"{rival.atom} is forbidden by other rules than lines {sorted(lines)}"
         return
@@ -136,7 +138,11 @@ def _faults_of_rival(decision: Decision, rival: RivalChoice, heads: set[str]) ->
         more -= sum(price.weight for price in rival.saved if price.level == level)
         if more != cost.get(level, 0) - decision.cost.get(level, 0):
             yield f"{rival.atom}: prices differ by {more} on level {level}"
-    unlike = [level for level in sorted({*cost, *decision.cost}, reverse=True) if cost.get(level, 0) != decision.cost.get(level, 0)]
+    unlike = [
+        level
+        for level in sorted({*cost, *decision.cost}, reverse=True)
+        if cost.get(level, 0) != decision.cost.get(level, 0)
+    ]
     if (rival.level, rival.verdict) != ((unlike[0], "dearer") if unlike else (None, "equal")):
         yield f"{rival.atom} is {rival.verdict} on level {rival.level}"
     if unlike and rival.difference != cost.get(unlike[0], 0) - decision.cost.get(unlike[0], 0):

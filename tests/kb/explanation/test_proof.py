@@ -77,7 +77,9 @@ def test_facts_may_have_full_stops() -> None:
 def test_a_conditional_literal_shows_all_its_cases() -> None:
     facts = ["fit(o1,square,0,1)", "fit(o1,brick,1,2)", "fit(o1,disc,2,3)", "open_squares(o1,0)", "full_squares(o1,9)"]
     (decision,) = best_decisions(encoding_path("shapes"), "\n".join(f"{fact}." for fact in facts))
-    (node,) = (node for node in checked(decision, "ahead(o1,1)").walk() if node.kind == "each" and "behind" in node.claim)
+    (node,) = (
+        node for node in checked(decision, "ahead(o1,1)").walk() if node.kind == "each" and "behind" in node.claim
+    )
     assert [child.claim for child in node.children] == ["1 <= 1", "1 <= 2"]
 
 
@@ -123,7 +125,7 @@ def test_an_unknown_encoding_is_an_error() -> None:
             explain_decision(name, [], [], "p")
 
 
-@pytest.mark.parametrize("text", ["p(X)", "p :- q", "größe(a)", "p(99999999999)", "", "#include \"x\"", "p. q"])
+@pytest.mark.parametrize("text", ["p(X)", "p :- q", "größe(a)", "p(99999999999)", "", '#include "x"', "p. q"])
 def test_what_is_no_fact_never_reaches_clingo(text: str) -> None:
     with pytest.raises((BadInputError, ValueError)):
         explain_decision("rooms", [], [], text)
@@ -184,5 +186,3 @@ def test_the_checker_finds_a_wrong_cost() -> None:
 def test_no_proof_says_false() -> None:
     for encoding in ENCODINGS:
         assert not re.search(r'%! .*"[^"]*\bfalse\b', encoding.read_text())
-
-
