@@ -203,7 +203,9 @@ class Robot:
         why : the reason of the command, in words.
         """
         places = Places(self.decider.rooms, self.decider.corners)
-        believed = belief(self.model, places, accommodated, self.decider.bound)
+        task = self.decider.task
+        objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
         return StepReport(command, impression, believed, why)
 
     def _test(self) -> None:
