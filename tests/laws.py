@@ -30,6 +30,8 @@ MAY_USE = {
     "simulator": {"numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
+# Libraries of extras, met in one room alone and imported when they are used.
+OPTIONAL_IN = {"prompt_toolkit": "simulator/repl", "rich": "simulator/repl"}
 NUMBA_IN = "geometry/kernels/jit.py"
 CLINGO_IN = ("kb/reasoning", "kb/three_valued")
 MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
@@ -98,7 +100,10 @@ def others_used(root: Path) -> Iterator[str]:
         for library in {module.split(".")[0] for module, _ in imports(path)}:
             if library in {*HOUSE, "utak_command"} | set(sys.stdlib_module_names):
                 continue
-            if library not in MAY_USE[name.split("/")[0]]:
+            if library in OPTIONAL_IN:
+                if not name.startswith(OPTIONAL_IN[library]):
+                    yield f"{name} uses {library}, which {OPTIONAL_IN[library]} alone may"
+            elif library not in MAY_USE[name.split("/")[0]]:
                 yield f"{name} uses {library}"
             if library == "numba" and name != NUMBA_IN:
                 yield f"{name} uses numba, which {NUMBA_IN} alone may"

@@ -83,16 +83,14 @@ class QueryEngine:
 
     def __init__(self, seconds: float = MAX_QUERY_SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
+        self._files: tuple[str, ...] = ()
         self._rules: Sequence[Statement] = ()
-        if rules:
-            from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
-
-            self._rules = read_rules(rules).query_rules
         self._worker = Worker()
         self._facts: tuple[str, ...] | None = None  # the facts of the last query
         self._entries: list[list[int | str]] = []  # the same as the worker takes them
         self._number = 0  # of these facts; the worker holds the facts of one number
         self._asked = 0  # queries since the worker was started
+        self.use_rules(rules)
 
     def __enter__(self) -> "QueryEngine":
         """Return the engine itself."""
@@ -101,6 +99,26 @@ class QueryEngine:
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
         """End the separate process; an exception is not suppressed."""
         self.close()
+
+    def use_rules(self, rules: Sequence[str]) -> None:
+        """Use the rules of these files, and no others, in all further queries.
+
+        Parameters
+        ----------
+        rules : the paths of the files; () for none.
+
+        Raises
+        ------
+        BadInputError : the rules have errors. The former rules are kept.
+        CannotOpenError : a file cannot be read. The former rules are kept.
+        """
+        files = tuple(map(str, rules))
+        if files == self._files:
+            return
+        from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
+
+        self._rules = read_rules(files).query_rules if files else ()
+        self._files, self._facts = files, None
 
     def close(self) -> None:
         """End the separate process, if it runs; the next query starts another one."""

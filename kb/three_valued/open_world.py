@@ -143,8 +143,8 @@ class Beliefs:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
 
         At most one row for all things not seen yet, with a new name as its subject; then one for each such known thing,
-        or for each such parameter of the task, sorted in clingo's order. All other arguments are `Unknown`. Nothing for a predicate of which all facts are
-        known.
+        or for each such parameter of the task, sorted in clingo's order. All other arguments are `Unknown`. Nothing for
+        a predicate of which all facts are known.
 
         signature : the predicate, (name, number of arguments).
         declared : what the vocabulary says of the predicate: types of arguments, and how far it is open.

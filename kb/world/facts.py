@@ -108,8 +108,8 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """Yield the world model, its rooms, doors and corners as facts without their full stops.
 
     The predicates are node/1, kind/3, child/2, offset/3, held/1, rect/5, segment/7, shape/3, colour/3, movable/2, in/2,
-    adjacent/2, room/1, unseen/2, door/1, width/2, threshold/5, connects/3 and corner/3. Coordinates are hundredths of squares in the
-    robot frame, those of offset/3 relative to the parent node; confidences are percent.
+    adjacent/2, room/1, unseen/2, door/1, width/2, threshold/5, connects/3 and corner/3. Coordinates are hundredths of
+    squares in the robot frame, those of offset/3 relative to the parent node; confidences are percent.
 
     Parameters
     ----------

@@ -8,5 +8,4 @@ numbers          numbers on the command line
 printing         JSON output
 action_in_words  an action as text
 outcome          one of several things to do, with its exit code
-prompt           the prompt of `utak repl`
 """

@@ -264,7 +264,7 @@ def test_what_an_unbound_parameter_means_is_not_known(engine: QueryEngine, query
 def test_bound_parameters_are_rows(engine: QueryEngine) -> None:
     answer = engine.ask(BINDINGS, "bound(P, N), shape(N, S, C)")
     assert answer.rows == (("x", "o1", "square", 100),)
-    assert answer.types == ("parameter of the task", "object", "shape", "a confidence")
+    assert answer.types == ("parameter of the task", "thing", "shape", "a confidence")
 
 
 def test_a_worker_holds_the_facts_of_the_last_query_alone(engine: QueryEngine) -> None:
