@@ -5,14 +5,18 @@ current step, what was typed behind the command (without the depth and the full 
 long. It returns the text to print, and raises BadInputError for what it cannot read.
 """
 
+import re
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from simulator.run.story import Story
-from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 
+if TYPE_CHECKING:
+    from simulator.explaining.questions import Questions
+
+CELL_QUESTION = re.compile(r"cell\s+(\d{1,9})")
 DEPTHS = ("short", "mid", "long")
 DEFAULT_DEPTH = "mid"
 
@@ -32,19 +36,51 @@ class Explainer(NamedTuple):
     explain: Callable[[Story, str, str], str]
 
 
-def reason_of_step(story: Story, rest: str, depth: str) -> str:
-    """Return the reason of the command before the current step; raise BadInputError for another question."""
-    if rest != "step":
-        what = f"this is not explained: {rest[:40]}" if rest else "nothing is asked"
-        span = SourceSpan(1, 1, max(1, len(rest)))
-        raise BadInputError([Problem("why", span, what, rest, "why step. gives the reason of this step")])
-    line = story.line
-    why = escape_controls(str(line.get("why", "")), lines=False)
-    return f"step {line['step']}: {describe(line.get('action'))}: {why}"
+def why(story: Story, rest: str, depth: str) -> str:
+    """Return why a fact is believed, a command was given, or a cell shows what it shows, as a tree of reasons.
+
+    story : the story at its current step. rest : a fact, `step`, or `cell N`. depth : short, mid or long.
+    """
+    from kb.evidence.reason import Depth
+
+    questions, at = _questions(story), story.line["step"]
+    cell = CELL_QUESTION.fullmatch(rest)
+    if rest == "step":
+        reason = questions.why_step(at)
+    elif cell:
+        reason = questions.why_cell(int(cell[1]), at)
+    elif rest:
+        reason = questions.why(rest, at)
+    else:
+        raise _nothing_asked("why", "such as why step. or why kind(o1, object, C).")
+    return escape_controls(reason.text(Depth(depth)))
+
+
+def why_not(story: Story, rest: str, depth: str) -> str:
+    """Return why a fact is not believed: what is missing, or in the way. Parameters as of `why`."""
+    from kb.evidence.reason import Depth
+
+    if not rest:
+        raise _nothing_asked("whynot", "such as whynot shape(o1, square, C).")
+    return escape_controls(_questions(story).why_not(rest, story.line["step"]).text(Depth(depth)))
+
+
+def _questions(story: Story) -> "Questions":
+    """Return the questions about a story up to its current step."""
+    from simulator.explaining.questions import Questions
+
+    lines = story.lines[: story.at + 1]
+    return Questions(story.header, lines, story.result, story.rule_files)
+
+
+def _nothing_asked(command: str, hint: str) -> BadInputError:
+    """Return the error that nothing is asked."""
+    return BadInputError([Problem(command, SourceSpan(1, 1, 1), "nothing is asked", command, hint)])
 
 
 EXPLAINERS: Mapping[str, Explainer] = {
-    "why": Explainer("why step.", "the reason of the command before this step", reason_of_step),
+    "why": Explainer("why [short|long] FACT. | step. | cell N.", "why a fact, this step's command, or a cell", why),
+    "whynot": Explainer("whynot [short|long] FACT.", "what is missing for a fact, or in the way", why_not),
 }
 
 
