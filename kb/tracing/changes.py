@@ -16,7 +16,7 @@ from kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
 from kb.tracing.candidates import CandidateFacts
 from kb.tracing.syntax import ParsedProgram
 
-MAX_CHECKS = 1_500  # changes that are tried where costs decide; a convention, about two seconds
+MAX_CHECKS = 900  # changes that are tried where costs decide; a convention, one to three seconds
 MAX_CHANGE_SIZE = 12  # facts of one change; a convention
 Change = tuple[int, ...]  # indices of switches, ascending
 
