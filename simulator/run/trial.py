@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.terms import Fact
 from simulator.episode.episode import EpisodeLine, EpisodeLog
+from simulator.episode.record import facts_of_line
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
-from simulator.run.story import facts_of_line
 from simulator.scenario.expectation import expects_verdict
 from simulator.scenario.points import ExpectationOutcome, PointScore, score
 from simulator.scenario.scenario import Scenario, read_scenario
@@ -92,7 +92,7 @@ def run_trial(
     result = session.run(keep)
     outcomes = (*result.outcomes, *_answers(plan, facts_of_line(session.line), rules))
     assert scenario.expectations is not None
-    faults = tuple(_faults(result, outcomes, expects_verdict(scenario.expectations)))
+    faults = tuple(faults_of(result, outcomes, expects_verdict(scenario.expectations)))
     end = f"{result.verdict} in {result.steps} steps: {result.reason}"
     weighed = any(fact.name == "weight" for fact in scenario.expectations) or any(n != 1 for n in plan.asks.values())
     message = "; ".join([*faults, end])
@@ -144,7 +144,7 @@ def _answer(engine: Any, asked: Fact, facts: Sequence[str]) -> str:
     return answers_as_wanted(asked, found.kind, found.rows, found.more)
 
 
-def _faults(result: Result, outcomes: Sequence[ExpectationOutcome], verdict_expected: bool) -> Iterator[str]:
+def faults_of(result: Result, outcomes: Sequence[ExpectationOutcome], verdict_expected: bool) -> Iterator[str]:
     """Yield the reasons why the test fails."""
     for one in outcomes:
         if not one.met:

@@ -10,6 +10,7 @@ points       the outcome of each expectation, and its points
 trialfile    trial.lp: how a test runs the scenario, and what it asks
 settings     the options of a run
 untrusted    the refusal of links that lead out of a scenario
+folder_writer  new scenario folders
 
 Public names: `Scenario`, `read_scenario`, `read_any_world`, `Settings`, `Snapshot`, `unmet`, `should_fail`.
 """
