@@ -70,13 +70,12 @@ def cell(text: str) -> str:
 
 def commands_page() -> str:
     """Return the page with every command of `utak` and its options."""
-    from simulator.cli.parsing import COMMANDS, EXIT_CODES, build_parser
+    from simulator.cli.parsing import EXIT_CODES, build_parser
 
     parts = next(action for action in build_parser()._actions if isinstance(action, argparse._SubParsersAction))
     helps = {choice.dest: choice.help for choice in parts._choices_actions}
     lines = ["# Commands", "", MADE, EXIT_CODES[0].upper() + EXIT_CODES[1:] + "."]
-    for command in COMMANDS:
-        name = command.__name__.rpartition(".")[2]
+    for name in parts.choices:
         lines += ["", f"## utak {name}", "", f"{str(helps[name])[0].upper()}{str(helps[name])[1:]}.", ""]
         lines += ["| argument | what |", "|---|---|"]
         lines += [f"| `{form(action)}` | {cell(wording(action))} |" for action in parts.choices[name]._actions]

@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from kb.body import Command, Grasp, Impression
-from kb.localisation.hypotheses.explanation import Accommodation
+from kb.localisation.field_account import Accommodation
 from kb.localisation.state import TrackerState
 from kb.localisation.tracker import Tracker
 from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions

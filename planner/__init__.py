@@ -4,6 +4,7 @@ cycle         the action cycle: wake, then act, perceive and decide until the ta
 decision      a decision: the next command, or the verdict
 stages        the stages of a task
 situation     what a decision depends on: beliefs, cost maps, rooms, what parameters mean
+journal       what a step adds to the record of decisions and places
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
 deciding      which goal is pursued next, and how (a room)

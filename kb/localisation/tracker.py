@@ -19,7 +19,8 @@ from kb.localisation.after_carry import (
     refined_extent,
 )
 from kb.localisation.after_walk import DeadReckoning, explain_walk
-from kb.localisation.hypotheses.explanation import Accommodation, Explanation, field_statuses
+from kb.localisation.field_account import Accommodation, account_for_fields
+from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.frames import ALL_HYPOTHESES, FieldRanges, Observation, Position
 from kb.localisation.hypotheses.remap import RemapCache, RemappedMap, object_pose, remap
 from kb.localisation.hypotheses.walk_outcomes import (
@@ -354,7 +355,7 @@ class Tracker:
         x, y = math.floor(explanation.place[0]), math.floor(explanation.place[1])
         held_objects = {name: held.seen(samples, ranges, x, y) for name, held in state.held_objects.items()}
         samples, counts = subtract_held_objects(samples, ranges, x, y, held_objects.values())
-        cells = field_statuses(occupancy, samples, counts, x, y)
+        fields = account_for_fields(occupancy, samples, ranges, counts, (x, y))
         moved = tuple(object_pose(held, state.frame) for held in held_objects.values())
         observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)
         occupancy.observe(samples, counts, x, y, number)
@@ -368,7 +369,7 @@ class Tracker:
             residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
             place=_standing_place(state, explanation.place),
         )
-        return Accommodation(explanation, cells)
+        return Accommodation(explanation, fields)
 
 
 def _remapped(state: TrackerState, under: RemappedMap) -> TrackerState:

@@ -7,8 +7,11 @@ separate process, by kb.reasoning.user_rules.
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import clingo
+
+from kb.reasoning.decisions import note_answer
 
 KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
@@ -18,10 +21,13 @@ class EncodingError(Exception):
     """An encoding is wrong, or it contradicts the facts: an error in our encodings or in a user's rules."""
 
 
-def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) -> list[clingo.Symbol] | None:
+def solve(
+    files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0, about: Sequence[Any] = ()
+) -> list[clingo.Symbol] | None:
     """Return the shown atoms of the best answer set found.
 
-    The same files and facts are answered from a cache: an answer depends on nothing else.
+    The same files and facts are answered from a cache: an answer depends on nothing else. Each answer is noted in the
+    record of kb.reasoning.decisions that is open, if one is.
 
     Parameters
     ----------
@@ -29,6 +35,7 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
     facts : atoms as text, without a full stop.
     seconds : the limit of wall-clock time of the search, after which the best answer so far is returned. With users'
         rules the limits of kb.reasoning.user_rules count instead.
+    about : what the candidates of the decision are, by their number in the facts, ready for JSON; for the record alone.
 
     Returns
     -------
@@ -42,7 +49,9 @@ def solve(files: Sequence[Path], facts: Iterable[str], seconds: float = 20.0) ->
     BadInputError : users' rules cause an error.
     CannotOpenError : a file with users' rules cannot be read.
     """
-    answer = _answer(tuple(files), tuple(facts), seconds)
+    given = tuple(facts)
+    answer = _answer(tuple(files), given, seconds)
+    note_answer(files, given, answer, about)
     return None if answer is None else list(answer)
 
 

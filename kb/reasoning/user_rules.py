@@ -23,6 +23,7 @@ from kb.language.tokens import tokenize
 from kb.language.vocabulary import Signature
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
+from kb.reasoning.sentences import RuleWords, read_sentences
 from kb.reasoning.solver import KB_ENCODINGS
 from kb.reasoning.worker import Worker
 
@@ -66,7 +67,12 @@ def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) ->
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors; carries all of them.
     """
-    return _rulebook(tuple(read_source(path) for path in paths), limits.seconds)
+    return _rulebook(sources_of(paths), limits.seconds)
+
+
+def sources_of(paths: Sequence[Path | str]) -> tuple[Source, ...]:
+    """Return the texts of some files, in order; raise CannotOpenError or BadInputError where one cannot be read."""
+    return tuple(read_source(path) for path in paths)
 
 
 def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
@@ -90,7 +96,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors, or the test fails.
     """
-    rules = read_rules(paths, limits)
+    return read_tested_sources(sources_of(paths), limits)
+
+
+def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
+    """Return the rules of some texts after the test of `read_tested_rules`, with the same limits and errors."""
+    rules = _rulebook(tuple(sources), limits.seconds)
     if rules.self_contained:
         _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
@@ -98,10 +109,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
             encoding = (KB_ENCODINGS / f"{name}.lp").read_text()
             _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
     if rules.query_rules:
-        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
-        found = _worker().exchange(asked, limits.seconds)
+        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules], "number": 0}
+        found = rules_worker().exchange(asked, limits.seconds)
         if "rule" in found:
             raise BadInputError([rules.query_rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+        if "limit" in found:
+            raise _error_at_first_rule(rules.query_rules, f"these rules were given up: {found['limit']}, in queries")
     return rules
 
 
@@ -136,7 +149,7 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
     problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
     if problems:
         raise BadInputError(problems)
-    found = _worker().exchange({"read": source.text}, seconds)
+    found = rules_worker().exchange({"read": source.text}, seconds)
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
@@ -145,7 +158,20 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
         raise BadInputError([source.problem(_span(found["at"]), found["error"], found["hint"])])
     if not found["statements"]:
         raise BadInputError([source.problem(source.start(), "there is no rule in this file")])
-    return [statement_of(source, entry) for entry in found["statements"]]
+    statements = [statement_of(source, entry) for entry in found["statements"]]
+    _, wrong = words_of_rules(source, statements)
+    if wrong:
+        raise BadInputError(wrong)
+    return statements
+
+
+def words_of_rules(source: Source, statements: Sequence[Statement]) -> tuple[RuleWords, tuple[Problem, ...]]:
+    """Return the sentences of a user's rules (kb.reasoning.sentences), and the problems of its annotations.
+
+    source : the text of a file. statements : the statements of that file.
+    """
+    rules = [(one.at, one.variables) for one in statements if one.declares is None]
+    return read_sentences(source, rules)
 
 
 def _not_allowed(source: Source) -> Iterator[Problem]:
@@ -218,7 +244,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
-    found = _worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
+    found = rules_worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
     if "limit" in found:
         where = f", in {name}" if name else ""
         raise _error_at_first_rule(reaching, f"these rules were given up: {found['limit']}{where}")
@@ -287,7 +313,7 @@ def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputEr
 
 
 @cache
-def _worker() -> Worker:
+def rules_worker() -> Worker:
     """Return the handle of the separate process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)

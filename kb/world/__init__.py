@@ -8,6 +8,8 @@ objects       nodes of the world model, made from regions of the map and from he
 doors         the necks of the floor, and how surely each of them is a doorway
 rooms         doors, and the parts of the floor between them
 corners       the corners of the known floor
+pathgraph     the pathgraph of the believed floor, as facts
+evidence      what the world model rests on: explained fields, regions, necks of doors
 facts         the world model as facts, and as the `belief` of an episode
 
 Public names: `WorldModel`, `Node` (model); `Rooms`, `Door`, `Opening`, `rooms_of` (rooms); `Corner`, `corners`

@@ -212,7 +212,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
     doubtful = verge & (model.view.probability < MIN_BOUND_PROBABILITY)  # part of no room, but bounds no door
     verge = verge & ~doubtful
     found = find_necks(model, verge, doubtful)
-    possible, opening = _judge_necks(found.necks, rules)
+    possible, opening = _judge_necks(found.necks, model, rules)
     floor = ~verge & model.view.seen
     if not floor.any():
         return Rooms((), np.zeros(verge.shape, np.int32), np.zeros(verge.shape, np.bool_))
@@ -231,7 +231,7 @@ def rooms_of(model: WorldModel, rules: tuple[Path, ...] = (), verge: Bools | Non
 
 
 def _judge_necks(
-    necks: list[DoorwayNeck], rules: tuple[Path, ...]
+    necks: list[DoorwayNeck], model: WorldModel, rules: tuple[Path, ...]
 ) -> tuple[list[tuple[DoorwayNeck, int]], Opening | None]:
     """Return the necks that kb/asp/rooms.lp takes for doors, with its confidence, and the neck nearest to be a door.
 
@@ -239,7 +239,8 @@ def _judge_necks(
     the floor on its narrower side in squares, and a point beyond it on both sides, view frame; it is None when every
     neck is a door. Necks with a certainty of 0 percent are no doors, and count for neither.
 
-    necks : the necks with their certainty in percent. rules : files with the user's own encodings; () for none.
+    necks : the necks with their certainty in percent. model : the world model, whose frame the record needs. rules :
+        files with the user's own encodings; () for none.
     """
     known = [neck for neck in necks if neck.certainty > 0]
     facts = []
@@ -247,7 +248,8 @@ def _judge_necks(
         sizes = (passage.width, 2 * passage.sides[0], 2 * passage.sides[1])
         width, one, other = (math.floor(FACT_UNITS_PER_SQUARE * size + 1e-6) for size in sizes)
         facts.append(f"neck({number},{width},{one},{other},{certainty})")
-    answer = (solve([KB_ENCODINGS / "rooms.lp", *rules], facts) if facts else None) or ()
+    about = [[[round(v, 3) for v in model.place_to_utak(*end)] for end in neck.line] for neck in known]
+    answer = (solve([KB_ENCODINGS / "rooms.lp", *rules], facts, about=about) if facts else None) or ()
     chosen = {a.arguments[0].number: a.arguments[1].number for a in answer if a.match("door", 2)}
     nearest = [known[a.arguments[0].number] for a in answer if a.match("opening", 1)]
     opening = _opening(nearest[0]) if nearest else None

@@ -14,6 +14,7 @@ from geometry.kernels.arrays import XY, Bools, Floats, Square
 from geometry.pathfinders.grid_astar import grid_path
 from geometry.pathfinders.visibility_graph import visibility_path
 from kb.reasoning.solver import solve
+from kb.world.model import WorldModel
 from kb.world.rooms import Door, count_crossings
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
 from planner.screen.projection import CostMaps, SquareIndices
@@ -224,8 +225,22 @@ def choose_route(
         facts += [f"through({number},{door.name})" for door in doors if leads_through(route, door)]
         if len(before.intersection(route.squares)) > MIN_SHARED * len(route.squares):
             facts.append(f"last({number})")
-    answer = solve([PLANNER_ASP / "routes.lp"], facts)
+    about = [_corners_in_robot_frame(route, cost_maps.model) for route in offered]
+    answer = solve([PLANNER_ASP / "routes.lp"], facts, about=about)
     return offered[answer[0].arguments[0].number] if answer else None
+
+
+def _corners_in_robot_frame(route: PlannedRoute, model: WorldModel) -> list[list[float]]:
+    """Return the first square of a route, those where it changes its direction, and the last one.
+
+    As [east, north] of their centres, in squares, robot frame, with two decimals. `route` lies on the arrays of the
+    view of `model`.
+    """
+    squares = np.array(route.squares)
+    steps = np.diff(squares, axis=0)
+    turns = [0, *(np.flatnonzero((steps[1:] != steps[:-1]).any(axis=1)) + 1).tolist(), len(squares) - 1]
+    places = (model.place_to_utak(*_centre((column, row))) for column, row in squares[turns].tolist())
+    return [[round(east, 2), round(north, 2)] for east, north in places]
 
 
 def leads_through(route: PlannedRoute, door: Door) -> bool:

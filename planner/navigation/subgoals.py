@@ -69,5 +69,6 @@ def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int
             facts.append(f"aim({number},{kind},{round(TENTHS_PER_SQUARE * (reached.cost + subgoal.price))})")
             facts.append(f"chance({number},{subgoal.chance})")
             facts += [f"last({number})"] * bool(last and not last.isdisjoint(subgoal.squares.tolist()))
-    answer = solve([PLANNER_ASP / "aims.lp"], facts) if facts else None
+    about = [subgoal.what for subgoal in subgoals]
+    answer = solve([PLANNER_ASP / "aims.lp"], facts, about=about) if facts else None
     return subgoals[answer[0].arguments[0].number] if answer else None

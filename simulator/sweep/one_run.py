@@ -10,7 +10,7 @@ from simulator.run.robots import make_robot
 from simulator.run.session import RobotMaker, Session
 from simulator.run.trial import faults_of
 from simulator.run.warming import warm
-from simulator.scenario.expectation import should_fail
+from simulator.scenario.expectation import expects_verdict
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 from simulator.sweep.contents import written
@@ -62,7 +62,9 @@ def _ran(folder: Path, rules: list[str], argument: dict[str, Any], make: RobotMa
     settings = Settings(**options, kb_files=tuple(str(folder / name) for name in rules))
     result = Session(scenario, settings, make, EpisodeLog(None)).run()
     expectations = scenario.expectations
-    passed = None if expectations is None else not list(faults_of(result, should_fail(expectations)))
+    passed = None
+    if expectations is not None:
+        passed = not list(faults_of(result, result.outcomes, expects_verdict(expectations)))
     entry = {**result.line["result"], "unmet": list(result.unmet)}
     return {"result": entry, "passed": passed}
 

@@ -3,28 +3,17 @@
 import math
 import statistics
 from collections.abc import Iterable, Sequence
-from enum import StrEnum
 from typing import NamedTuple
 
 from kb.localisation.hypotheses.carry_outcomes import CarryOutcome
-from kb.localisation.hypotheses.frames import FieldRanges, FrameHypothesis, Position
+from kb.localisation.hypotheses.frames import FrameHypothesis, Position
 from kb.localisation.hypotheses.reestimation import ReestimatedWalk
-from kb.mapping.occupancy import OPEN, OccupancyMap
 from kb.objects.held_object import HeldObject, Square
-from kb.perception.frame import CENTRE, Frame, Samples
-from kb.perception.retina import FIELDS
+from kb.perception.frame import CENTRE, Frame
 from kb.reasoning.solver import KB_ENCODINGS, solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
 MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
-
-
-class CellStatus(StrEnum):
-    """The status of a field of an impression: predicted, explained by squares that were open, or noise."""
-
-    PREDICTED = "predicted"
-    EXPLAINED = "explained"
-    NOISE = "noise"
 
 
 class Explanation(NamedTuple):
@@ -90,44 +79,6 @@ class Explanation(NamedTuple):
         return self.frame.angle != 0 and self.frame.origin != CENTRE and not self.origin_weighed
 
 
-class Accommodation(NamedTuple):
-    """The result of localisation for one impression.
-
-    Attributes
-    ----------
-    explanation : the chosen one.
-    cells : how each of the 160 fields of the retina is accounted for, in the order of an impression.
-    """
-
-    explanation: Explanation
-    cells: tuple[CellStatus, ...]
-
-
-def field_statuses(
-    occupancy: OccupancyMap, samples: Samples, ranges: FieldRanges, x: int, y: int
-) -> tuple[CellStatus, ...]:
-    """Return how each of the 160 fields is accounted for by the map, before the observation is integrated.
-
-    In the order of an impression: noise for a field that contradicts the map; explained for any other that covers a
-    square that was open (settled neither as free nor as occupied); else predicted.
-
-    Parameters
-    ----------
-    occupancy : the map, with room for all that is in sight.
-    samples : the squares under each field, in the believed frame, held objects left out.
-    ranges : (160, 2) int16, least and greatest count of occupied squares under each field, held objects left out.
-    x, y : the square from which it was made, map frame.
-    """
-    noise = occupancy.misfits(samples, ranges, x, y)
-    row, column = occupancy.index(x, y)
-    state = occupancy.state[samples.rows + row, samples.columns + column]
-    new = ((state == OPEN) & (samples.weight > 0)).any(1)
-    return tuple(
-        CellStatus.NOISE if noise[i] else CellStatus.EXPLAINED if new[i] else CellStatus.PREDICTED
-        for i in range(len(FIELDS))
-    )
-
-
 def reestimated_explanations(ends: Iterable[Iterable[ReestimatedWalk]]) -> list[Explanation]:
     """Return the explanations by re-estimations of some motions: known contacts first, then the median orientation.
 
@@ -189,7 +140,14 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
         if e.chance is not None:
             price = round(-PRICE_PER_NAT * math.log(max(e.chance, MIN_PRICED_CHANCE)))
             offered.append(f"unlikely({number},{price})")
-    answer = solve([KB_ENCODINGS / "accommodation.lp"], [*offered, *facts])
+    about = [_in_words(explanation) for explanation in explanations]
+    answer = solve([KB_ENCODINGS / "accommodation.lp"], [*offered, *facts], about=about)
     if not answer:
         raise AssertionError("accommodation.lp always has an answer")
     return explanations[answer[0].arguments[0].number]
+
+
+def _in_words(explanation: Explanation) -> str:
+    """Return an explanation as text: its kind, and where the observation was made, in squares, robot frame."""
+    east, north = explanation.frame.place_to_utak(*explanation.place)
+    return f"{explanation.how} at ({east:.2f}, {north:.2f})"

@@ -9,7 +9,8 @@ import shapely
 from shapely.affinity import rotate, translate
 
 from kb.body import Move, Push, Turn
-from kb.localisation.hypotheses.explanation import CellStatus, Explanation, cheapest
+from kb.localisation.field_account import CellStatus
+from kb.localisation.hypotheses.explanation import Explanation, cheapest
 from kb.localisation.hypotheses.frames import CENTRED_HYPOTHESES, FrameHypothesis
 from kb.localisation.hypotheses.reestimation import ReestimatedWalk, WalkCorrection
 from kb.localisation.tracker import Tracker
@@ -40,10 +41,10 @@ def test_exact_moves_are_predicted() -> None:
 def test_new_fields_are_explained_and_old_ones_predicted() -> None:
     tracker, occupied, square = Tracker(), world_of(ROOM), utak_in(ROOM)
     first = tracker.wake(impression(occupied, square))
-    assert set(first.cells) <= {CellStatus.EXPLAINED, CellStatus.PREDICTED}
+    assert set(first.fields.status) <= {CellStatus.EXPLAINED, CellStatus.PREDICTED}
     again = tracker.accommodate(Move(0.0, 0.0), impression(occupied, square))
-    assert CellStatus.NOISE not in again.cells
-    fovea = again.cells[:64]
+    assert CellStatus.NOISE not in again.fields.status
+    fovea = again.fields.status[:64]
     assert set(fovea) == {CellStatus.PREDICTED}
 
 

@@ -1,0 +1,68 @@
+"""The record of decisions: what each encoding was given, and what it answered, in the order in which it was asked.
+
+Whoever wants a record opens a block with `record_decisions`; `kb.reasoning.solver.solve` notes every answer in it.
+Explanations, episodes and dumps of programs are made from such records.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Any, NamedTuple
+
+
+class SolverCall(NamedTuple):
+    """One answer of an encoding.
+
+    Attributes
+    ----------
+    encoding : the name of the encoding, without `.lp`.
+    facts : the atoms that it was given, as text without full stops.
+    answer : the shown atoms of the answer, as text, sorted; None when there was no answer.
+    about : what the candidates of the decision are, by their number in the facts: texts, or points of routes; ()
+        where nothing is said of them. Ready for JSON.
+    """
+
+    encoding: str
+    facts: tuple[str, ...]
+    answer: tuple[str, ...] | None
+    about: tuple[Any, ...] = ()
+
+
+_open_record: ContextVar[list[SolverCall] | None] = ContextVar("open_record", default=None)
+
+
+@contextmanager
+def record_decisions() -> Iterator[list[SolverCall]]:
+    """Record all answers of encodings in a `with` block.
+
+    Yields
+    ------
+    list of SolverCall
+        Grows by one entry for each answer. A block within a block has a record of its own, and the outer one gets none
+        of its entries.
+    """
+    record: list[SolverCall] = []
+    token = _open_record.set(record)
+    try:
+        yield record
+    finally:
+        _open_record.reset(token)
+
+
+def note_answer(
+    files: Sequence[Path], facts: Sequence[str], answer: Sequence[Any] | None, about: Sequence[Any] = ()
+) -> None:
+    """Add an answer to the record that is open, if one is.
+
+    Parameters
+    ----------
+    files : paths of the encodings; the first one names the decision.
+    facts : the atoms that they were given, as text.
+    answer : the shown atoms, sorted by their text, or None.
+    about : what the candidates are, by their number.
+    """
+    record = _open_record.get()
+    if record is not None:
+        atoms = None if answer is None else tuple(map(str, answer))
+        record.append(SolverCall(files[0].stem, tuple(facts), atoms, tuple(about)))

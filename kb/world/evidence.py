@@ -1,0 +1,100 @@
+"""The evidence of a world model, ready for JSON: which fact explains each field, and the regions of nodes.
+
+It goes with the facts of the world model into an episode's line, so that explanations need nothing but the episode.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from geometry.kernels.arrays import Longs
+from kb.localisation.field_account import Accommodation, CellStatus, FieldAccount
+from kb.perception.regions import label_of
+from kb.world.model import FLOOR_NODE, VERGE_NODE, WorldModel, free_squares
+from kb.world.rooms import Rooms
+
+STATUS_LETTERS = {CellStatus.PREDICTED: "p", CellStatus.EXPLAINED: "e", CellStatus.NOISE: "n"}
+
+
+def evidence(
+    model: WorldModel, rooms: Rooms, accommodated: Accommodation, kind_facts: Mapping[str, str]
+) -> dict[str, Any]:
+    """Return what a world model rests on, as further keys of the `belief` of an episode's line.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model after an impression.
+    rooms : Rooms
+        Its rooms and doors.
+    accommodated : Accommodation
+        How the impression was explained.
+    kind_facts : mapping of str to str
+        Name of a node -> the fact, with a full stop, that says what it is.
+
+    Returns
+    -------
+    dict
+        status: a letter for each of the 160 fields, p, e or n (predicted, explained, noise). least, most: digits, the
+        least and greatest gray level that was possible for each field. explained: for each fact that explains fields
+        (`kind(o1,object,95).`), the numbers of these fields, ascending. origin: [east, north], the point of its square
+        in which the robot woke, in squares from the south-west corner of the square, map frame. regions: node -> its
+        region of the map, as in the facts of interpretation.lp. moved: the nodes whose place is known from having been
+        moved. necks: door -> the two ends [east, north] of the line across it, in squares, robot frame.
+    """
+    fields = accommodated.fields
+    return {
+        "status": "".join(STATUS_LETTERS[status] for status in fields.status),
+        "least": "".join(map(str, fields.least)),
+        "most": "".join(map(str, fields.most)),
+        "explained": _explaining_facts(model, fields, kind_facts),
+        "origin": [round(x, 6) for x in model.frame.origin],
+        "regions": {node.name: node.region for node in model.objects if not node.moved},
+        "moved": [node.name for node in model.objects if node.moved],
+        "necks": {
+            door.name: [[round(v, 3) for v in model.place_to_utak(*end)] for end in (door.a, door.b)]
+            for door in rooms.sure
+        },
+    }
+
+
+def _explaining_facts(model: WorldModel, fields: FieldAccount, kind_facts: Mapping[str, str]) -> dict[str, list[int]]:
+    """Return for each fact that explains fields the numbers of these fields; each explained field is named once.
+
+    kind_facts : the facts that say what nodes are, by the names of the nodes.
+    """
+    found: dict[str, list[int]] = {}
+    names = {label_of(node.region): node.name for node in model.objects}
+    for field, label in _main_regions(model, fields):
+        bounds = model.kinds.of(f"part{label}", "verge") > 0
+        name = names.get(label) or (VERGE_NODE if bounds else FLOOR_NODE)
+        found.setdefault(kind_facts[name], []).append(field)
+    return dict(sorted(found.items()))
+
+
+def _main_regions(model: WorldModel, fields: FieldAccount) -> Iterator[tuple[int, int]]:
+    """Yield each explained field with the label of the region to which most of what it shows belongs.
+
+    For a field that shows something occupied this is an occupied region if one is under it, else a free one if one is.
+    """
+    rows, columns = _squares_under(model, fields)
+    labels, free = model.labels, free_squares(model.view)
+    for field, status in enumerate(fields.status):
+        if status != CellStatus.EXPLAINED:
+            continue
+        under = fields.samples.weight[field] > 0
+        there = rows[field, under], columns[field, under]
+        shown = np.where(free[there] ^ fields.occupied[field], 1.0, 0.0)
+        weights = shown if shown.any() else np.ones(len(shown))
+        totals = np.bincount(labels[there], weights=weights)
+        yield field, int(totals.argmax())
+
+
+def _squares_under(model: WorldModel, fields: FieldAccount) -> tuple[Longs, Longs]:
+    """Return rows and columns on the view's arrays of the squares under each field, (160, 16) each."""
+    row, column = model.view.locate(*fields.square)
+    height, width = model.labels.shape
+    rows = np.clip(fields.samples.rows + row, 0, height - 1).astype(np.int64)
+    columns = np.clip(fields.samples.columns + column, 0, width - 1).astype(np.int64)
+    return rows, columns

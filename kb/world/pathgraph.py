@@ -1,0 +1,45 @@
+"""The pathgraph of the believed floor as facts: junctions, the links between them, and the doors that links cross."""
+
+from collections.abc import Iterator
+
+from geometry import Screen
+from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
+from kb.world.rooms import Rooms, count_crossings
+
+
+def pathgraph_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
+    """Yield the pathgraph of the floor on which the robot stands, without full stops.
+
+    The pathgraph are the junctions and ends of the skeleton of the floor (the lines of greatest clearance), and the
+    chains between them; isolated objects are no floor. Coordinates are hundredths of squares, robot frame.
+
+    Parameters
+    ----------
+    model : WorldModel
+        The world model.
+    rooms : Rooms
+        Its rooms and doors.
+
+    Yields
+    ------
+    str
+        `junction(J,East,North,Clearance)` for each junction or end j1, j2, ...; then for each chain
+        `link(L,J1,J2,Length,Clearance)` with its least clearance, and `crosses(L,D)` for each door that counts as such
+        and across whose neck it leads. Nothing where no floor is known.
+    """
+    if not model.floor.any():
+        return
+    graph = Screen(model.floor).pathgraph_arrays
+    for number, ((x, y), clearance) in enumerate(zip(graph.nodes, graph.node_clearances, strict=True), 1):
+        east, north = model.place_to_utak(x, y)
+        yield f"junction(j{number},{_hundredths(east)},{_hundredths(north)},{_hundredths(clearance)})"
+    for number, (first, last) in enumerate(graph.edges.tolist()):
+        name, length, clearance = f"l{number + 1}", graph.lengths[number], graph.edge_clearances[number]
+        yield f"link({name},j{first + 1},j{last + 1},{_hundredths(length)},{_hundredths(clearance)})"
+        points = graph.points_of(number)
+        yield from (f"crosses({name},{door.name})" for door in rooms.sure if count_crossings(points, door) % 2)
+
+
+def _hundredths(length: float) -> int:
+    """Return a length in squares as a whole number of hundredths of squares, rounded."""
+    return round(FACT_UNITS_PER_SQUARE * length)

@@ -1,0 +1,73 @@
+"""The journal of a robot: what each step adds to the record of decisions and of places, ready for JSON.
+
+What stood in an earlier step already is written as a reference to it, so that episodes stay small.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from geometry.kernels.arrays import XY
+from kb.localisation.state import TrackerState
+from kb.reasoning.decisions import SolverCall
+
+JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
+ROUTES_ENCODING = "routes"  # the encoding whose candidates are routes
+
+
+class Journal:
+    """Remembers what was written, and returns what a step adds; each robot has one of its own."""
+
+    def __init__(self) -> None:
+        self._written: dict[str, list[int]] = {}  # a decision as text -> [step, index] where it is written in full
+        self._places: tuple[XY, ...] = ()
+        self._step = 0
+
+    def entry(self, decisions: Sequence[SolverCall], memory: TrackerState) -> dict[str, Any]:
+        """Return what the next step adds to the `belief` of an episode's line.
+
+        Parameters
+        ----------
+        decisions : sequence of SolverCall
+            The answers of encodings since the step before, in order.
+        memory : TrackerState
+            What the localisation tracker believes now.
+
+        Returns
+        -------
+        dict
+            solved: for each decision [encoding, facts, answer, about], or [encoding, [step, index]] where `solved` of
+            that step holds the same at that index. map_from: the number of the first impression on which the map rests.
+            seen_from: the places [east, north] where all impressions were received as believed now, in squares, robot
+            frame; only when they are not those of the step before with the believed place of the robot after them.
+            routes: the routes that were weighed last for the next command, as points [east, north] with whether one was
+            chosen; only when there are any.
+        """
+        places = tuple(_rounded(place) for place in (*memory.been, *(seen.place for seen in memory.observations)))
+        found: dict[str, Any] = {"solved": [self._solved(n, call) for n, call in enumerate(decisions)]}
+        found["map_from"] = len(memory.been)
+        if places != (*self._places, _rounded(memory.frame.place_to_utak(*memory.place))):
+            found["seen_from"] = [list(place) for place in places]
+        routes = [call for call in decisions if call.encoding == ROUTES_ENCODING and call.answer]
+        if routes:
+            found["routes"] = _routes(routes[-1])
+        self._places, self._step = places, self._step + 1
+        return found
+
+    def _solved(self, index: int, call: SolverCall) -> list[Any]:
+        """Return the entry of one decision; remember where it is written in full."""
+        where = self._written.setdefault(repr(call), [self._step, index])
+        if where != [self._step, index]:
+            return [call.encoding, where]
+        answer = None if call.answer is None else list(call.answer)
+        return [call.encoding, list(call.facts), answer, list(call.about)]
+
+
+def _rounded(place: XY) -> XY:
+    """Return a place with JOURNAL_DIGITS decimals, without a negative zero."""
+    return round(place[0], JOURNAL_DIGITS) + 0.0, round(place[1], JOURNAL_DIGITS) + 0.0
+
+
+def _routes(call: SolverCall) -> list[dict[str, Any]]:
+    """Return the routes of a decision, each with its points and whether it was chosen."""
+    answer = call.answer or ()
+    return [{"points": points, "chosen": f"choose({number})" in answer} for number, points in enumerate(call.about)]
