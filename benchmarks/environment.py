@@ -23,9 +23,9 @@ from simulator.scenario.scenario import read_any_world
 from simulator.world.physics import Tabletop
 from simulator.world.world import VERGE_COLOUR
 
-EXAMPLES_FOLDER = Path(__file__).resolve().parent.parent / "examples"
+EXAMPLE_SCENARIOS = Path(__file__).resolve().parent.parent / "examples"
 PLAYED_EXAMPLES = ("go_next_room", "push_l_next_room", "push_square_three_rooms", "go_northeast_askew")
-COMPASS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+GRASP_DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 COMMAND_NAMES = ("move", "push", "turn", "grasp", "release")
 PLAY_LENGTH = 200  # commands of one play, as in the environment
 STRIDE = 4.0  # squares
@@ -38,7 +38,11 @@ def random_commands(count: int, seed: int) -> list[RawCommand]:
     found: list[RawCommand] = []
     for kind in draw.integers(len(COMMAND_NAMES), size=count).tolist():
         east, north, turn = draw.uniform(-1.0, 1.0, 3).tolist()
-        values = [(STRIDE * east, STRIDE * north)] * 2 + [(180.0 * turn,), (COMPASS[int(draw.integers(8))],), ()]
+        values = [(STRIDE * east, STRIDE * north)] * 2 + [
+            (180.0 * turn,),
+            (GRASP_DIRECTIONS[int(draw.integers(8))],),
+            (),
+        ]
         found.append((COMMAND_NAMES[kind], *values[kind]))
     return found
 
@@ -47,7 +51,7 @@ def busy_commands(example: str, count: int, seed: int) -> list[RawCommand]:
     """Return commands that carry things about: what is felt is grasped, pushed and turned for a while, and released."""
     draw = np.random.default_rng(seed)
     found: list[RawCommand] = []
-    table = Tabletop(read_any_world(EXAMPLES_FOLDER / example))
+    table = Tabletop(read_any_world(EXAMPLE_SCENARIOS / example))
     while len(found) < count:
         if len(found) % PLAY_LENGTH == 0:
             table = Tabletop(table.world)
@@ -63,7 +67,11 @@ def _busy_command(table: Tabletop, draw: np.random.Generator) -> RawCommand:
     if table.held is not None:
         choice = draw.random()
         return ("push", east, north) if choice < 0.6 else ("turn", 40 * east) if choice < 0.95 else ("release",)
-    felt = [side for side, colour in zip(COMPASS, table.look()[1], strict=True) if colour not in (None, VERGE_COLOUR)]
+    felt = [
+        side
+        for side, colour in zip(GRASP_DIRECTIONS, table.look()[1], strict=True)
+        if colour not in (None, VERGE_COLOUR)
+    ]
     if felt and draw.random() < 0.8:
         return "grasp", felt[0]
     things = sorted(table.polygons)
@@ -77,7 +85,7 @@ def _busy_command(table: Tabletop, draw: np.random.Generator) -> RawCommand:
 
 def play_table(example: str, commands: Sequence[RawCommand]) -> None:
     """Carry out commands on the bare table, with an impression after each; a new table every PLAY_LENGTH commands."""
-    table = Tabletop(read_any_world(EXAMPLES_FOLDER / example))
+    table = Tabletop(read_any_world(EXAMPLE_SCENARIOS / example))
     world = table.world
     for number, (name, *values) in enumerate(commands):
         if number % PLAY_LENGTH == 0:
@@ -93,7 +101,7 @@ def environment_player(example: str, commands: Sequence[RawCommand]) -> Callable
     import utak.gym  # noqa: F401 (it registers the environment)
 
     env = gymnasium.make(
-        "utak/Tabletop-v0", scenario=EXAMPLES_FOLDER / example, stride=STRIDE * 4, max_steps=PLAY_LENGTH
+        "utak/Tabletop-v0", scenario=EXAMPLE_SCENARIOS / example, stride=STRIDE * 4, max_steps=PLAY_LENGTH
     )
     actions = [_action(command) for command in commands]
 
@@ -115,7 +123,7 @@ def _action(command: RawCommand) -> dict[str, Any]:
         "do": COMMAND_NAMES.index(name),
         "way": np.array(ways, np.float32) / np.float32(STRIDE * 4),
         "turn": np.array([values[0] / 180.0 if name == "turn" else 0.0], np.float32),
-        "direction": COMPASS.index(values[0]) if name == "grasp" else 0,
+        "direction": GRASP_DIRECTIONS.index(values[0]) if name == "grasp" else 0,
     }
 
 
@@ -125,7 +133,7 @@ def vector_rate(example: str, steps: int, runs: int) -> float:
 
     import utak.gym  # noqa: F401 (it registers the environment)
 
-    envs = gymnasium.make_vec("utak/Tabletop-v0", num_envs=16, scenario=EXAMPLES_FOLDER / example)
+    envs = gymnasium.make_vec("utak/Tabletop-v0", num_envs=16, scenario=EXAMPLE_SCENARIOS / example)
     envs.action_space.seed(1)
     actions = [envs.action_space.sample() for _ in range(max(steps // 16, 1))]
     envs.reset(seed=0)

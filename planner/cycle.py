@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
 from kb.localisation.field_account import Accommodation
-from kb.reasoning.decisions import SolverCall, record_decisions
 from kb.task.task import Task
+from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict

@@ -1,4 +1,4 @@
-"""What the robot believes after a step, and the answers to questions about it."""
+"""The beliefs of the robot after a step, and the answers to questions about them."""
 
 import atexit
 from collections.abc import Iterator, Mapping

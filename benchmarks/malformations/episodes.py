@@ -11,6 +11,8 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
+from simulator.terminal.prompt import Prompt
+
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
 from kb.reasoning.query import QueryEngine
@@ -18,7 +20,6 @@ from simulator.cli.main import main
 from simulator.run.story import open_story
 from simulator.scenario.settings import Settings
 from simulator.terminal.action_in_words import describe
-from simulator.terminal.prompt import Prompt
 
 PROJECT_FOLDER = Path(__file__).resolve().parents[2]
 RECORDED = (("go_northeast", "2"), ("push_square_corner", "3"))  # runs that are recorded: example, most commands

@@ -208,6 +208,8 @@ def _one_fact(text: str) -> str:
     if len(found) != 1:
         raise _problem(text, "one fact at a time")
     name, arguments = atom_parts(written)
+    if QUESTION_VARIABLE.fullmatch(name):
+        raise _problem(text, "a fact begins with the name of its predicate, in small letters")
     return f"{name}({','.join(arguments)})" if arguments else name
 
 

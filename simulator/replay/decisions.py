@@ -7,16 +7,18 @@ index]]` for one that was taken before. A decision among hundreds of candidates 
 import re
 from typing import Any
 
-MAX_CANDIDATES = 6  # candidates of one decision that a page keeps, besides those chosen; a convention, docs/replay.md
+MAX_SHOWN_CANDIDATES = (
+    6  # candidates of one decision that a page keeps, besides those chosen; a convention, docs/replay.md
+)
 MAX_OTHER_FACTS = 60  # facts of one decision, besides those of candidates, that a page keeps; a convention
-NUMBER = re.compile(r"\d{1,9}", re.ASCII)
+TERM_NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 
 
 def trimmed(entry: Any) -> Any:
     """Return a decision as a page keeps it: with the facts of its first candidates and of those chosen.
 
     A candidate is a number that stands as the first argument of facts; it is chosen when the answer names it. At most
-    MAX_CANDIDATES that were not chosen are kept, those with the least numbers, and of the other facts the first
+    MAX_SHOWN_CANDIDATES that were not chosen are kept, those with the least numbers, and of the other facts the first
     MAX_OTHER_FACTS. Where facts are left out, a fifth item says how many; what is said about candidates is then kept
     for those alone that are kept, with 0 for those between them. Values of other forms are returned as they are.
     """
@@ -25,9 +27,9 @@ def trimmed(entry: Any) -> Any:
     encoding, facts, answer, about = entry
     if not all(isinstance(part, list) for part in (facts, answer, about)):
         return entry
-    chosen = {number for atom in answer for number in NUMBER.findall(str(atom))}
+    chosen = {number for atom in answer for number in TERM_NUMBER.findall(str(atom))}
     candidates = sorted({_candidate(fact) for fact in facts} - chosen - {""}, key=int)
-    named = chosen | set(candidates[:MAX_CANDIDATES])
+    named = chosen | set(candidates[:MAX_SHOWN_CANDIDATES])
     kept, others = [], 0
     for fact in facts:
         others += not _candidate(fact)
@@ -44,7 +46,7 @@ def trimmed(entry: Any) -> Any:
 def _candidate(fact: Any) -> str:
     """Return the number that is the first argument of a fact; "" when there is none."""
     first = str(fact).partition("(")[2].partition(",")[0].removesuffix(")")
-    return first if NUMBER.fullmatch(first) else ""
+    return first if TERM_NUMBER.fullmatch(first) else ""
 
 
 def by_encoding(solved: Any, before: Any) -> Any:

@@ -1,4 +1,4 @@
-"""How actions are written: as a dictionary, as a box of numbers, or as one number."""
+"""Forms of actions: as a dictionary, as a box of numbers, or as one number."""
 
 import math
 from collections.abc import Callable, Sequence
