@@ -122,6 +122,16 @@ def outcome(folder: Path, read: Callable[[Path], Scenario] = read_scenario, seco
     return came_out(lambda: _simulated(read(folder)), seconds)
 
 
+def _warm_up(keep: Path) -> None:
+    """Simulate a good scenario, so that no malformed one waits for the compilation of geometry's kernels."""
+    folder = keep / "good"
+    folder.mkdir()
+    for name, text in GOOD.items():
+        (folder / name).write_text(text)
+    _simulated(read_scenario(folder))
+    shutil.rmtree(folder)
+
+
 def _simulated(scenario: Scenario) -> None:
     table = Tabletop(scenario.world)
     table.look()
@@ -131,6 +141,7 @@ def _simulated(scenario: Scenario) -> None:
 def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
     """Count the outcomes of `count` malformed scenarios; faulty ones are kept in `keep`."""
     outcomes: Counter[str] = Counter()
+    _warm_up(keep)
     for number in range(count):
         folder = keep / f"{seed}-{number}"
         write_malformed(folder, random.Random(f"{seed}-{number}"))
