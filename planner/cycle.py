@@ -162,6 +162,24 @@ class Robot:
         self._test()
         return self._report(command, impression, accommodated, why, decisions)
 
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Take other rules, and perhaps another task, for all that comes after the next impression.
+
+        The command that is decided already is still given. What is believed stays, and is interpreted by the new rules
+        with the next impression. With another task the robot decides afresh; parameters of the same name keep their
+        binding until the next reconciliation.
+
+        Parameters
+        ----------
+        kb_files : paths of the user's own encodings, all of them.
+        task : the new task; None to keep the old one.
+        """
+        rules = tuple(Path(file) for file in kb_files)
+        self.knowledge.rules = self.decider.rules = rules
+        if task is not None:
+            kept = {name: node for name, node in self.decider.bound.items() if name in task.parameters}
+            self.decider = Decider(task, self.options.paths, rules, self.options.pull, bound=kept)
+
     def _decide(self) -> None:
         """Set `decision` to the next command, or the verdict, for what is believed now."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
@@ -171,7 +189,8 @@ class Robot:
 
         What was decided and tried for the task so far is forgotten when the task, the path-finder, the user's encodings
         or the leave to pull are others. A held object is released first then. Where things of the task began is where
-        they are believed now.
+        they are believed now. What was concluded before with the user's encodings and is remembered, such as the shape
+        of a thing in hand, stays.
 
         Parameters
         ----------
@@ -246,7 +265,9 @@ class Robot:
         decisions : the answers of encodings since the step before.
         """
         places = Places(self.decider.rooms, self.decider.corners)
-        believed = belief(self.model, places, accommodated, self.decider.bound)
+        task = self.decider.task
+        objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from utak.beliefs import Answer, World
     from utak.episode import Episode, Step
     from utak.errors import RunNotRepeatedError
-    from utak.explaining import Explanation
+    from utak.explaining import ReasonTree
     from utak.mind import Mind, Verdict
     from utak.run import Plan, Run
     from utak.scenario import Scenario
@@ -44,7 +44,6 @@ __all__ = [
     "BadInputError",
     "CannotOpenError",
     "Episode",
-    "Explanation",
     "Grasp",
     "Impression",
     "Mind",
@@ -52,6 +51,7 @@ __all__ = [
     "Plan",
     "Push",
     "QueryLimitError",
+    "ReasonTree",
     "Release",
     "Run",
     "RunNotRepeatedError",
@@ -68,7 +68,8 @@ _MODULES = {
     "QueryLimitError": "kb.reasoning.query",
     **dict.fromkeys(("Answer", "World"), "utak.beliefs"),
     **dict.fromkeys(("Episode", "Step"), "utak.episode"),
-    **dict.fromkeys(("Explanation", "RunNotRepeatedError"), "utak.errors"),
+    "ReasonTree": "utak.explaining",
+    "RunNotRepeatedError": "utak.errors",
     **dict.fromkeys(("Mind", "Verdict"), "utak.mind"),
     **dict.fromkeys(("Plan", "Run"), "utak.run"),
     "Scenario": "utak.scenario",
@@ -79,7 +80,13 @@ def __getattr__(name: str) -> "Any":
     """Return a public name; its module is imported when the name is first used."""
     if name not in _MODULES:
         raise AttributeError(f"module 'utak' has no attribute {name!r}")
-    value = getattr(import_module(_MODULES[name]), name)
+    try:
+        value = getattr(import_module(_MODULES[name]), name)
+    except ImportError as error:
+        foreign = _foreign_package()
+        if foreign:
+            raise ImportError(f"utak needs its own package of this name, and Python finds {foreign} first") from error
+        raise
     globals()[name] = value
     return value
 
@@ -87,3 +94,21 @@ def __getattr__(name: str) -> "Any":
 def __dir__() -> list[str]:
     """Return the public names."""
     return sorted({*globals(), *__all__})
+
+
+def _foreign_package() -> str:
+    """Return the file of a package that is not Utak's, although it bears the name of one of Utak's; "" without any."""
+    from importlib.util import find_spec
+    from pathlib import Path
+
+    home = Path(__file__).resolve().parent.parent
+    for name in ("geometry", "kb", "planner", "simulator"):
+        spec = find_spec(name)
+        places = (
+            [spec.origin]
+            if spec is not None and spec.origin
+            else list(getattr(spec, "submodule_search_locations", None) or ())
+        )
+        if places and not Path(places[0]).resolve().is_relative_to(home / name):
+            return places[0]
+    return ""

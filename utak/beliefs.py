@@ -72,7 +72,7 @@ class Answer:
 
 @dataclass(frozen=True, repr=False)
 class World:
-    """What is believed after an impression: the world model. It shows itself in notebooks as a picture.
+    """The world model: what is believed after an impression. It shows itself in notebooks as a picture.
 
     Attributes
     ----------
@@ -119,13 +119,13 @@ class World:
 
     @property
     def place(self) -> tuple[float, float]:
-        """Where the robot believes it is: (east, north) in squares, robot frame; (0, 0) where nothing is recorded."""
+        """The believed place of the robot: (east, north) in squares, robot frame; (0, 0) where nothing is recorded."""
         east, north = self.belief.get("place", (0.0, 0.0))
         return float(east), float(north)
 
     @property
     def bound(self) -> dict[str, str]:
-        """What the parameters of the task mean: the name of a node for each parameter that is bound."""
+        """The meaning of the parameters of the task: the name of a node for each parameter that is bound."""
         return dict(self.belief.get("bound", {}))
 
     def __contains__(self, fact: str) -> bool:

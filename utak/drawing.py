@@ -10,19 +10,19 @@ from typing import Any, NamedTuple
 
 from geometry.motion.se2 import direction
 from kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
+from kb.world.model import FACT_UNITS_PER_SQUARE
 from simulator.world.world import VERGE_COLOUR, World
 
 PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
 MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention
-FACT_UNITS_PER_SQUARE = 100  # facts of the world model count in hundredths of squares (docs/reference/vocabulary.md)
 LETTER_HUES = {"r": 0, "o": 30, "y": 55, "g": 120, "c": 180, "t": 175, "a": 210, "p": 285, "v": 270, "m": 315}
 BELIEVED_COLOUR, BELIEVED_THING_COLOUR = "#1f6fc4", "#c8322b"  # of floor and verge, and of objects
 
 Point = Sequence[float]
 
 
-class Pose(NamedTuple):
-    """Where the robot frame lies on the picture.
+class PlacedFrame(NamedTuple):
+    """The place of the robot frame on a picture.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ def table_svg(
     x, y = world.utak if utak is None else (utak[0], utak[1])
     if step is not None:
         _draw_retina(canvas, (x, y), world.heading, step["retina"])
-        _draw_segments(canvas, Pose(*world.utak, world.heading), step["belief"].get("facts", ()))
+        _draw_segments(canvas, PlacedFrame(*world.utak, world.heading), step["belief"].get("facts", ()))
     if len(track) > 1:
         canvas.lines(track, "stroke:#2a7;stroke-width:1.5;stroke-dasharray:3 3")
     canvas.disc(x, y, 0.45, "fill:#2a7;stroke:#fff")
@@ -146,7 +146,7 @@ def belief_svg(facts: Sequence[str], place: Point) -> str:
     ends = [(east, north) for _, start, end, _ in segments(facts) for east, north in (start, end)] or [(0.0, 0.0)]
     east, north = ([float(value) for value in values] for values in zip(*ends, (place[0], place[1]), strict=True))
     canvas = Canvas(min(east) - 1, min(north) - 1, max(east) + 1, max(north) + 1)
-    _draw_segments(canvas, Pose(0.0, 0.0, 0.0), facts)
+    _draw_segments(canvas, PlacedFrame(0.0, 0.0, 0.0), facts)
     for name, (w, s, e, n) in rectangles(facts).items():
         if name not in ("floor", "verge"):
             canvas.word((w + e) / 2, (s + n) / 2, name)
@@ -192,7 +192,7 @@ def _rings(shape: Any) -> list[Sequence[Point]]:
 
 def _draw_retina(canvas: Canvas, utak: Point, heading: float, levels: Sequence[int]) -> None:
     """Draw the fields of the retina that show something; the darker, the more of them is occupied."""
-    pose = Pose(math.floor(utak[0]) + 0.5, math.floor(utak[1]) + 0.5, heading)
+    pose = PlacedFrame(math.floor(utak[0]) + 0.5, math.floor(utak[1]) + 0.5, heading)
     for (east, north, side), level in zip(FIELDS, levels, strict=True):
         if level:
             corners = [(east, north), (east + side, north), (east + side, north + side), (east, north + side)]
@@ -201,7 +201,7 @@ def _draw_retina(canvas: Canvas, utak: Point, heading: float, levels: Sequence[i
             canvas.polygons([ring], style)
 
 
-def _draw_segments(canvas: Canvas, pose: Pose, facts: Iterable[str]) -> None:
+def _draw_segments(canvas: Canvas, pose: PlacedFrame, facts: Iterable[str]) -> None:
     """Draw the boundaries that are believed; the stronger, the surer."""
     for name, start, end, confidence in segments(facts):
         colour = BELIEVED_COLOUR if name in ("floor", "verge") else BELIEVED_THING_COLOUR

@@ -18,7 +18,7 @@ from simulator.explaining.questions import Questions
 from simulator.terminal.action_in_words import describe
 from utak.beliefs import World, world_of
 from utak.drawing import table_svg
-from utak.explaining import Explanation, questions
+from utak.explaining import ReasonTree, questions
 from utak.markup import framed, table
 
 MAX_STEPS_SHOWN = 200  # steps of an episode that a notebook lists; a convention
@@ -68,17 +68,17 @@ class Step:
 
     @property
     def impression(self) -> Impression:
-        """What the body returned after the command: 160 gray levels and 8 touches."""
+        """The impression after the command: 160 gray levels and 8 touches."""
         return Impression(tuple(self.line["retina"]), tuple(self.line["touch"]))
 
     @cached_property
     def world(self) -> World:
-        """What is believed after the command."""
+        """The world model after the command."""
         return world_of(self.line, self._rules)
 
     @property
     def utak(self) -> tuple[float, float]:
-        """Where the robot really is: (x, y) in squares, table frame."""
+        """The true place of the robot: (x, y) in squares, table frame."""
         x, y = self.line["utak"]
         return float(x), float(y)
 
@@ -88,7 +88,7 @@ class Step:
         name = self.line["held"]
         return None if name is None else str(name)
 
-    def explain(self) -> Explanation:
+    def explain(self) -> ReasonTree:
         """Return why the command was given: the goals and facts behind it, and what was not chosen.
 
         Raises
@@ -96,7 +96,7 @@ class Step:
         BadInputError
             The episode does not record what is needed.
         """
-        return Explanation(questions(self._record, self._rules).why_step(self.number))
+        return ReasonTree(questions(self._record, self._rules).why_step(self.number))
 
     def __repr__(self) -> str:
         """Return the number, the command and its reason."""
@@ -224,10 +224,10 @@ class Episode(Sequence[Step]):
 
     @property
     def world(self) -> World:
-        """What is believed after the last step."""
+        """The world model after the last step."""
         return self[-1].world
 
-    def why(self, fact: str, step: int = -1) -> Explanation:
+    def why(self, fact: str, step: int = -1) -> ReasonTree:
         """Return why a fact is believed, or why a goal or the verdict stands as it does.
 
         Parameters
@@ -240,7 +240,7 @@ class Episode(Sequence[Step]):
 
         Returns
         -------
-        Explanation
+        ReasonTree
             A tree of reasons, which prints itself.
 
         Raises
@@ -248,9 +248,9 @@ class Episode(Sequence[Step]):
         BadInputError
             The text is no fact, the fact is not believed then, or the episode does not record what is needed.
         """
-        return Explanation(self._questions.why(fact, self[step].number))
+        return ReasonTree(self._questions.why(fact, self[step].number))
 
-    def why_cell(self, cell: int, step: int = -1) -> Explanation:
+    def why_cell(self, cell: int, step: int = -1) -> ReasonTree:
         """Return what a cell of the impression of a step is laid to.
 
         Parameters
@@ -262,7 +262,7 @@ class Episode(Sequence[Step]):
 
         Returns
         -------
-        Explanation
+        ReasonTree
             A tree of reasons, which prints itself.
 
         Raises
@@ -270,11 +270,11 @@ class Episode(Sequence[Step]):
         BadInputError
             There is no such cell, or the episode does not record what is needed.
         """
-        return Explanation(self._questions.why_cell(cell, self[step].number))
+        return ReasonTree(self._questions.why_cell(cell, self[step].number))
 
     @cached_property
     def _questions(self) -> Questions:
-        """What answers questions about this episode."""
+        """The questions about this episode, with its record read."""
         return questions(self.record, self.rules)
 
     def __repr__(self) -> str:

@@ -12,7 +12,7 @@ OPEN_LEVELS = 2  # levels of a tree that a notebook shows unfolded; a convention
 
 
 @dataclass(frozen=True, repr=False)
-class Explanation:
+class ReasonTree:
     """A claim and why it holds, as a tree. It prints itself, and unfolds in notebooks.
 
     Attributes
@@ -25,7 +25,7 @@ class Explanation:
 
     @property
     def claim(self) -> str:
-        """What holds: a fact or an atom as text, or a statement in words."""
+        """The claim: a fact or an atom as text, or a statement in words."""
         return self.reason.claim
 
     def text(self, depth: str = "mid") -> str:

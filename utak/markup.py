@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from html import escape
 
-CELL = "padding:2px 8px;text-align:left;vertical-align:top"
+CELL_STYLE = "padding:2px 8px;text-align:left;vertical-align:top"
 
 
 def framed(caption: str, picture: str) -> str:
@@ -13,8 +13,9 @@ def framed(caption: str, picture: str) -> str:
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Return a table of texts: heads and rows are plain text, which is escaped here."""
-    head = "".join(f'<th style="{CELL}">{escape(text)}</th>' for text in heads)
+    head = "".join(f'<th style="{CELL_STYLE}">{escape(text)}</th>' for text in heads)
     body = "".join(
-        "<tr>" + "".join(f'<td style="{CELL}">{escape(str(value))}</td>' for value in row) + "</tr>" for row in rows
+        "<tr>" + "".join(f'<td style="{CELL_STYLE}">{escape(str(value))}</td>' for value in row) + "</tr>"
+        for row in rows
     )
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"

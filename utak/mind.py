@@ -10,13 +10,13 @@ from planner.decision import Decision
 from simulator.run.session import RobotProtocol
 from simulator.scenario.settings import Settings
 
-VERDICTS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
-COMMANDS = (Move, Push, Turn, Grasp, Release)
+VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
+MIND_COMMANDS = (Move, Push, Turn, Grasp, Release)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a mind says at the end of a task.
+    """The verdict of a mind at the end of a task.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class Verdict:
 
     def __post_init__(self) -> None:
         """Raise ValueError unless the kind is one of the four."""
-        if self.kind not in VERDICTS:
-            raise ValueError(f"no such verdict: {self.kind!r}; one of {', '.join(VERDICTS)} is meant")
+        if self.kind not in VERDICT_KINDS:
+            raise ValueError(f"no such verdict: {self.kind!r}; one of {', '.join(VERDICT_KINDS)} is meant")
 
 
 class Mind:
@@ -179,8 +179,8 @@ class MindRobot:
     def _asked(self, impression: Impression) -> Command | Verdict:
         """Return what the mind answers to an impression: a command, or the verdict; also when commands are used up."""
         chosen = self.mind.step(impression)
-        if not isinstance(chosen, (*COMMANDS, Verdict)):
-            kinds = ", ".join(kind.__name__ for kind in (*COMMANDS, Verdict))
+        if not isinstance(chosen, (*MIND_COMMANDS, Verdict)):
+            kinds = ", ".join(kind.__name__ for kind in (*MIND_COMMANDS, Verdict))
             raise TypeError(f"{type(self.mind).__name__}.step must return one of {kinds}, not {chosen!r}")
         if not isinstance(chosen, Verdict) and self._steps >= self._most:
             chosen = Verdict("limit", f"not done after {self._steps} commands")

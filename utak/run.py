@@ -26,7 +26,7 @@ from utak.scenario import Scenario
 
 @dataclass(frozen=True)
 class Plan:
-    """What is planned after a step.
+    """The plan after a step.
 
     Attributes
     ----------
@@ -240,17 +240,17 @@ class Run:
 
     @property
     def world(self) -> World:
-        """What is believed now."""
+        """The world model now."""
         return self.episode[-1].world
 
     @property
     def impression(self) -> Impression:
-        """What was sensed last: `retina`, 160 gray levels, and `touch`, the colours of 8 squares."""
+        """The newest impression: `retina`, 160 gray levels, and `touch`, the colours of 8 squares."""
         return self.episode[-1].impression
 
     @property
     def plan(self) -> Plan:
-        """What is planned now: the next command and why, and the way that was chosen for it."""
+        """The plan now: the next command and why, and the way that was chosen for it."""
         belief = self._lines[-1].get("belief", {})
         steps = tuple(fact.removesuffix(".") for fact in belief.get("facts", ()) if fact.startswith("plan("))
         chosen = next((route["points"] for route in belief.get("routes", ()) if route["chosen"]), ())
@@ -319,7 +319,7 @@ class Run:
 
 
 class RobotWays(NamedTuple):
-    """How the robot of a run is made, and how it is told to go on with another task or other options.
+    """The ways to make the robot of a run, and to let it go on with another task or other options.
 
     Attributes
     ----------

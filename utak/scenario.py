@@ -144,12 +144,12 @@ class Scenario:
 
     @property
     def goals(self) -> tuple[str, ...]:
-        """What shall hold, as facts without full stops."""
+        """The goals, as facts without full stops."""
         return tuple(str(goal) for goal in self.content.task.goals)
 
     @property
     def expectations(self) -> tuple[str, ...] | None:
-        """What a test expects, as facts without full stops; None without expect.lp."""
+        """The expectations of a test, as facts without full stops; None without expect.lp."""
         found = self.content.expectations
         return None if found is None else tuple(str(fact) for fact in found)
 

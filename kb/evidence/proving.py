@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from kb.evidence.reason import Reason, ReasonKind
+from kb.explanation.belief import explain_query_atom
 from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
 from kb.reasoning.decisions import SolverCall
@@ -45,6 +46,25 @@ class EncodingProver:
         """
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
         return _reason(proof.root, leaf, {})
+
+
+def prove_query_atom(
+    facts: Sequence[str], atom: str, leaf: Callable[[str], Reason], rule_files: Sequence[str] = ()
+) -> Reason:
+    """Return the reason why an atom holds in queries: one that users' rules derive, or `object(N)`.
+
+    Parameters
+    ----------
+    facts : the world model, as text.
+    atom : the atom, without variables.
+    leaf : returns the reason of a believed fact.
+    rule_files : the paths of the files with users' rules.
+
+    Raises
+    ------
+    kb.explanation.programs.ExplanationError : the atom does not certainly hold.
+    """
+    return _reason(explain_query_atom(facts, atom, rule_files).root, leaf, {})
 
 
 def _reason(node: ProofNode, leaf: Callable[[str], Reason], known: dict[int, Reason]) -> Reason:

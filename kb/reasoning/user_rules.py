@@ -67,7 +67,12 @@ def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) ->
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors; carries all of them.
     """
-    return _rulebook(tuple(read_source(path) for path in paths), limits.seconds)
+    return _rulebook(sources_of(paths), limits.seconds)
+
+
+def sources_of(paths: Sequence[Path | str]) -> tuple[Source, ...]:
+    """Return the texts of some files, in order; raise CannotOpenError or BadInputError where one cannot be read."""
+    return tuple(read_source(path) for path in paths)
 
 
 def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
@@ -91,7 +96,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors, or the test fails.
     """
-    rules = read_rules(paths, limits)
+    return read_tested_sources(sources_of(paths), limits)
+
+
+def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
+    """Return the rules of some texts after the test of `read_tested_rules`, with the same limits and errors."""
+    rules = _rulebook(tuple(sources), limits.seconds)
     if rules.self_contained:
         _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
@@ -99,10 +109,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
             encoding = (KB_ENCODINGS / f"{name}.lp").read_text()
             _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
     if rules.query_rules:
-        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
+        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules], "number": 0}
         found = rules_worker().exchange(asked, limits.seconds)
         if "rule" in found:
             raise BadInputError([rules.query_rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+        if "limit" in found:
+            raise _error_at_first_rule(rules.query_rules, f"these rules were given up: {found['limit']}, in queries")
     return rules
 
 

@@ -16,7 +16,7 @@ from kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
 from kb.tracing.candidates import CandidateFacts
 from kb.tracing.syntax import ParsedProgram
 
-MAX_CHECKS = 1_500  # changes that are tried where costs decide; a convention, about two seconds
+MAX_CHECKS = 900  # changes that are tried where costs decide; a convention, one to three seconds
 MAX_CHANGE_SIZE = 12  # facts of one change; a convention
 Change = tuple[int, ...]  # indices of switches, ascending
 
@@ -88,7 +88,7 @@ class ChangeSearch:
         return found
 
     def _possible_change(self) -> Change | None:
-        """Return a change of least size after which some answer holds the atom, whatever it costs; None when none does."""
+        """Return a change of least size after which some answer holds the atom, at whatever cost; None without one."""
         wanted = self._control.symbolic_atoms[self._wanted]
         if wanted is None:
             return None
@@ -103,7 +103,7 @@ class ChangeSearch:
         return None
 
     def _solved(self, assumptions: Sequence[int], mode: str) -> Change | None:
-        """Return the switches that are on in the best answer, or with the mode `ignore` in any one; None without one."""
+        """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
         best: list[Change] = []
 
         def keep(model: clingo.Model) -> None:
@@ -212,7 +212,9 @@ def _switched(
     lines += [*program.constants, *(f"#defined {name}/{arity}." for name, arity in program.defined)]
     lines += [f"{fact}." for fact in fixed]
     lines += ["#defined trace__gone/1.", "#defined trace__added/1."]
-    lines += [f"{{ trace__gone({index}) }}. {fact} :- not trace__gone({index})." for index, fact in enumerate(removable)]
+    lines += [
+        f"{{ trace__gone({index}) }}. {fact} :- not trace__gone({index})." for index, fact in enumerate(removable)
+    ]
     lines += [f"{{ trace__added({index}) }}. {fact} :- trace__added({index})." for index, fact in enumerate(addable)]
     if by_choice:
         lines.append(f"{{ trace__size(0..{MAX_CHANGE_SIZE}) }}.")

@@ -97,9 +97,10 @@ HEADER = Keys(
         "options": OPTIONS,
         "world": WORLD,
         "task": TASK,
+        "changes": Noted("what was assumed, retracted or wanted at the prompt, by step", ListOf(NamesTo(Anything()))),
         "forked": Noted("the stages before, of a run that goes on otherwise, in order", ListOf(RUN_STAGE, 1)),
     },
-    frozenset({"forked"}),
+    frozenset({"changes", "forked"}),
 )
 DIGITS = Characters(f"[0-7]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} digits from 0 to 7")
 FIELD_NUMBER = Whole(0, RETINA_FIELDS - 1)

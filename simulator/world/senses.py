@@ -18,6 +18,7 @@ from simulator.world.world import VERGE_COLOUR
 SENSED_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
 VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards
 FIELD_COUNT = 160  # fields of the retina
+SENSED_NUMBERS = 168  # of an impression in numbers: the fields and the 8 adjacent squares
 MAX_FIELD_SQUARES = 16  # squares of the largest fields
 VERGE_CODE = colour_code(VERGE_COLOUR)  # what is felt beyond the table
 # (168,): the 160 gray levels, then the colours of the 8 adjacent squares as in `Table.colours`.
@@ -81,15 +82,20 @@ class Senses:
         }
         self._neighbours = np.array(list(self._adjacent.values()), np.int64)
 
-    def impression(self, table: Table, here: tuple[float, float]) -> ImpressionCodes:
+    def impression(
+        self, table: Table, here: tuple[float, float], sensed: ImpressionCodes | None = None
+    ) -> ImpressionCodes:
         """Return what is sensed at a point (x, y) of the table, as numbers.
+
+        sensed : a contiguous array that is filled and returned; a new one is made if None.
 
         Returns
         -------
-        (168,) uint8, a new array: the 160 gray levels, 0 to 7, and the colours of the 8 adjacent squares as in
+        (168,) uint8: the 160 gray levels, 0 to 7, and the colours of the 8 adjacent squares as in
         `Table.colours`, clockwise from Utak's north.
         """
-        sensed = np.empty(FIELD_COUNT + len(NEIGHBOUR_OFFSETS), np.uint8)
+        if sensed is None:
+            sensed = np.empty(SENSED_NUMBERS, np.uint8)
         counts, touched = sensed[:FIELD_COUNT], sensed[FIELD_COUNT:]
         i, j = math.floor(here[0]), math.floor(here[1])
         survey_square.call_unchecked(table.colours, i, j, self._squares, self._neighbours, VERGE_CODE, counts, touched)

@@ -4,15 +4,15 @@ The verge and fixed things are projected once. A movable thing is projected agai
 its containing rectangle only.
 """
 
-import math
 import string
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from geometry.kernels.arrays import Bools, Floats
-from geometry.raster.rasterize import outline_edges, squares_within
+from geometry.raster.rasterize import outline_edges, window_of
 from simulator.world.world import VERGE_COLOUR, World
 
 TableColours = npt.NDArray[np.uint8]  # numbers of colours: the places of their letters in the alphabet, 0 for floor
@@ -72,11 +72,7 @@ def project_edges(edges: Floats) -> Projection:
     """
     if not len(edges):
         return Projection(0, 0, np.zeros((0, 0), dtype=bool))
-    x0, y0 = edges[:, :2].min(axis=0).tolist()
-    x1, y1 = edges[:, :2].max(axis=0).tolist()
-    west, south = math.floor(x0), math.floor(y0)
-    moved = edges - (west, south, west, south)
-    return Projection(west, south, squares_within(moved, math.ceil(x1) - west, math.ceil(y1) - south))
+    return Projection(*window_of(edges))
 
 
 class Table:
@@ -102,6 +98,13 @@ class Table:
             self._paint(self._standing, project(thing.polygon), colour_code(thing.colour))
         self.colours: TableColours = self._standing.copy()
         self._paint_movable(0, 0, self.width, self.height)
+
+    def copy(self) -> "Table":
+        """Return a table in the same state, which changes independently."""
+        copied = copy(self)
+        copied._movable = dict(self._movable)
+        copied.colours = self.colours.copy()
+        return copied
 
     def update(self, name: str, edges: Floats) -> None:
         """Project a movable thing again after it has moved.
