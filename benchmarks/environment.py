@@ -87,7 +87,7 @@ def play_table(example: str, commands: Sequence[RawCommand]) -> None:
 
 
 def environment_player(example: str, commands: Sequence[RawCommand]) -> Callable[[], None]:
-    """Return what plays commands in the environment; it is reset whenever a play ends."""
+    """Return what plays commands in the environment, as `play_table` does on the bare table."""
     import gymnasium
 
     import utak.gym  # noqa: F401 (it registers the environment)
@@ -98,11 +98,10 @@ def environment_player(example: str, commands: Sequence[RawCommand]) -> Callable
     actions = [_action(command) for command in commands]
 
     def play() -> None:
-        env.reset(seed=0)
-        for action in actions:
-            _, _, terminated, truncated, _ = env.step(action)
-            if terminated or truncated:
-                env.reset()
+        for number, action in enumerate(actions):
+            if number % PLAY_LENGTH == 0:
+                env.reset(seed=0)
+            env.step(action)  # also after the end of the task, so that the table plays the very same commands
 
     return play
 
