@@ -146,7 +146,7 @@ def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
 def queries(count: int, seed: int) -> Counter[str]:
     """Count the outcomes of `count` malformed queries."""
     outcomes: Counter[str] = Counter()
-    with QueryEngine(seconds=5.0) as engine:
+    with QueryEngine(seconds=2.0) as engine:
         for number in range(count):
             draw = random.Random(f"{seed}-{number}")
             text = spoil(draw, draw.choice(GOOD_QUERIES)).decode("utf-8", errors="surrogateescape")

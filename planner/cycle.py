@@ -171,7 +171,8 @@ class Robot:
 
         What was decided and tried for the task so far is forgotten when the task, the path-finder, the user's encodings
         or the leave to pull are others. A held object is released first then. Where things of the task began is where
-        they are believed now.
+        they are believed now. What was concluded before with the user's encodings and is remembered, such as the shape
+        of a thing in hand, stays.
 
         Parameters
         ----------

@@ -10,6 +10,7 @@ run         the robot in a world: sessions, tests and stories
 explaining  questions about a run: why facts, commands, verdicts and cells are as they are
 testing     scenarios as tests: records, JUnit, the process for pytest
 sweep       scenarios run with many seeds and noises, in parallel
+replay      views of a recorded episode: a page, a moving picture, text
 terminal    what users see: streams, exit codes, the prompt
 cli         the command `utak` and its subcommands
 """

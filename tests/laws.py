@@ -28,10 +28,11 @@ MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
-    "simulator": {"numpy", "shapely", "distributed"},
+    "simulator": {"numpy", "shapely", "distributed", "PIL"},
     "utak": {"gymnasium", "numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
+PILLOW_IN = "simulator/replay/gif.py"  # an optional library
 NUMBA_IN = "geometry/kernels/jit.py"
 CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
 DASK_IN = "simulator/sweep/executors/cluster.py"
@@ -108,7 +109,7 @@ def relative_imports(root: Path) -> Iterator[str]:
 
 
 def others_used(root: Path) -> Iterator[str]:
-    """Packages use only the libraries that they may; numba is met in one module, clingo in three rooms."""
+    """Packages use only the libraries that they may; optional ones and numba are met in one place each."""
     for path in modules(root):
         name = short(path, root)
         for library in {module.split(".")[0] for module, _ in imports(path)}:
@@ -122,6 +123,8 @@ def others_used(root: Path) -> Iterator[str]:
                 yield f"{name} uses distributed, which {DASK_IN} alone may"
             if library == "gymnasium" and not name.startswith(GYMNASIUM_IN):
                 yield f"{name} uses gymnasium, which {GYMNASIUM_IN} alone may"
+            if library == "PIL" and name != PILLOW_IN:
+                yield f"{name} uses PIL, which {PILLOW_IN} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 

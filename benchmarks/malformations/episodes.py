@@ -150,7 +150,7 @@ def episodes(
     """
     outcomes: Counter[str] = Counter()
     good = recorded_episodes()
-    with QueryEngine(seconds=5.0) as engine:
+    with QueryEngine(seconds=2.0) as engine:
         for number in range(count):
             draw = random.Random(f"{seed}-{number}")
             path = keep / f"{seed}-{number}.jsonl"

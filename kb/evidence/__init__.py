@@ -11,6 +11,7 @@ declared   what predicates mean, by the comments that declare them
 proving    proof trees of encodings as reasons
 inputs     reasons for what encodings were given
 beliefs    reasons for the facts of the world model
+absences   why facts are not believed: what is missing or in the way
 goals      reasons for commands and verdicts
 cells      what each of the 160 cells of an impression is laid to
 

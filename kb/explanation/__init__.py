@@ -7,6 +7,7 @@ programs   encodings with their rules' sentences and users' rules; who is asked 
 support    which rule instance derives each atom, such that no atom rests on itself
 wording    claims in plain words
 rivals     the other ways to choose, held against an answer
+tree       proof trees built from rule instances
 proof      why an atom holds
 whynot     why an atom does not hold
 belief     why a predicate that users' rules define for queries holds

@@ -6,26 +6,24 @@ Programs without users' rules are asked in this process, others in the separate 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from kb.explanation.values import RuleInstance, RuleText
 from kb.language.reader import facts_from_text
-from kb.language.source_text import source_from_bytes
+from kb.language.source_text import Source, source_from_bytes
 from kb.reasoning.rulebook import Statement
-from kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
+from kb.reasoning.sentences import PredicateWords, fill, read_sentences
 from kb.reasoning.solver import ENCODING_FOLDERS
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
 from kb.tracing.requests import respond
-from kb.tracing.syntax import ProgramPart
-
-Json = dict[str, Any]
+from kb.tracing.syntax import JsonValues, ProgramPart
 
 
 class ExplanationError(Exception):
-    """What is asked cannot be explained: there is no such encoding, or the decision is not one of its answers."""
+    """Says that nothing can be explained: there is no such encoding, or the decision is not one of its answers."""
 
 
-class Unit(NamedTuple):
+class RuleUnit(NamedTuple):
     """A rule with one alternative of each of its pools.
 
     Attributes
@@ -40,8 +38,8 @@ class Unit(NamedTuple):
     rule: RuleText
     variables: tuple[str, ...]
     names: tuple[str, ...]
-    literals: tuple[Json, ...]
-    conditions: tuple[tuple[Json, ...], ...]
+    literals: tuple[JsonValues, ...]
+    conditions: tuple[tuple[JsonValues, ...], ...]
 
 
 class DecisionProgram:
@@ -55,7 +53,7 @@ class DecisionProgram:
     Attributes
     ----------
     encoding : its name.
-    units : the rules of the program, as `Unit`s.
+    units : the rules of the program, as `RuleUnit`s.
     words : how predicates read, by (name, number of arguments).
     shown : the predicates of its answers.
     declared : the predicates of its input facts.
@@ -80,7 +78,7 @@ class DecisionProgram:
         self.shown = frozenset((name, arity) for name, arity in found["shown"])
         self.declared = frozenset((name, arity) for name, arity in found["declared"])
 
-    def ask(self, request: Json) -> Json:
+    def ask(self, request: JsonValues) -> JsonValues:
         """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
         whole = {**request, "parts": [list(part) for part in self.parts]}
         if self._users:
@@ -95,7 +93,7 @@ class DecisionProgram:
             raise ExplanationError(found["failed"])
         return found
 
-    def instance(self, unit: Unit, values: Sequence[str]) -> RuleInstance:
+    def instance(self, unit: RuleUnit, values: Sequence[str]) -> RuleInstance:
         """Return a rule with values for its named variables.
 
         values : one for each of the unit's `names`, or for each of its `variables` alone.
@@ -142,7 +140,7 @@ def _path_of(encoding: str) -> Path:
 
 
 def _rules_with_words(
-    statements: Sequence[Json], users: Sequence[Statement], own: ProgramPart
+    statements: Sequence[JsonValues], users: Sequence[Statement], own: ProgramPart
 ) -> tuple[list[RuleText], Mapping[tuple[str, int], PredicateWords]]:
     """Return the rules of a program with their sentences, and how predicates read.
 
@@ -153,27 +151,31 @@ def _rules_with_words(
     found, problems = read_sentences(source, [((one["line"], one["column"]), one["variables"]) for one in ours])
     if problems:
         raise ExplanationError(str(problems[0]))
-    words = dict(found.predicates)
-    rules = []
-    for one, entry in zip(users, statements, strict=False):
-        theirs = _words_of_file(one, users)
-        words = {**theirs.predicates, **words}
-        text = " ".join(one.written.split())
-        rules.append(RuleText(one.source.file, *one.at, text, entry["kind"], theirs.sentences.get(one.at, "")))
+    sentences, words = words_of_users(users)
+    rules = [
+        RuleText(one.source.file, *one.at, " ".join(one.written.split()), entry["kind"], sentence)
+        for one, entry, sentence in zip(users, statements, sentences, strict=False)
+    ]
     for entry in ours:
         at = (entry["line"], entry["column"])
         rules.append(RuleText(own.file, *at, entry["text"], entry["kind"], found.sentences.get(at, "")))
-    return rules, words
+    return rules, {**words, **found.predicates}
 
 
-def _words_of_file(one: Statement, users: Sequence[Statement]) -> RuleWords:
-    """Return the sentences of the file in which a user's rule stands."""
-    return words_of_rules(one.source, [other for other in users if other.source == one.source])[0]
+def words_of_users(users: Sequence[Statement]) -> tuple[list[str], dict[tuple[str, int], PredicateWords]]:
+    """Return the sentence of each of some users' rules, '' for none, and how predicates read in their files."""
+    words: dict[tuple[str, int], PredicateWords] = {}
+    sentences: dict[tuple[Source, tuple[int, int]], str] = {}
+    for source in dict.fromkeys(one.source for one in users):
+        found, _ = words_of_rules(source, [one for one in users if one.source == source])
+        words = {**found.predicates, **words}
+        sentences |= {(source, at): text for at, text in found.sentences.items()}
+    return [sentences.get((one.source, one.at), "") for one in users], words
 
 
-def _unit(entry: Json, rules: Sequence[RuleText], statements: Sequence[Json]) -> Unit:
+def _unit(entry: JsonValues, rules: Sequence[RuleText], statements: Sequence[JsonValues]) -> RuleUnit:
     """Return a unit from the response of kb.tracing."""
-    return Unit(
+    return RuleUnit(
         rules[entry["statement"]],
         tuple(statements[entry["statement"]]["variables"]),
         tuple(entry["names"]),

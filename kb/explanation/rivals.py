@@ -6,8 +6,8 @@ from typing import Any
 
 from kb.explanation.programs import DecisionProgram
 from kb.explanation.values import Price, RivalChoice
+from kb.tracing.syntax import JsonValues
 
-Json = dict[str, Any]
 MAX_PRICES_NAMED = 3  # prices that the sentence of a rival names for each side; a convention
 
 
@@ -39,7 +39,7 @@ def _order(rival: RivalChoice) -> tuple[int, int, int, str]:
     return rival.verdict == "forbidden", -99_999 if rival.level is None else rival.level, rival.difference, rival.atom
 
 
-def _rival(program: DecisionProgram, chosen: Json, other: Json) -> RivalChoice:
+def _rival(program: DecisionProgram, chosen: JsonValues, other: JsonValues) -> RivalChoice:
     """Return how one other way to choose compares with the answer; both are entries of kb.tracing.alternatives."""
     if "broken" in other:
         rules = tuple(program.instance(program.units[unit], values) for unit, values in other["broken"])

@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from kb.explanation.programs import Unit
+from kb.explanation.programs import RuleUnit
+from kb.tracing.syntax import JsonValues
 
-Json = dict[str, Any]
 LiteralValue = str | list[str]  # an atom, or the sides of a comparison or the bounds of an aggregate
 
 
@@ -42,7 +41,7 @@ class Support:
     """
 
     number: int
-    unit: Unit
+    unit: RuleUnit
     values: tuple[str, ...]
     literals: tuple[LiteralValue, ...]
     elements: tuple[tuple[CountedElement, ...], ...]
@@ -50,7 +49,7 @@ class Support:
     condition: tuple[LiteralValue, ...]
 
 
-def supports_of(trace: Json, units: Sequence[Unit]) -> dict[str, list[Support]]:
+def supports_of(trace: JsonValues, units: Sequence[RuleUnit]) -> dict[str, list[Support]]:
     """Return the rule instances that derive or may choose each atom, by atom; a choice lists also what is not chosen.
 
     trace : the response of kb.tracing to the task "trace". units : the units of the program.
@@ -58,8 +57,8 @@ def supports_of(trace: Json, units: Sequence[Unit]) -> dict[str, list[Support]]:
     bodies = {(unit, tuple(values)): tuple(literals) for unit, values, literals in trace["on"]}
     counted: dict[tuple[int, tuple[str, ...], int], list[CountedElement]] = {}
     for unit, literal, element, values, terms, condition in trace["elements"]:
-        one = CountedElement(element, tuple(terms), tuple(condition))
-        counted.setdefault((unit, tuple(values), literal), []).append(one)
+        member = CountedElement(element, tuple(terms), tuple(condition))
+        counted.setdefault((unit, tuple(values), literal), []).append(member)
     found: dict[str, list[Support]] = {}
     for unit, element, values, head, condition in trace["heads"]:
         key = (unit, tuple(values))
@@ -74,8 +73,9 @@ def founded_supports(
 ) -> tuple[dict[str, Support], dict[str, int]]:
     """Return for each atom of an answer the rule instance that explains it, and its height in the proof.
 
-    The height of a given fact is 0, that of any other atom greater than those of the atoms on which it rests. Of several
-    instances the one of least height is taken, then the one with fewer literals, then the one that stands first.
+    The height of a given fact is 0, that of any other atom greater than those of the atoms on which it rests. Of
+    several instances the one of least height is taken, then the one with fewer literals, then the one that stands
+    first.
 
     supports : the instances for each atom. given : the input facts. holding : all atoms of the answer.
     """
@@ -98,14 +98,14 @@ def founded_supports(
     return chosen, heights
 
 
-def positive_atoms(literals: Iterable[LiteralValue], infos: Iterable[Json]) -> Iterator[str]:
+def positive_atoms(literals: Iterable[LiteralValue], infos: Iterable[JsonValues]) -> Iterator[str]:
     """Yield the atoms among literals that are not negated."""
     for value, info in zip(literals, infos, strict=True):
         if info["kind"] == "atom" and isinstance(value, str):
             yield value
 
 
-def element_atoms(one: CountedElement, info: Json) -> Iterator[str]:
+def element_atoms(one: CountedElement, info: JsonValues) -> Iterator[str]:
     """Yield the atoms on which the condition of an element rests."""
     yield from positive_atoms(one.condition, info["conditions"][one.element])
 
@@ -161,7 +161,7 @@ def _needed_at_least(support: Support, heights: Mapping[str, int]) -> Iterable[s
 
 
 def founded_elements(
-    info: Json, elements: Iterable[CountedElement], heights: Mapping[str, int], below: int | None = None
+    info: JsonValues, elements: Iterable[CountedElement], heights: Mapping[str, int], below: int | None = None
 ) -> tuple[CountedElement, ...]:
     """Return the elements whose atoms all have heights; with `below`, heights less than that."""
     return tuple(
@@ -171,7 +171,7 @@ def founded_elements(
     )
 
 
-def aggregate_value(info: Json, elements: Iterable[CountedElement]) -> str:
+def aggregate_value(info: JsonValues, elements: Iterable[CountedElement]) -> str:
     """Return the value of an aggregate over its elements as text; `#inf` and `#sup` for the greatest and least of none.
 
     Elements with equal tuples count once. Members that are no numbers do not count in a sum; among the greatest and the
@@ -191,7 +191,7 @@ def aggregate_value(info: Json, elements: Iterable[CountedElement]) -> str:
     return pick(firsts, key=_order)
 
 
-def holds_aggregate(info: Json, bounds: LiteralValue, elements: Iterable[CountedElement]) -> bool:
+def holds_aggregate(info: JsonValues, bounds: LiteralValue, elements: Iterable[CountedElement]) -> bool:
     """Return whether the value of an aggregate over its elements keeps the bounds."""
     value = aggregate_value(info, elements)
     terms = iter(bounds)

@@ -1,4 +1,4 @@
-"""What explanations are made of: frozen values that JSON can hold."""
+"""The parts of explanations: frozen values that JSON can hold."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -49,7 +49,7 @@ class RuleInstance:
 
 @dataclass(frozen=True)
 class Price:
-    """What a weak constraint adds to the cost of an answer.
+    """The price that a weak constraint adds to the cost of an answer.
 
     Attributes
     ----------
@@ -118,8 +118,9 @@ class ProofNode:
 
     Attributes
     ----------
-    kind : given (an input fact), assumed (a fact that is not given, but would be), derived, chosen, absent (a negated atom), negated (a negation of anything else),
-        comparison, aggregate, each (a conditional literal), or stated (a literal that holds whatever is given).
+    kind : given (an input fact), assumed (a fact that is not given, but would be), derived, chosen, absent (a negated
+        atom), negated (a negation of anything else), comparison, aggregate, each (a conditional literal), or stated (a
+        literal that holds whatever is given).
     claim : the claim in the words of the program, such as `kind(a,object,95)` or `30 <= 35`.
     words : the claim in plain words.
     instance : the rule that derives it, with values; None for a claim that no rule derives.

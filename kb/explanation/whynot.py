@@ -31,9 +31,9 @@ def explain_absence(
     Returns
     -------
     The least change of the input facts with which the atom holds: facts that would have to be given (over the constants
-    that are known, and numbers that the rules need), and facts that would have to be absent. No member of it can be left
-    out. `partial` marks a change that may not be the least one. For an atom that could have been chosen it holds also
-    how that choice compares with the answer. After the change the atom is part of a best answer.
+    that are known, and numbers that the rules need), and facts that would have to be absent. No member of it can be
+    left out. `partial` marks a change that may not be the least one. For an atom that could have been chosen it holds
+    also how that choice compares with the answer. After the change the atom is part of a best answer.
 
     Raises
     ------

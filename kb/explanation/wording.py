@@ -2,16 +2,14 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from kb.explanation.support import CountedElement, LiteralValue, aggregate_value
-from kb.language.reader import facts_from_text
 from kb.language.diagnostics import BadInputError
+from kb.language.reader import facts_from_text
 from kb.reasoning.sentences import PredicateWords, fill
-from kb.tracing.syntax import ANY_NAME
+from kb.tracing.syntax import ANY_NAME, JsonValues
 
-Json = dict[str, Any]
-Words = Mapping[tuple[str, int], PredicateWords]
+WordsByPredicate = Mapping[tuple[str, int], PredicateWords]
 SIGN_WORDS = {
     "=": "is", "!=": "is not", "<": "is less than", "<=": "is at most", ">": "is more than", ">=": "is at least",
 }  # fmt: skip
@@ -24,14 +22,14 @@ VARIABLE = re.compile(r"\b_*[A-Z][A-Za-z0-9_']*")
 MAX_MEMBERS_SHOWN = 6  # members of an aggregate that its words list; a convention
 
 
-def atom_words(atom: str, words: Words) -> str:
+def atom_words(atom: str, words: WordsByPredicate) -> str:
     """Return an atom that holds in plain words: as its predicate reads, or else the atom itself."""
     name, arguments = split_atom(atom)
     found = words.get((name, len(arguments)))
     return fill(found.holds, dict(zip(found.variables, arguments, strict=True))) if found else atom
 
 
-def absent_words(atom: str, words: Words) -> str:
+def absent_words(atom: str, words: WordsByPredicate) -> str:
     """Return in plain words that an atom is not known to hold; `any__` among its arguments stands for any value."""
     name, arguments = split_atom(atom)
     found = words.get((name, len(arguments)))
@@ -48,11 +46,11 @@ def atom_pattern(atom: str) -> str:
     return re.sub(rf"\b{ANY_NAME}\b", "_", atom)
 
 
-def comparison_claim(info: Json, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
+def comparison_claim(info: JsonValues, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
     """Return a comparison with values in the place of its variables.
 
-    sides : its sides computed. values : the values of all its variables; None when some are not known, then the computed
-        sides stand in the claim.
+    sides : its sides computed. values : the values of all its variables; None when some are not known, then the
+        computed sides stand in the claim.
     """
     texts = list(sides) if values is None else [_unwrapped(substituted(text, values)) for text in info["sides"]]
     parts = [texts[0]]
@@ -61,7 +59,7 @@ def comparison_claim(info: Json, sides: Sequence[str], values: Mapping[str, str]
     return ("not " if info["negated"] else "") + " ".join(parts)
 
 
-def comparison_words(info: Json, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
+def comparison_words(info: JsonValues, sides: Sequence[str], values: Mapping[str, str] | None) -> str:
     """Return a comparison in plain words; parameters as of `comparison_claim`."""
     written = list(sides) if values is None else [_unwrapped(substituted(text, values)) for text in info["sides"]]
     texts = [
@@ -76,7 +74,7 @@ def comparison_words(info: Json, sides: Sequence[str], values: Mapping[str, str]
     return ("it is not so that " if info["negated"] else "") + " and ".join(parts)
 
 
-def aggregate_claim(info: Json, bounds: Sequence[str], elements: Sequence[CountedElement]) -> str:
+def aggregate_claim(info: JsonValues, bounds: Sequence[str], elements: Sequence[CountedElement]) -> str:
     """Return an aggregate over what counts in it, such as `10 = #max { 10; 7 }`."""
     members = "; ".join(dict.fromkeys(member_text(one.terms) for one in elements))
     terms = iter(bounds)
@@ -88,7 +86,7 @@ def aggregate_claim(info: Json, bounds: Sequence[str], elements: Sequence[Counte
     return ("not " if info["negated"] else "") + text
 
 
-def aggregate_words(info: Json, bounds: Sequence[str], elements: Sequence[CountedElement]) -> str:
+def aggregate_words(info: JsonValues, bounds: Sequence[str], elements: Sequence[CountedElement]) -> str:
     """Return an aggregate in plain words, such as `the greatest of 10, 7 is 10`."""
     members = list(dict.fromkeys(member_text(one.terms) for one in elements))
     value = aggregate_value(info, elements)

@@ -12,6 +12,7 @@ query_worker  the program that the separate process runs
 interfaces    the predicates that users' rules may use in each encoding
 rulebook      users' rules checked against these predicates
 user_rules    reading, testing and solving with users' rules
+sentences     plain sentences in rule files: why a rule holds, how a predicate reads
 rule_reader   rule files parsed to statements, in the separate process
 rule_solver   encodings solved with users' rules, in the separate process
 

@@ -119,9 +119,8 @@ class QueryEngine:
         """
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check_query(text)
-        world = parse_facts(source_from_bytes("belief", "\n".join(facts).encode("utf-8")))
         request = {
-            "facts": [_request_entry(fact) for fact in world],
+            "facts": request_entries(facts),
             "query": text,
             "rules": [one.written for one in self._rules],
             "max_rows": max_rows,
@@ -134,6 +133,16 @@ class QueryEngine:
         if "error" in found:
             raise _query_error(text, found["error"], found["at"], found["hint"])
         return QueryAnswer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])
+
+
+def request_entries(facts: Sequence[str]) -> list[list[int | str]]:
+    """Return the facts of a world model as the worker takes them; BadInputError when a text is no fact.
+
+    facts : one fact a text, with or without full stops.
+    """
+    text = "\n".join(fact if fact.rstrip().endswith(".") else f"{fact}." for fact in facts)
+    world = parse_facts(source_from_bytes("belief", text.encode("utf-8")))
+    return [_request_entry(fact) for fact in world]
 
 
 def _request_entry(fact: Fact) -> list[int | str]:

@@ -24,6 +24,7 @@ from kb.three_valued.evaluation import find_bindings
 from kb.three_valued.join_order import unsafe_variable_error
 from kb.three_valued.known_words import check_body, names_in_facts
 from kb.three_valued.open_world import Beliefs, FactRow
+from kb.three_valued.provenance import certain_instances
 from kb.three_valued.term_values import Bindings
 from kb.three_valued.uncertain_values import Value
 from kb.tracing.requests import respond
@@ -113,6 +114,19 @@ def answer_query(
         )
     possible = any(True for clause in clauses for _ in find_bindings(clause.body, {}, beliefs, True))
     return found | {"answer": "don't know" if possible else "no"}
+
+
+def justify_rules(facts: Iterable[Sequence[int | str]], rules: Sequence[str]) -> Response:
+    """Return the instances of users' rules that certainly hold over facts, as of kb.three_valued.provenance.
+
+    facts, rules : as of `answer_query`. Raises RuleError when a rule cannot be evaluated.
+    """
+    beliefs, defining = Beliefs(_facts(facts)), _clauses_of_rules(rules)
+    try:
+        derive(defining, beliefs)
+        return certain_instances(defining, beliefs)
+    except ClauseError as error:
+        raise RuleError(error) from None
 
 
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
@@ -205,15 +219,18 @@ _messages: list[QueryError] = []
 def _respond(line: bytes) -> Response:
     """Return the response to one request, a line of JSON: JSON values by key, never an exception.
 
-    A request with "read" has the response of `read_rule_text`, one with "trace" that of kb.tracing.requests, one with
-    "program" that of `solve_with_rules`, any other that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
-    0) in the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
+    A request with "read" has the response of `read_rule_text`, one with "justify" that of `justify_rules`, one
+    with "trace" that of kb.tracing.requests, one with "program" that of `solve_with_rules`, any other that of
+    `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from 0) in
+    the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
     """
     _messages.clear()
     try:
         request = json.loads(line)
         if "read" in request:
             return read_rule_text(request["read"])
+        if "justify" in request:
+            return justify_rules(request["facts"], request["rules"])
         if "trace" in request:
             return respond(request["trace"])
         if "program" in request:

@@ -28,7 +28,7 @@ Place = tuple[int, int]  # line and column, from 1
 
 
 class PredicateWords(NamedTuple):
-    """How a predicate reads.
+    """The words of a predicate.
 
     Attributes
     ----------

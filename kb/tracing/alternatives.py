@@ -1,16 +1,14 @@
-"""What another choice would have cost, or which constraints forbid it."""
+"""The costs of other choices, or the constraints that forbid them."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import clingo
 
 from kb.tracing.answers import Assumptions, GroundedProgram, PricedAnswer
+from kb.tracing.syntax import JsonValues
 
-Json = dict[str, Any]
 
-
-def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str], with_none: bool) -> Json:
+def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str], with_none: bool) -> JsonValues:
     """Return the costs of an answer, and those of the best answers with another one of the atoms of a choice.
 
     Parameters
@@ -23,10 +21,11 @@ def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str]
     Returns
     -------
     JSON values: "chosen", the answer itself, and "others", one for each atom of `heads` that the answer does not hold,
-    and the last one for none of them, where an answer allows that. Each is a dictionary: "atom" (its text; '' for none of them), "costs" (level and
-    cost of each level of priority that has a price, the highest level first), "prices" (unit, values of its variables,
-    weight and level of each weak constraint that counts), "proved" (whether nothing better was left out), and for an
-    alternative that no answer holds "broken" in their place: unit and values of the constraints that forbid it.
+    and the last one for none of them, where an answer allows that. Each is a dictionary: "atom" (its text; '' for none
+    of them), "costs" (level and cost of each level of priority that has a price, the highest level first), "prices"
+    (unit, values of its variables, weight and level of each weak constraint that counts), "proved" (whether nothing
+    better was left out), and for an alternative that no answer holds "broken" in their place: unit and values of the
+    constraints that forbid it.
     """
     given = [clingo.parse_term(atom) for atom in answer]
     whole = grounded.priced_answer(given)
@@ -39,7 +38,7 @@ def weigh(grounded: GroundedProgram, answer: Sequence[str], heads: Sequence[str]
     return {"chosen": _entry("", whole), "others": others}
 
 
-def _alternative(grounded: GroundedProgram, atom: str, assumptions: Assumptions) -> Json:
+def _alternative(grounded: GroundedProgram, atom: str, assumptions: Assumptions) -> JsonValues:
     """Return the entry of the best answer under assumptions, or of what forbids them."""
     found = grounded.best_answer(assumptions)
     if found is not None:
@@ -48,7 +47,7 @@ def _alternative(grounded: GroundedProgram, atom: str, assumptions: Assumptions)
     return {"atom": atom, "broken": [[unit, list(values)] for unit, values in broken or ()], "proved": True}
 
 
-def _entry(atom: str, found: PricedAnswer) -> Json:
+def _entry(atom: str, found: PricedAnswer) -> JsonValues:
     """Return an answer with its costs as JSON values."""
     return {
         "atom": atom,

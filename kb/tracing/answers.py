@@ -1,6 +1,7 @@
 """Programs grounded once to be asked often: their whole answer sets, the instances of their rules, and their costs."""
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import clingo
@@ -10,7 +11,6 @@ from kb.tracing.syntax import ParsedProgram, ProgramPart, parsed
 
 MAX_TRACE_CONFLICTS = 100_000  # conflicts of clingo's search for one answer; a convention
 Assumptions = Sequence[tuple[clingo.Symbol, bool]]
-Signature = tuple[str, int]
 
 
 class TraceError(Exception):
@@ -54,10 +54,7 @@ class GroundedProgram:
             self.program: ParsedProgram = parsed(self.parts)
         except RuntimeError as error:
             raise TraceError(f"the program cannot be read: {error}") from None
-        weights = [*weight_rules(self.program)]
-        if weights and self.program.shown:
-            weights.append("#show trace__weight/5.")
-        self._control = _grounded([*(part.text for part in self.parts), *weights], self.facts)
+        self._control = _grounded([*(part.text for part in self.parts), _weight_text(self.parts)], self.facts)
         self._relaxed: clingo.Control | None = None
 
     def whole_answer(self, answer: Iterable[str]) -> list[clingo.Symbol]:
@@ -146,13 +143,29 @@ class GroundedProgram:
         return bool(self._control.solve(assumptions=list(assumptions)).satisfiable)
 
 
-def instances(program: ParsedProgram, atoms: Iterable[clingo.Symbol]) -> list[clingo.Symbol]:
+@lru_cache(maxsize=64)
+def _weight_text(parts: tuple[ProgramPart, ...]) -> str:
+    """Return the helping rules for the costs of a program; the last ones are kept."""
+    program = parsed(parts)
+    weights = [*weight_rules(program)]
+    if weights and program.shown:
+        weights.append("#show trace__weight/5.")
+    return "\n".join(weights)
+
+
+@lru_cache(maxsize=64)
+def _instance_text(parts: tuple[ProgramPart, ...]) -> str:
+    """Return the helping rules for the instances of a program; the last ones are kept."""
+    program = parsed(parts)
+    return "\n".join([*instance_rules(program), *program.constants])
+
+
+def instances(parts: tuple[ProgramPart, ...], atoms: Iterable[clingo.Symbol]) -> list[clingo.Symbol]:
     """Return the helping atoms (kb.tracing.instrument) of all instances of a program that hold in an answer set.
 
-    program : the program. atoms : all atoms of the answer set.
+    parts : the pieces of the program. atoms : all atoms of the answer set.
     """
-    rules = [*instance_rules(program), *program.constants]
-    control = _grounded(rules, [str(atom) for atom in atoms], messages_count=False)
+    control = _grounded([_instance_text(parts)], [str(atom) for atom in atoms], messages_count=False)
     found = [atom for atom in control.symbolic_atoms if atom.symbol.name.startswith("trace__")]
     if all(atom.is_fact for atom in found):
         return [atom.symbol for atom in found]
@@ -195,7 +208,9 @@ def _solve(control: clingo.Control, assumptions: Assumptions, keep: Any) -> bool
 
 def _priced(shown: Iterable[clingo.Symbol], proved: bool) -> PricedAnswer:
     """Return an answer with its costs, from shown atoms among which those of `trace__weight` are."""
-    atoms, prices, counted = set(), [], {}
+    atoms: set[str] = set()
+    prices: list[tuple[int, tuple[str, ...], int, int]] = []
+    counted: set[tuple[clingo.Symbol, ...]] = set()
     for atom in shown:
         if atom.name != "trace__weight":
             atoms.add(str(atom))
@@ -203,11 +218,11 @@ def _priced(shown: Iterable[clingo.Symbol], proved: bool) -> PricedAnswer:
         unit, names, weight, level, terms = atom.arguments
         key = (weight, level, terms)
         if key not in counted:
-            counted[key] = weight.number
+            counted.add(key)
             prices.append((unit.number, _texts(names), weight.number, level.number))
     costs: dict[int, int] = {}
-    for _, _, weight, level in prices:
-        costs[level] = costs.get(level, 0) + weight
+    for _, _, price, height in prices:
+        costs[height] = costs.get(height, 0) + price
     ordered = tuple(sorted(costs.items(), reverse=True))
     return PricedAnswer(frozenset(atoms), ordered, tuple(sorted(prices, key=lambda one: (-one[3], one))), proved)
 

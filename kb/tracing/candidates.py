@@ -1,8 +1,8 @@
 """Input facts that might be given besides, so that a wanted atom holds: only those on which it may rest.
 
-Rules are followed backwards from the wanted atom. What a rule's head fixes is fixed in the atoms of its body; a variable
-that stands nowhere else in the rule may have any value, so one is enough; all other arguments have the values of
-kb.tracing.domains.
+Rules are followed backwards from the wanted atom. What a rule's head fixes is fixed in the atoms of its body; a
+variable that stands nowhere else in the rule may have any value, so one is enough; all other arguments have the values
+of kb.tracing.domains.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -13,15 +13,18 @@ from typing import NamedTuple
 import clingo
 from clingo.ast import AST, ASTType
 
+from kb.language.vocabulary import Signature
 from kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
 from kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
 
 MAX_FACTS_OF_ATOM = 1_000  # candidates for one atom of a rule; a convention
 MAX_CANDIDATES = 6_000  # candidates in all; a convention
 MAX_COMPARED = 40  # given facts of a predicate with which a candidate is compared; a convention
-FREE, ANY = "free", "any"  # what a pattern says of an argument that is not fixed: it matters, or it does not
-Signature = tuple[str, int]
-PatternPart = clingo.Symbol | str  # a value, FREE or ANY
+FREE_ARGUMENT, ANY_ARGUMENT = (
+    "free",
+    "any",
+)  # what a pattern says of an argument that is not fixed: it matters, or it does not
+PatternPart = clingo.Symbol | str  # a value, FREE_ARGUMENT or ANY_ARGUMENT
 
 
 class AtomPattern(NamedTuple):
@@ -30,7 +33,7 @@ class AtomPattern(NamedTuple):
     Attributes
     ----------
     name : the name of the predicate.
-    parts : of each argument its value, FREE (any value, which matters) or ANY (whatever its value).
+    parts : of each argument its value, FREE_ARGUMENT (any value, which matters) or ANY_ARGUMENT (whatever its value).
     """
 
     name: str
@@ -205,9 +208,15 @@ def _body_patterns(unit: Unit, bound: dict[str, PatternPart], domains: Domains) 
             elif term.ast_type == ASTType.Variable:
                 name = term.name
                 fixed = bound.get(name) if name not in local or name in bound else None
-                parts.append(fixed if fixed is not None else ANY if counts.get(name, 1) < 2 or name == "_" else FREE)
+                parts.append(
+                    fixed
+                    if fixed is not None
+                    else ANY_ARGUMENT
+                    if counts.get(name, 1) < 2 or name == "_"
+                    else FREE_ARGUMENT
+                )
             else:
-                parts.append(FREE)
+                parts.append(FREE_ARGUMENT)
         yield AtomPattern(atom_name(literal), tuple(parts))
 
 
@@ -237,7 +246,7 @@ def _instances(
     options: list[Sequence[clingo.Symbol]] = []
     for index, part in enumerate(pattern.parts):
         known = domains.values((pattern.name, len(pattern.parts), index))
-        options.append([part] if isinstance(part, clingo.Symbol) else known[:1] if part == ANY else known)
+        options.append([part] if isinstance(part, clingo.Symbol) else known[:1] if part == ANY_ARGUMENT else known)
     if prod(map(len, options)) <= MAX_FACTS_OF_ATOM:
         return (clingo.Function(pattern.name, list(values)) for values in product(*options)), False
     similar = [fact for fact in facts if fact.name == pattern.name and len(fact.arguments) == len(options)]
@@ -248,7 +257,7 @@ def _variations(
     facts: Sequence[clingo.Symbol], pattern: AtomPattern, options: Sequence[Sequence[clingo.Symbol]]
 ) -> Iterator[clingo.Symbol]:
     """Yield facts of a pattern that differ from a given fact in one of the arguments that matter, then those in two."""
-    matter = [index for index, part in enumerate(pattern.parts) if part == FREE]
+    matter = [index for index, part in enumerate(pattern.parts) if part == FREE_ARGUMENT]
     fixed = {index: part for index, part in enumerate(pattern.parts) if isinstance(part, clingo.Symbol)}
     for count in (1, 2):
         for fact in facts:

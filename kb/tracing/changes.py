@@ -88,7 +88,7 @@ class ChangeSearch:
         return found
 
     def _possible_change(self) -> Change | None:
-        """Return a change of least size after which some answer holds the atom, whatever it costs; None when none does."""
+        """Return a change of least size after which some answer holds the atom, at whatever cost; None without one."""
         wanted = self._control.symbolic_atoms[self._wanted]
         if wanted is None:
             return None
@@ -103,7 +103,7 @@ class ChangeSearch:
         return None
 
     def _solved(self, assumptions: Sequence[int], mode: str) -> Change | None:
-        """Return the switches that are on in the best answer, or with the mode `ignore` in any one; None without one."""
+        """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
         best: list[Change] = []
 
         def keep(model: clingo.Model) -> None:

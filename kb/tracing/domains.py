@@ -25,10 +25,10 @@ from kb.tracing.syntax import HIDDEN_PREFIX, ParsedProgram, Unit, head_elements
 
 MAX_NUMBERS = 40  # numbers of one class; a convention
 MAX_COMBINATIONS = 100  # values of the other variables of a comparison that are tried; a convention
-MAX_ROUNDS = 3  # rounds in which needed numbers lead to other needed numbers; a convention
+MAX_NUMBER_ROUNDS = 3  # rounds in which needed numbers lead to other needed numbers; a convention
 GREATEST_NUMBER = 1_000_000  # the greatest number that is looked for, as in kb.reasoning.interfaces
-Position = tuple[str, int, int]  # the name of a predicate, its number of arguments, the index of the argument
-Slot = Position | tuple[int, str]  # a position, or the number of a unit and a variable that stands in no atom
+ArgumentPosition = tuple[str, int, int]  # the name of a predicate, its number of arguments, the index of the argument
+Slot = ArgumentPosition | tuple[int, str]  # a position, or the number of a unit and a variable that stands in no atom
 
 
 class Relation(NamedTuple):
@@ -74,7 +74,7 @@ class Domains:
                 self._add((atom.name, len(atom.arguments), index), value)
         for _, unit in counted:
             self._add_constants(unit)
-        for _ in range(MAX_ROUNDS):
+        for _ in range(MAX_NUMBER_ROUNDS):
             found = [
                 pair
                 for number, part in relations
@@ -84,14 +84,15 @@ class Domains:
             if not sum(self._add(slot, clingo.Number(value)) for slot, value in found):
                 break
 
-    def values(self, position: Position) -> list[clingo.Symbol]:
+    def values(self, position: ArgumentPosition) -> list[clingo.Symbol]:
         """Return the values of an argument, known ones before needed ones; [] when none is known."""
         return list(self._values.get(self._find(position), ()))
 
     def constant(self, term: AST) -> clingo.Symbol | None:
         """Return the value of a term without variables; None for a term with variables or without a value."""
         if term.ast_type == ASTType.SymbolicTerm:
-            return self._constants.get(str(term.symbol), term.symbol)
+            symbol: clingo.Symbol = term.symbol
+            return self._constants.get(str(symbol), symbol)
         number = self._evaluate(term, {})
         if number is not None:
             return clingo.Number(number)

@@ -11,18 +11,16 @@ from kb.tracing.answers import GroundedProgram, TraceError, instances
 from kb.tracing.candidates import CandidateFacts, candidate_facts
 from kb.tracing.changes import ChangeSearch
 from kb.tracing.instrument import condition_infos, is_choice, literal_info
-from kb.tracing.syntax import ProgramPart, parsed
-
-Json = dict[str, Any]
+from kb.tracing.syntax import JsonValues, ProgramPart, parsed
 
 
-def respond(request: Json) -> Json:
+def respond(request: JsonValues) -> JsonValues:
     """Return the response to a request.
 
     Parameters
     ----------
-    request : "task" and what it needs. "parts" are the pieces of the program, each [file, line, text]; "facts" its input
-        facts, atoms as text; "answer" the shown atoms of its answer. The tasks:
+    request : "task" and what it needs. "parts" are the pieces of the program, each [file, line, text]; "facts" its
+        input facts, atoms as text; "answer" the shown atoms of its answer. The tasks:
 
         - "statements": only the parts; what the program consists of, see `_statements`
         - "trace": all instances of its rules that hold in the answer, see `_trace`
@@ -56,14 +54,14 @@ def respond(request: Json) -> Json:
         return {"failed": str(error)}
 
 
-def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> Json:
+def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> JsonValues:
     """Return the facts that might be given besides for an atom to hold, as JSON values."""
     facts, atoms = ([clingo.parse_term(text) for text in texts] for texts in (grounded.facts, known))
     found = candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))
     return {**found._asdict(), "facts": list(found.facts), "relevant": sorted(map(list, found.relevant))}
 
 
-def _change(grounded: GroundedProgram, atom: str, candidates: Json) -> Json:
+def _change(grounded: GroundedProgram, atom: str, candidates: JsonValues) -> JsonValues:
     """Return the least change with which an atom holds, as JSON values."""
     relevant = frozenset((name, arity) for name, arity in candidates["relevant"])
     given = CandidateFacts(tuple(candidates["facts"]), relevant, candidates["by_choice"], candidates["cut"])
@@ -77,13 +75,14 @@ def _grounded(parts: tuple[ProgramPart, ...], facts: tuple[str, ...]) -> Grounde
     return GroundedProgram(parts, facts)
 
 
-def _statements(parts: tuple[ProgramPart, ...]) -> Json:
+def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
     """Return what a program consists of.
 
     "statements": file, line, column, text, kind and variables of each rule, constraint and weak constraint. "units": of
     each statement with one alternative of its pools the index of the statement, the names of its variables, what is
     known of the literals of its body and of the conditions of its head (kb.tracing.instrument.literal_info), and
-    whether it is a choice. "shown", "declared": the predicates of answers, and those that `#defined` names, as [name, number of arguments].
+    whether it is a choice. "shown", "declared": the predicates of answers, and those that `#defined` names, as [name,
+    number of arguments].
     """
     try:
         program = parsed(parts)
@@ -116,7 +115,7 @@ def _statements(parts: tuple[ProgramPart, ...]) -> Json:
     }
 
 
-def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> Json:
+def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> JsonValues:
     """Return the atoms of an answer set and all instances of rules that hold in it.
 
     "atoms": all atoms. "on": [unit, values, literals] of each instance; "heads": [unit, element, values, head,
@@ -126,8 +125,9 @@ def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> Json:
     """
     atoms = grounded.whole_answer(answer)
     found: dict[str, list[Any]] = {"trace__on": [], "trace__head": [], "trace__element": []}
-    for symbol in sorted(instances(grounded.program, atoms)):
+    for symbol in sorted(instances(grounded.parts, atoms)):
         unit, *rest = symbol.arguments
+        entry: list[Any]
         if symbol.name == "trace__on":
             entry = [_texts(rest[0]), _literals(rest[1])]
         elif symbol.name == "trace__head":
@@ -150,6 +150,5 @@ def _texts(values: clingo.Symbol) -> list[str]:
 
 def _literals(values: clingo.Symbol) -> list[Any]:
     """Return literals as JSON values: an atom as text, the tuple of a comparison or an aggregate as a list of texts."""
-    return [
-        _texts(one) if one.type == clingo.SymbolType.Function and not one.name else str(one) for one in values.arguments
-    ]
+    pairs = ((one, one.type == clingo.SymbolType.Function and not one.name) for one in values.arguments)
+    return [_texts(one) if is_tuple else str(one) for one, is_tuple in pairs]

@@ -5,6 +5,7 @@ stand in literals without negation, have names of their own, so that an instance
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import clingo
@@ -13,7 +14,6 @@ from clingo.ast import (
     ASTType,
     Comparison,
     ComparisonOperator,
-    Function,
     Guard,
     Literal,
     Sign,
@@ -23,6 +23,7 @@ from clingo.ast import (
     parse_string,
 )
 
+JsonValues = dict[str, Any]  # values by key, ready for JSON
 ANY_NAME = "any__"  # stands for an anonymous variable of a negated atom, which may have any value
 HIDDEN_PREFIX = "Some__"  # begins the names that anonymous variables and intervals get
 KEPT_NODES = (ASTType.Rule, ASTType.Minimize)  # the statements that are traced
@@ -107,8 +108,9 @@ class ParsedProgram(NamedTuple):
     shown: frozenset[tuple[str, int]]
 
 
-def parsed(parts: Sequence[ProgramPart]) -> ParsedProgram:
-    """Return a program taken apart; RuntimeError when clingo cannot parse it."""
+@lru_cache(maxsize=64)
+def parsed(parts: tuple[ProgramPart, ...]) -> ParsedProgram:
+    """Return a program taken apart; the last ones are kept. RuntimeError when clingo cannot parse it."""
     statements: list[TracedStatement] = []
     constants: list[str] = []
     defined: set[tuple[str, int]] = set()
@@ -324,8 +326,3 @@ class _HiddenNamer(Transformer):
         """Return a variable with a name that no other variable of the statement has, at the place of a node."""
         self._count += 1
         return Variable(node.location, f"{HIDDEN_PREFIX}{self._count}")
-
-
-def named_function(name: str, arguments: Sequence[AST], node: AST) -> AST:
-    """Return the term `name(arguments)` at the place of a node."""
-    return Function(node.location, name, list(arguments), 0)

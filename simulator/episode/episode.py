@@ -5,7 +5,7 @@ Every line is written and flushed before the next command is given. So a killed 
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -163,14 +163,21 @@ class EpisodeLog:
         out
         again byte for byte; a last line that was cut short is dropped.
     force : overwrite a file that is no episode.
+    listen : called with each line once it is written.
 
     Raises
     ------
     CannotOpenError : there is nothing to resume, or `simulator.episode.output_files` refuses the file.
     """
 
-    def __init__(self, path: Path | str | None, resume: bool = False, force: bool = False) -> None:
-        self._path = path
+    def __init__(
+        self,
+        path: Path | str | None,
+        resume: bool = False,
+        force: bool = False,
+        listen: Callable[[EpisodeLine], None] = lambda line: None,
+    ) -> None:
+        self._path, self._listen = path, listen
         self._number = 0
         self._recorded: Sequence[bytes] = ()
         self._stream: BinaryIO | None = None
@@ -217,3 +224,4 @@ class EpisodeLog:
                 raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
         elif self._path == STANDARD_OUTPUT:
             print(text, end="", flush=True)
+        self._listen(line)

@@ -3,19 +3,23 @@
 import re
 from collections.abc import Sequence
 
+from kb.evidence.absences import AbsenceExplainer
 from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
 from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
 from kb.evidence.proving import EncodingProver
-from kb.evidence.reason import Reason
+from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import MissingRecordError, Record
 from kb.explanation.programs import ExplanationError
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
+from kb.language.vocabulary import BELIEF_PREDICATES
 from simulator.episode.episode import Episode, EpisodeLine
 
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
+
+MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong than right
 
 
 class Questions:
@@ -42,6 +46,7 @@ class Questions:
     ) -> None:
         self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
         self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
+        self._absences = AbsenceExplainer(self.beliefs, rule_files)
 
     @property
     def last_step(self) -> int:
@@ -73,6 +78,42 @@ class Questions:
             return self.beliefs.explain(self._instance(wanted, at), at)
         except (MissingRecordError, ExplanationError) as error:
             raise _problem(fact, str(error)) from None
+
+    def why_not(self, fact: str, step: int | None = None) -> Reason:
+        """Return why a fact is not believed: the smallest set of facts that is missing or in the way.
+
+        Parameters
+        ----------
+        fact : a fact of the world model, or `verdict(done)`. A confidence may be a name with a capital letter: then the
+            question is why the fact is not believed with a confidence of at least MORE_LIKELY percent.
+        step : the number of the step; None for the last one.
+
+        Raises
+        ------
+        BadInputError : the text is no fact, the fact is believed, or there is no such step.
+        """
+        at = self._checked(step)
+        wanted = _one_fact(fact)
+        try:
+            if atom_parts(wanted)[0] == "verdict":
+                return self._why_not_verdict(wanted)
+            believed = self._instance(wanted, at)
+            if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
+                raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
+            return self._absences.explain(wanted, at)
+        except (MissingRecordError, ExplanationError) as error:
+            raise _problem(fact, str(error)) from None
+
+    def _why_not_verdict(self, wanted: str) -> Reason:
+        """Return why the verdict is another one, or why there is none."""
+        found = explain_verdict(self.beliefs, self._task)
+        if found is None:
+            below = tuple(explain_goal(self.beliefs, goal, self.last_step) for goal in self._task.goals)
+            because = "there is no verdict yet: the run goes on"
+            return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
+        if _fits(wanted, found.claim):
+            raise _problem(wanted, f"this is the verdict: {found.claim}; why tells the reason")
+        return Reason(f"not {wanted}", f"the verdict is {found.claim}", ReasonKind.NEGATION, found.source, (found,))
 
     def why_cell(self, cell: int, step: int | None = None) -> Reason:
         """Return what a cell of the impression of a step (None for the last one) is laid to; cells count from 0."""
@@ -127,6 +168,14 @@ def _fits(wanted: str, fact: str) -> bool:
         if argument != "_" and (known.setdefault(argument, value) if is_variable else argument) != value:
             return False
     return True
+
+
+def _is_weak(wanted: str, believed: str) -> bool:
+    """Return whether a question leaves the confidence open, and the fact is believed to be less likely than not."""
+    (name, arguments), (_, values) = atom_parts(wanted), atom_parts(believed)
+    declared = BELIEF_PREDICATES.get((name, len(arguments)))
+    is_open = declared is not None and declared.confident and QUESTION_VARIABLE.fullmatch(arguments[-1]) is not None
+    return is_open and int(values[-1]) < MORE_LIKELY
 
 
 def _one_fact(text: str) -> str:

@@ -147,6 +147,7 @@ def _decoded(source: Source, number: int, line: str) -> list[tuple[tuple[str, So
     open_groups: list[tuple[int, list[tuple[str, SourceSpan]]]] = []  # each: how often, and what came before it
     found: list[tuple[str, SourceSpan]] = []
     digits = ""
+    most = MAX_TABLE_SIDE * (1 + line.count("|"))  # marks of a line; a longer one is refused below
     for at, mark in enumerate(line.rstrip()):
         count = int(digits) if digits else 1
         if mark.isdecimal() and mark.isascii():
@@ -163,13 +164,15 @@ def _decoded(source: Source, number: int, line: str) -> list[tuple[tuple[str, So
             if not open_groups or digits:
                 raise wrong(at, "a bracket that nothing opens" if not digits else "a number before a closing bracket")
             times, before = open_groups.pop()
+            if len(found) * times > most:
+                raise wrong(at, f"a row of more than {MAX_TABLE_SIDE} squares")
             found = before + found * times
         elif mark in SQUARE_MARKS + "|":
             found += [(mark, SourceSpan(number, at + 1, at + 1))] * count
         else:
             raise wrong(at, f"{mark!r} is no square of a level", "# wall, @ robot, $ box, . storage, blank - _ floor")
         digits = ""
-        if len(found) > MAX_TABLE_SIDE * (1 + line.count("|")):
+        if len(found) > most:
             raise wrong(at, f"a row of more than {MAX_TABLE_SIDE} squares")
     if digits or open_groups:
         raise wrong(len(line.rstrip()) - 1, "a number before nothing" if digits else "a bracket that nothing closes")

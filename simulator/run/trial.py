@@ -12,7 +12,7 @@ from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
 from simulator.run.story import facts_of_line
 from simulator.scenario.expectation import expects_verdict
-from simulator.scenario.points import ExpectationOutcome, Score, score
+from simulator.scenario.points import ExpectationOutcome, PointScore, score
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.scenario.settings import Settings, kb_files_named
 from simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
@@ -46,7 +46,7 @@ class ScenarioTrial(NamedTuple):
     last_steps: tuple[EpisodeLine, ...]
 
     @property
-    def score(self) -> Score:
+    def score(self) -> PointScore:
         """The points earned, and those that could be."""
         return score(self.outcomes)
 

@@ -305,7 +305,9 @@ def _pose(fact: Fact, track: Sequence[Snapshot]) -> str:
 def _within(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when no more commands were given than allowed, else how many were."""
     steps = track[-1].step
-    return f"{steps} commands were given" if steps > _number(fact) else ""
+    if steps <= _number(fact):
+        return ""
+    return "1 command was given" if steps == 1 else f"{steps} commands were given"
 
 
 _CHECKS = {

@@ -1,4 +1,4 @@
-"""What a test expects, expectation by expectation: met or not, what came instead, and the points."""
+"""The outcome of each expectation of a test: met or not, what came instead, and the points."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -32,7 +32,7 @@ class ExpectationOutcome(NamedTuple):
         return {"expected": self.expected, "met": self.met, "came": self.came, "points": self.points}
 
 
-class Score(NamedTuple):
+class PointScore(NamedTuple):
     """Points: those earned and those that could be.
 
     Attributes
@@ -76,6 +76,6 @@ def judge_expectations(
     )
 
 
-def score(outcomes: Sequence[ExpectationOutcome]) -> Score:
+def score(outcomes: Sequence[ExpectationOutcome]) -> PointScore:
     """Return the points of some outcomes."""
-    return Score(sum(one.points for one in outcomes if one.met), sum(one.points for one in outcomes))
+    return PointScore(sum(one.points for one in outcomes if one.met), sum(one.points for one in outcomes))

@@ -33,7 +33,7 @@ ANSWER_HINT = f"one of {', '.join(PLAIN_ANSWERS)}, rows(N) or row(VALUE, ...)"
 
 
 class TrialPlan(NamedTuple):
-    """What trial.lp says.
+    """The plan of a trial, as trial.lp states it.
 
     Attributes
     ----------
@@ -75,7 +75,9 @@ def _check_file_name(term: Term) -> Complaint | None:
 
 
 # The questions of a trial.
-QUESTIONS: Vocabulary = {"asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))}
+TRIAL_QUESTIONS: Vocabulary = {
+    "asks": (ArgumentType("a query", _check_query), ArgumentType("an answer", _check_answer))
+}
 # The predicates of trial.lp.
 TRIAL_VOCABULARY: Vocabulary = {
     "seed": (integer_argument("a seed", 0, 2**31 - 1),),
@@ -84,8 +86,8 @@ TRIAL_VOCABULARY: Vocabulary = {
     "max_steps": (integer_argument("a number of steps", 0, MAX_TRIAL_STEPS),),
     "no_pull": (),
     "rules": (ArgumentType("a file of rules", _check_file_name),),
-    **QUESTIONS,
-    "weight": (fact_argument("what is weighed", QUESTIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
+    **TRIAL_QUESTIONS,
+    "weight": (fact_argument("what is weighed", TRIAL_QUESTIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
 }
 OPTION_PREDICATES = ("seed", "noise", "paths", "max_steps", "no_pull")  # each may be stated once
 
@@ -177,7 +179,7 @@ def answers_as_wanted(asked: Fact, kind: str, rows: Sequence[Sequence[int | str]
 def _rows_in_words(rows: Sequence[Sequence[int | str]], more: bool) -> str:
     """Return the number of rows of an answer, and the first of them, in words."""
     shown = "; ".join(", ".join(map(str, row)) for row in rows[:5])
-    return f"{len(rows)}{' or more' * more} row{'s' * (len(rows) != 1)}: {shown}{' ...' * (len(rows) > 5)}"
+    return f"{len(rows)} row{'s' * (len(rows) != 1)}{' or more' * more}: {shown}{' ...' * (len(rows) > 5)}"
 
 
 def _text(fact: Fact) -> str:

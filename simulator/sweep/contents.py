@@ -57,7 +57,7 @@ def names_of(folders: Sequence[Path]) -> list[str]:
         length = 1
         while length < len(own) and sum(other[-length:] == own[-length:] for other in parts) > 1:
             length += 1
-        names.append("/".join(own[-length:]))
+        names.append(Path(*own[-length:]).as_posix())
     return names
 
 

@@ -81,7 +81,9 @@ def try_all(wishes: Sequence[Wish], jobs: int = 1) -> Iterator[TrialRecord]:
         with taking:
             handle = free.popleft()  # there are as many handles as threads
         try:
-            return handle.ask(wish._asdict())
+            record = handle.ask(wish._asdict())
+            del record["report"]
+            return record
         except WorkerEndedError as ended:
             return without_run(wish, exits.OUR_BUG, f"utak: this is a bug of ours: {ended}")
         finally:

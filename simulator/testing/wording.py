@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from simulator.scenario.points import Score
+from simulator.scenario.points import PointScore
 from simulator.terminal import exits
 from simulator.terminal.streams import escape_controls
 from simulator.testing.record import OUTCOME_NAMES, TrialRecord
@@ -27,9 +27,9 @@ def outcome_line(record: TrialRecord) -> str:
     return f"{word} {record['scenario']}: {points}{escape_controls(_message(record), lines=False)}"
 
 
-def _points(record: TrialRecord) -> Score:
+def _points(record: TrialRecord) -> PointScore:
     """Return the points of a record that has some."""
-    return Score(**record["points"])
+    return PointScore(**record["points"])
 
 
 def _message(record: TrialRecord) -> str:
@@ -50,10 +50,10 @@ def summary_line(records: Sequence[TrialRecord]) -> str:
     return f"{counts[exits.SUCCESS]} of {counts.total()} passed{others}{points}"
 
 
-def total_score(records: Sequence[TrialRecord]) -> Score:
+def total_score(records: Sequence[TrialRecord]) -> PointScore:
     """Return the points of all scenarios together. One that could not be run has none that are known."""
     scores = [_points(record) for record in records if record["points"] is not None]
-    return Score(sum(one.earned for one in scores), sum(one.possible for one in scores))
+    return PointScore(sum(one.earned for one in scores), sum(one.possible for one in scores))
 
 
 def as_object(records: Sequence[TrialRecord]) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, TextIO
 from simulator.scenario.settings import PATH_CHOICES
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
-from simulator.terminal.action_in_words import describe
 from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
 from simulator.terminal.streams import escape_controls
@@ -15,10 +14,14 @@ from simulator.terminal.streams import escape_controls
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from simulator.episode.episode import Episode, EpisodeLine
     from simulator.run.session import Result, Session
     from simulator.scenario.scenario import Scenario
     from simulator.scenario.settings import Settings
 
+    LineListener = Callable[[EpisodeLine], None]
+
+DUMP_HELP = "write program and facts of every decision into this folder, as plain clingo reads them"
 SETTINGS_OPTIONS = ("seed", "noise", "paths", "max_steps", "pull")  # the fields of Settings that options state
 
 
@@ -30,6 +33,7 @@ def add(parts: Any) -> None:
     part.add_argument(
         "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
     )
+    part.add_argument("--html", metavar="FILE", help="write the whole run as a page that plays it in any browser")
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
     part.add_argument(
         "--from",
@@ -41,12 +45,17 @@ def add(parts: Any) -> None:
     part.add_argument(
         "--from-kb", action="append", metavar="FILE", default=[], help="a file of rules of the repeated run; repeatable"
     )
-    part.add_argument("--force", action="store_true", help="let --log overwrite a file that is no episode")
+    part.add_argument("--dump-asp", metavar="DIR", help=DUMP_HELP)
+    part.add_argument(
+        "--force",
+        action="store_true",
+        help="let --log and --html overwrite files of other kinds, and --dump-asp fill a folder",
+    )
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
     part.add_argument(
         "--watch",
         action="store_true",
-        help="draw the true table, which the robot does not see, on stderr after every step",
+        help="draw the true table, which the robot does not see, on stderr after every step; on a terminal in place",
     )
     part.set_defaults(execute=execute)
 
@@ -80,9 +89,17 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
-    watch = _progress_printer(options.watch)
+    if options.html is not None:
+        from simulator.replay.output import check_page_path
+
+        check_page_path(options.html, options.force)
+    lines: list[EpisodeLine] = []
     run = _run if options.origin is None else _run_fork
-    result = run(options, scenario, watch)
+    result = run(options, scenario, _progress_printer(options.watch), _listener(options, lines))
+    if options.html is not None:
+        from simulator.replay.output import write_page
+
+        write_page(options.html, _recorded(lines), options.force)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 
@@ -112,7 +129,9 @@ def _is_same_file(one: str, other: str | None) -> bool:
         return False
 
 
-def _run(options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]") -> "Result":
+def _run(
+    options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
+) -> "Result":
     """Run from the start, or go on from the episode that --log names; return the result."""
     from simulator.episode.episode import EpisodeLog
     from simulator.run.forking import repeat_stages, stages_until
@@ -122,13 +141,15 @@ def _run(options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Se
     head = _recorded_header(options) or {}
     settings = settings_of(options, head.get("options"))
     before = stages_until(options.log, head, None, scenario, [*options.kb, *options.from_kb]) if head else []
-    with EpisodeLog(options.log, options.resume, options.force) as log:
+    with EpisodeLog(options.log, options.resume, options.force, listen) as log:
         if not before:
             return Session(scenario, settings, make_robot, log).run(watch)
         return repeat_stages(before, scenario, settings, make_robot, redirect_robot, log).go_on(watch)
 
 
-def _run_fork(options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]") -> "Result":
+def _run_fork(
+    options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
+) -> "Result":
     """Repeat the episode of --from up to --at, go on with the options given now, and return the result."""
     from simulator.episode.episode import EpisodeLog, read_episode
     from simulator.run.forking import options_at, repeat_until
@@ -136,11 +157,32 @@ def _run_fork(options: argparse.Namespace, scenario: "Scenario", watch: "Callabl
 
     episode = read_episode(options.origin)
     settings = settings_of(options, options_at(episode.header, options.at))
-    with EpisodeLog(options.log, force=options.force) as log:
+    with EpisodeLog(options.log, force=options.force, listen=listen) as log:
         session = repeat_until(
             options.origin, episode, options.at, scenario, settings, make_robot, redirect_robot, log, options.from_kb
         )
         return session.go_on(watch)
+
+
+def _listener(options: argparse.Namespace, lines: "list[EpisodeLine]") -> "LineListener":
+    """Return the function that takes each line of the episode, for --dump-asp and --html.
+
+    lines : grows by each line when --html is given.
+    """
+    listeners: list[LineListener] = []
+    if options.dump_asp is not None:
+        from simulator.episode.program_dump import ProgramDump
+
+        listeners.append(ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add)
+    if options.html is not None:
+        listeners.append(lines.append)
+
+    def listen(line: "EpisodeLine") -> None:
+        """Pass a line on."""
+        for take in listeners:
+            take(line)
+
+    return listen
 
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
@@ -189,22 +231,25 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
         print(f"not met: {expected}: {came}", file=sys.stderr)
 
 
-def _progress_printer(watch: bool) -> Any:
-    """Return the function that prints after each step: nothing, one line on a terminal, or the table as a picture."""
-    if not watch and not sys.stderr.isatty():
+def _progress_printer(watch: bool) -> "Callable[[Session], None]":
+    """Return what prints after each step: nothing, one line on a terminal, or the table as a picture."""
+    from simulator.replay.watching import TableWatch, step_in_words
+
+    if watch:
+        return TableWatch().tell
+    if not sys.stderr.isatty():
         return lambda session: None
+    return lambda session: print(step_in_words(session.line), file=sys.stderr)
 
-    def tell(session: "Session") -> None:
-        from simulator.scenario.picture import draw
 
-        line, table = session.line, session.table
-        if watch:
-            print("the true table, which the robot may believe to be otherwise:", file=sys.stderr)
-            print(draw(table.world, table.polygons, table.utak), file=sys.stderr, end="")
-        why = escape_controls(line["why"], lines=False)
-        print(f"step {line['step']}: {describe(line['action'])}: {why}", file=sys.stderr)
+def _recorded(lines: "list[EpisodeLine]") -> "Episode":
+    """Return a run as the episode that `--log` would have, from all of its lines."""
+    import json
 
-    return tell
+    from simulator.episode.episode import Episode, encode
+
+    first, *steps, last = (json.loads(encode(line)) for line in lines)
+    return Episode(first, tuple(steps), last["result"])
 
 
 def _seed(text: str) -> int:

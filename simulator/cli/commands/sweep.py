@@ -62,9 +62,10 @@ def execute(options: argparse.Namespace) -> int:
 
     if options.json and options.output == STDOUT_NAME:
         return _usage("--json and -o - both want the standard output")
-    plan = _plan(options)
+    plan, carrying = _plan(options)
     if plan.size > MAX_RUNS:
         return _usage(f"{plan.size} runs are more than {MAX_RUNS}")
+    _check_picture(options)
     with _Times(options.times, options.force) as times:
         results = open_results(options.output, form_of(plan), options.force)
         code = exits.SUCCESS
@@ -72,7 +73,7 @@ def execute(options: argparse.Namespace) -> int:
             left = [run for run in plan.runs if run not in results.known]
             watch = _Watch(left, len(results.known), times)
             if left:
-                carry_out_sweep(plan, results, _executor(options, plan), watch.note)
+                carry_out_sweep(plan, results, _executor(options, plan.settings.paths, carrying), watch.note)
         except KeyboardInterrupt:
             code = exits.INTERRUPTED
         finally:
@@ -85,44 +86,42 @@ def execute(options: argparse.Namespace) -> int:
     return _exit_code(list(results.known.values()))
 
 
-def _plan(options: argparse.Namespace) -> "SweepPlan":
-    """Return the plan of the command line; read and check all its files."""
+def _plan(options: argparse.Namespace) -> "tuple[SweepPlan, bool]":
+    """Return the plan of the command line, and whether a task moves objects; read and check all files."""
     from kb.language.source_text import read_source
+    from planner.stages import stages
     from simulator.run.trial import scenarios_in
     from simulator.scenario.scenario import read_scenario
     from simulator.scenario.settings import Settings, kb_files_named
     from simulator.sweep.contents import names_of, read_contents
     from simulator.sweep.plan import SweepPlan
 
-    folders = {}
+    folders, carrying = {}, False
     for named in options.scenarios:
         for folder in scenarios_in(named):
             refuse_links(options, folder, named)
-            read_scenario(folder)  # reports errors before anything is run
+            scenario = read_scenario(folder)  # reports errors before anything is run
+            carrying |= any(stage.carried for stage in stages(scenario.task))
             folders[folder.resolve()] = folder
     contents = [read_contents(*found) for found in zip(folders.values(), names_of(list(folders)), strict=True)]
     given = {name: getattr(options, name) for name in ("paths", "max_steps", "pull")}
     settings = Settings(**{name: value for name, value in given.items() if value is not None})
     rules = [(Path(path).name, read_source(path).text) for path in kb_files_named(options.kb)]
-    return SweepPlan(tuple(contents), options.seeds, options.noise, settings, tuple(rules), options.seconds)
+    plan = SweepPlan(tuple(contents), options.seeds, options.noise, settings, tuple(rules), options.seconds)
+    return plan, carrying
 
 
-def _executor(options: argparse.Namespace, plan: "SweepPlan") -> "Executor":
-    """Return what carries out the runs. Kernels are compiled here first, where worker processes run here."""
+def _executor(options: argparse.Namespace, paths: str, carrying: bool) -> "Executor":
+    """Return what carries out the runs. Kernels are compiled here first, where worker processes run here.
+
+    paths : the path-finder. carrying : whether a task moves objects.
+    """
     from functools import partial
 
-    from planner.stages import stages
     from simulator.run.warming import warm
-    from simulator.scenario.scenario import read_scenario
-    from simulator.sweep.contents import written
     from simulator.sweep.executors.tasks import WorkerTask
     from simulator.sweep.plan import PREPARATION_FUNCTION
 
-    carrying = False
-    for contents in plan.scenarios:
-        with written(contents.files) as folder:
-            carrying |= any(stage.carried for stage in stages(read_scenario(folder).task))
-    paths = plan.settings.paths
     preparation = WorkerTask(PREPARATION_FUNCTION, {"carrying": carrying, "paths": paths})
     if options.dask is not None:
         from simulator.sweep.executors.cluster import run_on_dask
@@ -132,6 +131,14 @@ def _executor(options: argparse.Namespace, plan: "SweepPlan") -> "Executor":
 
     warm(carrying, paths)
     return partial(run_in_processes, jobs=options.jobs or usable_processors(), preparation=preparation)
+
+
+def _check_picture(options: argparse.Namespace) -> None:
+    """Raise CannotOpenError when the picture could not be written at the end."""
+    from simulator.episode.output_files import is_svg, open_for_writing
+
+    if options.svg:
+        open_for_writing(options.svg, is_svg, "SVG picture", options.force).close()
 
 
 def usable_processors() -> int:
@@ -216,14 +223,22 @@ def _report(options: argparse.Namespace, plan: "SweepPlan", rows: "list[ResultRo
 
         write_whole(options.svg, sweep_picture(counts), is_svg, "SVG picture", options.force)
     if options.json:
+        every = total_of(counts)
         values = {
             "planned": plan.size,
             "groups": [count.as_values for count in counts],
-            "all": total_of(counts).as_values,
+            "all": every.as_values,
+            "false_claims": [_named_run(row) for row in every.false_claims],
+            "failed": [{**_named_run(row), **row["failed"]} for row in every.failed],
         }
         print(as_json(values))
     elif counts:
         print(table_of(counts), end="", file=sys.stderr if options.output == STDOUT_NAME else sys.stdout)
+
+
+def _named_run(row: "ResultRow") -> "ResultRow":
+    """Return scenario, noise and seed of a row."""
+    return {name: row[name] for name in ("scenario", "noise", "seed")}
 
 
 def _exit_code(rows: "list[ResultRow]") -> int:

@@ -31,6 +31,7 @@ def run_on_dask(
     tasks: Sequence[WorkerTask],
     address: str,
     preparation: WorkerTask | None = None,
+    max_connecting_seconds: float = MAX_CONNECTING_SECONDS,
     max_workerless_seconds: float = MAX_WORKERLESS_SECONDS,
 ) -> Generator[tuple[int, TaskOutcome], None, None]:
     """Carry tasks out on the workers of a Dask scheduler and yield (index, outcome) as they end.
@@ -42,6 +43,7 @@ def run_on_dask(
     tasks : the tasks; they begin about in this order.
     address : of the scheduler, such as tcp://127.0.0.1:8786.
     preparation : carried out first in each process on the workers.
+    max_connecting_seconds : seconds until the scheduler must answer.
     max_workerless_seconds : seconds without any worker after which CannotOpenError is raised.
 
     Raises
@@ -49,7 +51,7 @@ def run_on_dask(
     CannotOpenError : `distributed` is not installed; the scheduler does not answer, or is lost; there are no workers;
         a worker has another state of Utak's code, or cannot run Utak.
     """
-    client = _connect(address)
+    client = _connect(address, max_connecting_seconds)
     sweep = uuid4().hex
     sent = _Sent(client, address, sweep, tasks, preparation)
     try:
@@ -161,7 +163,7 @@ class _WorkerWatch:
             raise CannotOpenError(self._address, f"the scheduler was lost: {type(error).__name__}") from None
 
 
-def _connect(address: str) -> Any:
+def _connect(address: str, seconds: float) -> Any:
     """Return a client of the scheduler. Raises CannotOpenError when there is none within some seconds."""
     try:
         import distributed
@@ -172,9 +174,9 @@ def _connect(address: str) -> Any:
     try:
         comm: Any = distributed.comm
         comm.get_address_host_port(address)
-        return make_client(address, timeout=MAX_CONNECTING_SECONDS, set_as_default=False)
+        return make_client(address, timeout=seconds, set_as_default=False)
     except (OSError, TimeoutError):
-        why = f"no Dask scheduler answers within {MAX_CONNECTING_SECONDS:g} s"
+        why = f"no Dask scheduler answers within {seconds:g} s"
         raise CannotOpenError(address, why) from None
     except (ValueError, TypeError, RuntimeError, ImportError) as error:
         raise CannotOpenError(address, f"this is no address of a Dask scheduler: {error}") from None

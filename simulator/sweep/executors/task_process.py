@@ -47,10 +47,17 @@ class TaskProcess:
                 break
         return outcome
 
-    def prepare(self) -> None:
-        """Start the process and prepare it, if it does not run. Raises RuntimeError when it cannot be started."""
-        if self._process is None or self._process.poll() is not None:
-            self._start()
+    def prepare(self) -> "subprocess.Popen[bytes] | None":
+        """Return the process; start and prepare it, if it does not run. None when this handle was closed.
+
+        Raises RuntimeError when it cannot be started.
+        """
+        with self._lock:
+            process = self._process
+            if process is not None and process.poll() is not None:
+                _end(process)
+                self._process = process = None
+        return process or self._start()
 
     def close(self) -> None:
         """End the process and whatever it does; later tasks fail."""
@@ -62,11 +69,9 @@ class TaskProcess:
 
     def _attempt(self, task: WorkerTask) -> TaskOutcome:
         """Carry out a task once."""
-        process = self._process
-        if process is None or process.poll() is not None:
-            process = self._start()
-            if process is None:
-                return TaskOutcome(None, DIED, "it was broken off")
+        process = self.prepare()
+        if process is None:
+            return TaskOutcome(None, DIED, "it was broken off")
         outcome = _exchange(process, task)
         if outcome.failure in (DIED, TOO_LONG):
             with self._lock:

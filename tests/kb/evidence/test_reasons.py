@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import clingo
 import pytest
 
 from benchmarks.harness.reasons import complaints, covers
@@ -120,3 +121,43 @@ def test_an_episode_without_a_record_says_so(run: tuple[Questions, list[Any]]) -
     questions = Questions({"task": {"goals": ["at(utak,x)"]}}, old)
     with pytest.raises(BadInputError, match="older version"):
         questions.why("kind(floor, floor, C)")
+
+
+def test_what_is_missing_makes_a_fact_hold(run: tuple[Questions, list[Any]]) -> None:
+    """A change that whynot names makes plain clingo derive the atom; without any member of it, it does not."""
+    questions, lines = run
+    step = len(lines) - 1
+    objects = [
+        fact.removesuffix(".") for fact in lines[step]["belief"]["facts"] if re.match(r"kind\(o\d+,object", fact)
+    ]
+    for fact in objects[:2]:
+        node = fact[len("kind(") : fact.index(",")]
+        reason = questions.why_not(f"shape({node}, disc, 98)", step)
+        if not reason.data["found"] or reason.data["partial"] or "atom" not in reason.data:
+            continue
+        call = next(c for c in reversed(questions.beliefs.record.decisions(step)) if c.encoding == "shapes")
+        missing, in_way = set(reason.data["missing"]), set(reason.data["in_way"])
+        changed = set(call.facts) - in_way | missing
+        assert derives("shapes", changed, reason.data["atom"])
+        for one in missing:
+            assert not derives("shapes", changed - {one}, reason.data["atom"])
+        for one in in_way:
+            assert not derives("shapes", changed | {one}, reason.data["atom"])
+
+
+def derives(encoding: str, facts: set[str], atom: str) -> bool:
+    """Return whether the answer of an encoding to some facts holds an atom."""
+    control = clingo.Control(["--warn=none"])
+    control.load(str(next(ROOT.glob(f"*/asp/{encoding}.lp"))))
+    control.add("base", [], "".join(f"{fact}.\n" for fact in facts))
+    control.ground([("base", [])])
+    found: list[str] = []
+    control.solve(on_model=lambda model: found.extend(map(str, model.symbols(shown=True))))
+    return atom in found
+
+
+def test_what_is_believed_has_no_reason_to_be_absent(run: tuple[Questions, list[Any]]) -> None:
+    with pytest.raises(BadInputError, match="is believed"):
+        run[0].why_not("kind(org, utak, C)")
+    assert run[0].why_not("node(o99)").kind == ReasonKind.NEGATION
+    assert run[0].why_not("verdict(nonsense)").rests_on

@@ -167,6 +167,7 @@ def _check(files: dict[str, str], name: str, goal: str | None) -> None:
 
     if goal is not None:
         source_from_bytes("--goal", goal.encode("utf-8", "surrogateescape"))
+        files = files | {"goal.lp": goal}  # without a line end: an error at its end is on its line
     with TemporaryDirectory(prefix="utak-import-") as place:
         folder = Path(place) / "scenario"
         write_folder(folder, files)
