@@ -48,7 +48,7 @@ def test_reasons_are_given(episode: utak.Episode) -> None:
     assert str(verdict).count("\n") >= 1
     assert verdict.text("short") == str(verdict).splitlines()[0]
     assert verdict.as_dict()["claim"] == "verdict(done)"
-    assert "<details open>" in verdict._repr_html_()
+    assert "<details open=" in verdict._repr_html_()
     assert episode.why("shape(X, l_shape, C)", 5).claim.startswith("shape(o1,l_shape,")
     assert "cell 3" in episode.why_cell(3).claim
     assert "command" in episode[1].explain().claim
