@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from kb.language.diagnostics import did_you_mean
 from simulator.repl import asking, changing, travelling
-from simulator.repl.dialogue import QUIT_WORDS, PromptCommand, Dialogue
+from simulator.repl.dialogue import QUIT_WORDS, Dialogue, PromptCommand
 from simulator.repl.picture import STYLES, draw_belief
 
 # Printed above every picture of the truth.
