@@ -60,7 +60,7 @@ class Tabletop:
         self._obstacles: Obstacles | None = None
         self._immovable = [
             world.verge,
-            _table_edge(world.width, world.height),
+            table_edge(world.width, world.height),
             *(thing.polygon for thing in world.fixed),
         ]
 
@@ -150,7 +150,7 @@ def _require_finite(*values: float) -> bool:
     return True
 
 
-def _table_edge(width: int, height: int) -> Any:
+def table_edge(width: int, height: int) -> Any:
     """Return the frame around the table, in squares."""
     table = shapely.box(0, 0, width, height)
     return shapely.box(
