@@ -11,8 +11,6 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from simulator.terminal.prompt import Prompt
-
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
 from kb.reasoning.query import QueryEngine
