@@ -29,7 +29,7 @@ CELLS = 160  # cells of an impression
 
 @dataclass
 class Findings:
-    """What was found in one episode."""
+    """The findings in one episode."""
 
     name: str
     steps: int = 0

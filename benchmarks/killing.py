@@ -39,7 +39,7 @@ SWEEP_OPTIONS = ("--noise", "0,0.05", "--seeds", "0:3", "--jobs", "2")
 LATEST_MOMENT = 1.1  # times the duration of a command that is not killed: the last moments are after its end
 MAX_COMMAND_SECONDS = 300.0  # after which a command hangs; a convention
 MAX_ORPHAN_SECONDS = 5.0  # until processes that a killed command had started have ended; a convention
-SIGKILL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows has none; its SIGTERM cannot be handled either
+KILL_SIGNAL = getattr(signal, "SIGKILL", signal.SIGTERM)  # Windows has none; its SIGTERM cannot be handled either
 
 
 class Reference(NamedTuple):
@@ -103,7 +103,7 @@ def kill_after(
             if not a_worker:
                 process.kill()
             elif descendants:
-                os.kill(draw.choice(descendants), SIGKILL)
+                os.kill(draw.choice(descendants), KILL_SIGNAL)
         process.wait(timeout=MAX_COMMAND_SECONDS)
         errors.seek(0)
         printed = errors.read()
@@ -191,7 +191,7 @@ def _differences(found: Reference, wanted: Reference, killed: Killed) -> Iterato
 
 
 Faults = Callable[[Path, Path, Reference, float, random.Random], Iterator[str]]
-KINDS: dict[str, tuple[Faults, Callable[[Path, Path], list[str]]]] = {
+KILL_KINDS: dict[str, tuple[Faults, Callable[[Path, Path], list[str]]]] = {
     "run": (run_faults, run_command),
     "sweep": (sweep_faults, sweep_command),
     "worker": (worker_faults, sweep_command),
@@ -200,7 +200,7 @@ KINDS: dict[str, tuple[Faults, Callable[[Path, Path], list[str]]]] = {
 
 def campaign(kind: str, count: int, seed: int, scenario: Path, folder: Path) -> int:
     """Kill commands of a kind at random moments, print a line for each fault, and return the number of faulty kills."""
-    faults, command = KINDS[kind]
+    faults, command = KILL_KINDS[kind]
     warming_up = folder / f"{kind}-warming-up.jsonl"
     finish(command(scenario, warming_up), warming_up)
     reference = finish(command(scenario, folder / f"{kind}.jsonl"), folder / f"{kind}.jsonl")
@@ -234,9 +234,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--scenario", type=Path, default=SCENARIO_FOLDER, help="a short scenario (%(default)s)")
     parser.add_argument("--keep", type=Path, help="folder in which the files of faulty kills stay")
     given = parser.parse_args(arguments)
-    unknown = sorted(set(given.what.split(",")) - set(KINDS))
+    unknown = sorted(set(given.what.split(",")) - set(KILL_KINDS))
     if unknown:
-        parser.error(f"no kind {', '.join(unknown)}: kinds are {', '.join(KINDS)}")
+        parser.error(f"no kind {', '.join(unknown)}: kinds are {', '.join(KILL_KINDS)}")
     with tempfile.TemporaryDirectory(prefix="utak-killing-") as made:
         folder = given.keep or Path(made)
         folder.mkdir(parents=True, exist_ok=True)

@@ -122,6 +122,7 @@ def questions_section() -> str:
         Openness.NEVER: "nothing: it is known completely",
         Openness.UNSEEN: "things not seen yet",
         Openness.UNTOLD: "things not seen yet, and things of which it says nothing",
+        Openness.UNBOUND: "parameters of the task of which it says nothing",
     }
     lines = ["## What may hold besides what is believed", ""]
     lines += ["Questions are answered by this table (kb/language/vocabulary.py; docs/files.md says how).", ""]

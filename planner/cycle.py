@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
 from kb.localisation.field_account import Accommodation
-from kb.reasoning.decisions import SolverCall, record_decisions
 from kb.task.task import Task
+from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict
@@ -104,6 +104,7 @@ class Robot:
         self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
         self._has_restarted = False
         self._journal = Journal()
+        self._decided: list[SolverCall] = []  # what was decided between two steps, for the record of the next one
 
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
@@ -160,7 +161,26 @@ class Robot:
             if self._must_restart:
                 accommodated = self._restart(impression) or accommodated
         self._test()
-        return self._report(command, impression, accommodated, why, decisions)
+        earlier, self._decided = self._decided, []
+        return self._report(command, impression, accommodated, why, [*earlier, *decisions])
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Take other rules, and perhaps another task, for all that comes after the next impression.
+
+        The command that is decided already is still given. What is believed stays, and is interpreted by the new rules
+        with the next impression. With another task the robot decides afresh; parameters of the same name keep their
+        binding until the next reconciliation.
+
+        Parameters
+        ----------
+        kb_files : paths of the user's own encodings, all of them.
+        task : the new task; None to keep the old one.
+        """
+        rules = tuple(Path(file) for file in kb_files)
+        self.knowledge.rules = self.decider.rules = rules
+        if task is not None:
+            kept = {name: node for name, node in self.decider.bound.items() if name in task.parameters}
+            self.decider = Decider(task, self.options.paths, rules, self.options.pull, bound=kept)
 
     def _decide(self) -> None:
         """Set `decision` to the next command, or the verdict, for what is believed now."""
@@ -191,7 +211,8 @@ class Robot:
             rules = tuple(Path(file) for file in options.kb_files)
             self.knowledge.rules = rules
             self.decider = Decider(task, options.paths, rules, options.pull)
-            self._decide()
+            with record_decisions() as self._decided:
+                self._decide()
             held = self.model.held
             if held is not None and self.decision.command is not None:
                 self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")
@@ -247,7 +268,9 @@ class Robot:
         decisions : the answers of encodings since the step before.
         """
         places = Places(self.decider.rooms, self.decider.corners)
-        believed = belief(self.model, places, accommodated, self.decider.bound)
+        task = self.decider.task
+        objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
 

@@ -11,6 +11,7 @@ explaining  questions about a run: why facts, commands, verdicts and cells are a
 testing     scenarios as tests: records, JUnit, the process for pytest
 sweep       scenarios run with many seeds and noises, in parallel
 replay      views of a recorded episode: a page, a moving picture, text
-terminal    what users see: streams, exit codes, the prompt
+terminal    what users see: streams, exit codes
+repl        the prompt of `utak repl`
 cli         the command `utak` and its subcommands
 """

@@ -28,15 +28,20 @@ MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
-    "simulator": {"numpy", "shapely", "distributed", "PIL"},
-    "utak": {"gymnasium", "numpy", "shapely"},
+    "simulator": {"numpy", "shapely"},
+    "utak": {"numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
-PILLOW_IN = "simulator/replay/gif.py"  # an optional library
+# Libraries of extras, each met in one place alone and imported when it is used.
+OPTIONAL_IN = {
+    "PIL": "simulator/replay/gif.py",
+    "distributed": "simulator/sweep/executors/cluster.py",
+    "gymnasium": "utak/gym",
+    "prompt_toolkit": "simulator/repl",
+    "rich": "simulator/repl",
+}
 NUMBA_IN = "geometry/kernels/jit.py"
 CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
-DASK_IN = "simulator/sweep/executors/cluster.py"
-GYMNASIUM_IN = "utak/gym"  # the extra `gym`: no other part may need it
 # What stands in fronts besides a docstring: public names are what users of Python import.
 FRONTS_WITH_CODE: dict[str, tuple[type[ast.stmt], ...]] = {
     "geometry/__init__.py": (ast.ImportFrom, ast.Assign),  # public names
@@ -115,16 +120,13 @@ def others_used(root: Path) -> Iterator[str]:
         for library in {module.split(".")[0] for module, _ in imports(path)}:
             if library in {*HOUSE, "utak_command"} | set(sys.stdlib_module_names):
                 continue
-            if library not in MAY_USE[name.split("/")[0]]:
+            if library in OPTIONAL_IN:
+                if not name.startswith(OPTIONAL_IN[library]):
+                    yield f"{name} uses {library}, which {OPTIONAL_IN[library]} alone may"
+            elif library not in MAY_USE[name.split("/")[0]]:
                 yield f"{name} uses {library}"
             if library == "numba" and name != NUMBA_IN:
                 yield f"{name} uses numba, which {NUMBA_IN} alone may"
-            if library == "distributed" and name != DASK_IN:
-                yield f"{name} uses distributed, which {DASK_IN} alone may"
-            if library == "gymnasium" and not name.startswith(GYMNASIUM_IN):
-                yield f"{name} uses gymnasium, which {GYMNASIUM_IN} alone may"
-            if library == "PIL" and name != PILLOW_IN:
-                yield f"{name} uses PIL, which {PILLOW_IN} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 

@@ -1,11 +1,15 @@
 """Proof trees of encodings as reasons; the facts that an encoding was given are traced further."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 from kb.evidence.reason import Reason, ReasonKind
+from kb.explanation.belief import explain_query_atom
+from kb.explanation.programs import decision_program
 from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
-from kb.reasoning.decisions import SolverCall
+from kb.explanation.wording import atom_words
+from kb.tracing.decisions import SolverCall
 
 KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
     "derived": ReasonKind.RULE,
@@ -45,6 +49,35 @@ class EncodingProver:
         """
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
         return _reason(proof.root, leaf, {})
+
+
+@lru_cache(maxsize=4096)
+def words_of(encoding: str, atom: str) -> str:
+    """Return an atom of an encoding in plain words, as the encoding says its predicate reads; '' where it does not.
+
+    encoding : its name without `.lp`; `belief` for facts of the world model. atom : the atom, as text.
+    """
+    words = atom_words(atom, decision_program(encoding).words)
+    return "" if words == atom else words
+
+
+def prove_query_atom(
+    facts: Sequence[str], atom: str, leaf: Callable[[str], Reason], rule_files: Sequence[str] = ()
+) -> Reason:
+    """Return the reason why an atom holds in queries: one that users' rules derive, or `object(N)`.
+
+    Parameters
+    ----------
+    facts : the world model, as text.
+    atom : the atom, without variables.
+    leaf : returns the reason of a believed fact.
+    rule_files : the paths of the files with users' rules.
+
+    Raises
+    ------
+    kb.explanation.programs.ExplanationError : the atom does not certainly hold.
+    """
+    return _reason(explain_query_atom(facts, atom, rule_files).root, leaf, {})
 
 
 def _reason(node: ProofNode, leaf: Callable[[str], Reason], known: dict[int, Reason]) -> Reason:

@@ -6,7 +6,7 @@ from typing import Any
 
 from geometry.kernels.arrays import XY, Square
 from kb.perception.frame import Frame
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 RecordLine = Mapping[str, Any]  # the JSON object of one step of an episode
 
@@ -48,8 +48,13 @@ class RecordedStep:
 
     @cached_property
     def facts(self) -> tuple[str, ...]:
-        """The world model as facts without full stops, in the order of the episode."""
-        return tuple(str(fact).removesuffix(".") for fact in self._recorded("facts"))
+        """The world model as facts without full stops, in the order of the episode.
+
+        Older episodes state bindings beside their facts; these follow as facts.
+        """
+        found = [str(fact).removesuffix(".") for fact in self._recorded("facts")]
+        bindings = [f"bound({parameter},{node})" for parameter, node in sorted(self.bound.items())]
+        return tuple(dict.fromkeys((*found, *bindings)))
 
     @cached_property
     def fact_set(self) -> frozenset[str]:

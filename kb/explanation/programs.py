@@ -49,6 +49,7 @@ class DecisionProgram:
     ----------
     encoding : the name of the encoding without `.lp`.
     rule_files : the paths of files with users' rules.
+    seconds : the limit of wall-clock time for each request where users' rules take part.
 
     Attributes
     ----------
@@ -64,8 +65,8 @@ class DecisionProgram:
     CannotOpenError, BadInputError : a file with users' rules cannot be read or has errors.
     """
 
-    def __init__(self, encoding: str, rule_files: Sequence[str] = ()) -> None:
-        self.encoding = encoding
+    def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
+        self.encoding, self._seconds = encoding, seconds
         path = _path_of(encoding)
         self._users: tuple[Statement, ...] = read_rules(rule_files).rules_reaching(encoding) if rule_files else ()
         text = path.read_text(encoding="utf-8")
@@ -82,7 +83,7 @@ class DecisionProgram:
         """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
         whole = {**request, "parts": [list(part) for part in self.parts]}
         if self._users:
-            found = rules_worker().exchange({"trace": whole}, MAX_RULE_SECONDS)
+            found = rules_worker().exchange({"trace": whole}, self._seconds)
             if "limit" in found:
                 raise ExplanationError(f"the explanation was given up: {found['limit']}")
             if "error" in found:

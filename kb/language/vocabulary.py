@@ -155,6 +155,8 @@ class Openness(StrEnum):
     """It may hold for things not seen yet, as long as a part of the table is unseen."""
     UNTOLD = "untold"
     """As UNSEEN; and it may hold for known things of which no fact of this predicate is believed."""
+    UNBOUND = "unbound"
+    """It may hold for the parameters of the task of which no fact of this predicate is believed, and for no others."""
 
 
 class BeliefPredicate(NamedTuple):
@@ -179,6 +181,9 @@ class BeliefPredicate(NamedTuple):
 
 # A node of the world model.
 THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
+# An object of the world model.
+OBJECT_ARGUMENT = pattern_argument("object", "o[0-9]+", "o1")
+TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.check)  # a name that start.lp introduces
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
@@ -228,6 +233,9 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Openness.UNSEEN),
     ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
+    ("threshold", 5): BeliefPredicate(
+        (DOOR_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
+    ),
     ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("corner", 3): BeliefPredicate(
         (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
@@ -240,6 +248,8 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
         (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
     ),
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
+    ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
+    ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, OBJECT_ARGUMENT), Openness.UNBOUND),
 }
 
 

@@ -73,12 +73,11 @@ def candidate_facts(
     domains = Domains(program, units, [wanted, *facts, *atoms])
     patterns = _needed_patterns(program, units, domains, wanted)
     relevant = {(one.name, len(one.parts)) for one in patterns}
-    inputs = program.defined | {(wanted.name, len(wanted.arguments))} - _derived(program)
     given = set(facts)
     found: dict[clingo.Symbol, None] = {}
     cut = domains.cut
     for pattern in patterns:
-        if (pattern.name, len(pattern.parts)) not in inputs:
+        if (pattern.name, len(pattern.parts)) not in program.defined:
             continue
         instances, shortened = _instances(pattern, domains, facts)
         cut |= shortened
@@ -111,11 +110,6 @@ def _difference(one: clingo.Symbol, other: clingo.Symbol) -> tuple[int, int]:
     pairs = [(a, b) for a, b in zip(one.arguments, other.arguments, strict=True) if a != b]
     number = clingo.SymbolType.Number
     return len(pairs), sum(abs(a.number - b.number) for a, b in pairs if a.type == b.type == number)
-
-
-def _derived(program: ParsedProgram) -> set[Signature]:
-    """Return the predicates that rules state or choose."""
-    return {_signature(literal) for unit in program.units for literal in stated_by(unit)}
 
 
 def _signature(literal: AST) -> Signature:

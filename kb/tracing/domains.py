@@ -1,50 +1,25 @@
 """The values that the arguments of predicates may have: those that are known, and numbers that rules need.
 
 Arguments that share a variable in some rule have the values of one *class*. Numbers are needed where a comparison or
-an arithmetic head turns: from `N < 30` come 29 and 30; from the head `p(40 + 4*N)` and the wanted atom `p(72)`
-comes 8.
+an arithmetic head turns: from `N < 30` come 29 and 30; from the head `p(40 + 4*N)` and the wanted atom `p(72)` comes 8.
+In the price of a weak constraint the numbers beside known ones are needed, and 0: with these something is cheaper.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import islice, product
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice, permutations, product
 
 import clingo
-from clingo.ast import (
-    AST,
-    AggregateFunction,
-    ASTType,
-    BinaryOperator,
-    ComparisonOperator,
-    Sign,
-    Transformer,
-    UnaryOperator,
-)
+from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign, Transformer
 
-from kb.tracing.syntax import HIDDEN_PREFIX, ParsedProgram, Unit, head_elements
+from kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
+from kb.tracing.syntax import ParsedProgram, Unit, head_elements
 
-MAX_NUMBERS = 40  # numbers of one class; a convention
+MAX_NUMBERS = 40  # values of one class, beyond which no number is added; a convention
 MAX_COMBINATIONS = 100  # values of the other variables of a comparison that are tried; a convention
 MAX_NUMBER_ROUNDS = 3  # rounds in which needed numbers lead to other needed numbers; a convention
-GREATEST_NUMBER = 1_000_000  # the greatest number that is looked for, as in kb.reasoning.interfaces
 ArgumentPosition = tuple[str, int, int]  # the name of a predicate, its number of arguments, the index of the argument
-Slot = ArgumentPosition | tuple[int, str]  # a position, or the number of a unit and a variable that stands in no atom
-
-
-class Relation(NamedTuple):
-    """Two terms of a unit that are held against each other.
-
-    Attributes
-    ----------
-    left, right : the terms; the left one is a slot where the head or an atom of the unit has arithmetic.
-    sign : how clingo compares them.
-    is_head : whether the slot on the left is one of the head; then its numbers are wanted, and none are added to them.
-    """
-
-    left: "AST | Slot"
-    right: AST
-    sign: int
-    is_head: bool = False
+Slot = ArgumentPosition | tuple[int, str]  # a position, or the number of a unit and one of its variables
+ARITHMETIC = (ASTType.BinaryOperation, ASTType.UnaryOperation)
 
 
 class Domains:
@@ -72,8 +47,10 @@ class Domains:
         for atom in atoms:
             for index, value in enumerate(atom.arguments):
                 self._add((atom.name, len(atom.arguments), index), value)
-        for _, unit in counted:
-            self._add_constants(unit)
+        for number, unit in counted:
+            self._add_constants(number, unit)
+        for number, unit in counted:
+            self._add_prices(number, unit)
         for _ in range(MAX_NUMBER_ROUNDS):
             found = [
                 pair
@@ -93,14 +70,16 @@ class Domains:
         if term.ast_type == ASTType.SymbolicTerm:
             symbol: clingo.Symbol = term.symbol
             return self._constants.get(str(symbol), symbol)
-        number = self._evaluate(term, {})
-        if number is not None:
-            return clingo.Number(number)
+        if term.ast_type in ARITHMETIC:
+            number = calculation(term, self._constants)({})
+            return None if number is None else clingo.Number(number)
         if term.ast_type == ASTType.Function and not term.external:
             parts = [self.constant(part) for part in term.arguments]
             if all(part is not None for part in parts):
                 return clingo.Function(term.name, [part for part in parts if part is not None])
         return None
+
+    # ---- classes ----
 
     def _find(self, slot: Slot) -> Slot:
         """Return the slot that stands for the class of a slot."""
@@ -126,7 +105,10 @@ class Domains:
         return True
 
     def _relations(self, number: int, unit: Unit) -> list[Relation]:
-        """Join the slots of a unit, and return what it compares."""
+        """Join the slots of a unit, and return what it compares.
+
+        Arithmetic in an atom is compared with a variable that has the name of the position, `=name/arguments/index`.
+        """
         found: list[Relation] = []
         heads = list(map(str, stated_by(unit)))
         for atom in atoms_in(unit):
@@ -134,25 +116,36 @@ class Domains:
                 position = (atom_name(atom), len(arguments_of(atom)), index)
                 if term.ast_type == ASTType.Variable:
                     self._join(position, (number, term.name))
-                elif term.ast_type in (ASTType.BinaryOperation, ASTType.UnaryOperation):
-                    found.append(Relation(position, term, ComparisonOperator.Equal, str(atom) in heads))
+                elif term.ast_type in ARITHMETIC:
+                    name = "=" + "/".join(map(str, position))
+                    self._join(position, (number, name))
+                    fixed = frozenset({name}) if str(atom) in heads else frozenset()
+                    found.append(self._relation((name,), term, ComparisonOperator.Equal, fixed))
         for comparison in _comparisons(unit):
-            left = comparison.term
-            for guard in comparison.guards:
-                found.append(Relation(left, guard.term, guard.comparison))
-                left = guard.term
+            sides = [comparison.term, *(guard.term for guard in comparison.guards)]
+            for left, right, guard in zip(sides, sides[1:], comparison.guards, strict=False):
+                if self._are_equal_variables(number, left, right, guard.comparison):
+                    continue
+                if guard.comparison != ComparisonOperator.NotEqual:
+                    found.append(self._relation(left, right, guard.comparison))
         for aggregate in _aggregates(unit):
             self._join_aggregate(number, aggregate)
-        return [one for one in found if not self._joins_variables(number, one)]
+        return found
 
-    def _joins_variables(self, number: int, one: Relation) -> bool:
-        """Join two variables that must be equal, and return whether that is all that a relation says."""
-        terms = (one.left, one.right)
-        if one.sign == ComparisonOperator.Equal and all(
-            isinstance(term, AST) and term.ast_type == ASTType.Variable for term in terms
-        ):
-            first, second = ((number, term.name) for term in terms if isinstance(term, AST))
-            self._join(first, second)
+    def _relation(self, left: AST | tuple[str], right: AST, sign: int, fixed: frozenset[str] = frozenset()) -> Relation:
+        """Return two terms held against each other; the left one may be the name of a variable alone."""
+        second = calculation(right, self._constants)
+        if isinstance(left, tuple):
+            (name,) = left
+            return Relation(lambda values: values.get(name), second, (name, *names_in(right)), sign, fixed)
+        names = tuple(dict.fromkeys((*names_in(left), *names_in(right))))
+        return Relation(calculation(left, self._constants), second, names, sign, fixed)
+
+    def _are_equal_variables(self, number: int, left: AST, right: AST, sign: int) -> bool:
+        """Join two variables that must be equal, and return whether that is what a comparison says."""
+        both = left.ast_type == ASTType.Variable and right.ast_type == ASTType.Variable
+        if both and sign == ComparisonOperator.Equal:
+            self._join((number, left.name), (number, right.name))
             return True
         return False
 
@@ -166,38 +159,48 @@ class Domains:
         for name in names[1:]:
             self._join((number, names[0]), (number, name))
 
-    def _add_constants(self, unit: Unit) -> None:
-        """Add the constants of a unit's atoms to the classes of their positions."""
+    # ---- values ----
+
+    def _add_constants(self, number: int, unit: Unit) -> None:
+        """Add the constants of a unit's atoms and comparisons to the classes of their positions and variables."""
+        for comparison in _comparisons(unit):
+            sides = [comparison.term, *(guard.term for guard in comparison.guards)]
+            for one, other in permutations(sides, 2):
+                value = self.constant(other)
+                if one.ast_type == ASTType.Variable and value is not None:
+                    self._add((number, one.name), value)
         for atom in atoms_in(unit):
             for index, term in enumerate(arguments_of(atom)):
                 value = self.constant(term)
                 if value is not None:
                     self._add((atom_name(atom), len(arguments_of(atom)), index), value)
 
-    # ---- needed numbers ----
+    def _add_prices(self, number: int, unit: Unit) -> None:
+        """Add to the numbers in the price of a weak constraint those beside them, and 0."""
+        if unit.node.ast_type == ASTType.Minimize:
+            for name in names_in(unit.node.weight):
+                near = [value for known in self._numbers((number, name)) for value in (known - 1, known + 1)]
+                for value in (0, *near):
+                    if value >= 0:
+                        self._add((number, name), clingo.Number(value))
 
     def _needed(self, number: int, index: int, one: Relation) -> Iterator[tuple[Slot, int]]:
         """Yield (slot, number) of the numbers at which a relation turns, for each of its variables.
 
         number : the number of the unit. index : that of the relation in it.
         """
-        if one.sign == ComparisonOperator.NotEqual:
-            return
-        left = _names(one.left) if isinstance(one.left, AST) else []
-        slots: dict[str, Slot] = {name: (number, name) for name in (*left, *_names(one.right))}
-        if not isinstance(one.left, AST):
-            slots["="] = one.left
-        for target, slot in slots.items():
-            if target == "=" and one.is_head:
+        for target in one.names:
+            if target in one.fixed:
                 continue
-            others = [name for name in slots if name != target]
-            options = [self._numbers(slots[name]) for name in others]
+            slot: Slot = (number, target)
+            others = [name for name in one.names if name != target]
+            options = [self._numbers((number, name)) for name in others]
             for values in islice(product(*options), MAX_COMBINATIONS):
                 key = (number, index, target, values)
                 if key in self._tried:
                     continue
                 self._tried.add(key)
-                for value in self._turns(one, target, dict(zip(others, values, strict=True))):
+                for value in turning_numbers(one, target, dict(zip(others, values, strict=True))):
                     if value >= 0 or any(other < 0 for other in self._numbers(slot)):
                         yield slot, value
 
@@ -206,53 +209,10 @@ class Domains:
         known = self._values.get(self._find(slot), ())
         return [value.number for value in known if value.type == clingo.SymbolType.Number]
 
-    def _turns(self, one: Relation, target: str, env: Mapping[str, int]) -> list[int]:
-        """Return the values of one variable on both sides of where a relation turns, given those of the others.
-
-        For an equation the value with which it holds. [] when it turns nowhere.
-        """
-
-        def difference(value: int) -> int | None:
-            """Return by how much the left side exceeds the right one."""
-            whole = {**env, target: value}
-            left = self._evaluate(one.left, whole) if isinstance(one.left, AST) else whole["="]
-            right = self._evaluate(one.right, whole)
-            return None if left is None or right is None else left - right
-
-        strict = one.sign in (ComparisonOperator.LessEqual, ComparisonOperator.GreaterThan)
-        edge = _edge(difference, 1 if strict else 0)
-        if edge is None:
-            return []
-        near = [edge - 1, edge]
-        if one.sign == ComparisonOperator.Equal:
-            return [value for value in near if difference(value) == 0][:1]
-        return near
-
-    def _evaluate(self, term: AST, env: Mapping[str, int]) -> int | None:
-        """Return the number that a term denotes with values for its variables; None when it denotes none."""
-        if term.ast_type == ASTType.SymbolicTerm:
-            value = self._constants.get(str(term.symbol), term.symbol)
-            return value.number if value.type == clingo.SymbolType.Number else None
-        if term.ast_type == ASTType.Variable:
-            return env.get(term.name)
-        if term.ast_type == ASTType.UnaryOperation:
-            inner = self._evaluate(term.argument, env)
-            if inner is None:
-                return None
-            if term.operator_type == UnaryOperator.Minus:
-                return -inner
-            return abs(inner) if term.operator_type == UnaryOperator.Absolute else None
-        if term.ast_type != ASTType.BinaryOperation:
-            return None
-        left, right = (self._evaluate(part, env) for part in (term.left, term.right))
-        return None if left is None or right is None else _calculated(term.operator_type, left, right)
-
 
 def atoms_in(unit: Unit) -> list[AST]:
     """Return all atoms of a unit, as literals without sign or with one, those in aggregates and conditions included."""
-    collector = _LiteralCollector()
-    collector.visit(unit.node)
-    return [one for one in collector.found if one.atom.ast_type == ASTType.SymbolicAtom]
+    return [one for one in _literals_in(unit) if one.atom.ast_type == ASTType.SymbolicAtom]
 
 
 def atom_name(literal: AST) -> str:
@@ -273,11 +233,6 @@ def stated_by(unit: Unit) -> list[AST]:
     return [literal for literal, _ in head_elements(unit.node.head) if literal.sign == Sign.NoSign]
 
 
-def is_hidden(variable: str) -> bool:
-    """Return whether a variable was anonymous."""
-    return variable == "_" or variable.startswith(HIDDEN_PREFIX)
-
-
 def _constant_values(program: ParsedProgram) -> dict[str, clingo.Symbol]:
     """Return the values of `#const` definitions by name."""
     control = clingo.Control()
@@ -293,9 +248,7 @@ def _constant_values(program: ParsedProgram) -> dict[str, clingo.Symbol]:
 
 def _comparisons(unit: Unit) -> Iterator[AST]:
     """Yield the comparisons of a unit, at whatever depth."""
-    collector = _LiteralCollector()
-    collector.visit(unit.node)
-    for literal in collector.found:
+    for literal in _literals_in(unit):
         if literal.atom.ast_type == ASTType.Comparison:
             yield literal.atom
 
@@ -307,71 +260,21 @@ def _aggregates(unit: Unit) -> Iterator[AST]:
             yield literal.atom
 
 
-def _names(term: AST) -> Sequence[str]:
-    """Return the names of the variables of a term, each once."""
+def _literals_in(unit: Unit) -> list[AST]:
+    """Return the literals of a unit, at whatever depth."""
     collector = _LiteralCollector()
-    collector.visit(term)
-    return list(dict.fromkeys(collector.names))
-
-
-def _calculated(operator: int, left: int, right: int) -> int | None:
-    """Return the result of an operation on two integers as clingo computes it; None when it has none."""
-    if operator == BinaryOperator.Plus:
-        return left + right
-    if operator == BinaryOperator.Minus:
-        return left - right
-    if operator == BinaryOperator.Multiplication:
-        return left * right
-    if operator in (BinaryOperator.Division, BinaryOperator.Modulo) and right != 0:
-        quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
-        return quotient if operator == BinaryOperator.Division else left - quotient * right
-    return None
-
-
-def _edge(difference: Callable[[int], int | None], least: int) -> int | None:
-    """Return the least number from which on a monotone function is at least `least`, or no longer at least that.
-
-    None when there is none up to GREATEST_NUMBER, or when the function has no value.
-    """
-    low, high = -GREATEST_NUMBER, GREATEST_NUMBER
-    first, last = difference(low), difference(high)
-    if first is None or last is None:
-        return None
-    if (first >= least) == (last >= least):  # a quotient turns at 0 besides
-        low, first = 1, difference(1)
-        if first is None or (first >= least) == (last >= least):
-            return None
-    slope, rest = divmod(last - first, high - low)
-    if slope and not rest and difference(low + 1) == first + slope:  # likely a straight line
-        guess = low - (first - least) // slope
-        for edge in (guess - 1, guess, guess + 1):
-            before, after = difference(edge - 1), difference(edge)
-            if before is not None and after is not None and (before >= least) != (after >= least):
-                return edge
-    rising = last >= least
-    while high - low > 1:
-        middle = (low + high) // 2
-        found = difference(middle)
-        if found is None:
-            return None
-        low, high = (low, middle) if (found >= least) == rising else (middle, high)
-    return high
+    collector.visit(unit.node)
+    return collector.found
 
 
 class _LiteralCollector(Transformer):
-    """Collects literals in `found` and names of variables in `names`; clingo calls the `visit` methods."""
+    """Collects literals in `found`; clingo calls the `visit` method."""
 
     def __init__(self) -> None:
         self.found: list[AST] = []
-        self.names: list[str] = []
 
     def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
         """Append a literal to `found`, and visit its parts; return the node."""
         self.found.append(node)
         self.visit_children(node)
-        return node
-
-    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
-        """Append the name of a variable to `names`; return the node."""
-        self.names.append(node.name)
         return node

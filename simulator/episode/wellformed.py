@@ -1,7 +1,7 @@
 """The forms of an episode's lines: every value that simulator.episode.record and the robot write (docs/files.md)."""
 
 from kb.body import DIRECTIONS
-from kb.language.vocabulary import MAX_TABLE_SIDE
+from kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
 from simulator.episode.forms import (
     AnyOf,
     Anything,
@@ -28,7 +28,6 @@ TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a conven
 MAX_STEP_NUMBER = 1_000_000  # the greatest --max-steps
 RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
 FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
-VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")
 
 TEXT = Characters()
 FLAG = OneOf((True, False))
@@ -97,14 +96,15 @@ HEADER = Keys(
         "options": OPTIONS,
         "world": WORLD,
         "task": TASK,
+        "changes": Noted("what was assumed, retracted or wanted at the prompt, by step", ListOf(NamesTo(Anything()))),
         "forked": Noted("the stages before, of a run that goes on otherwise, in order", ListOf(RUN_STAGE, 1)),
     },
-    frozenset({"forked"}),
+    frozenset({"changes", "forked"}),
 )
 DIGITS = Characters(f"[0-7]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} digits from 0 to 7")
 FIELD_NUMBER = Whole(0, RETINA_FIELDS - 1)
 # A decision of an encoding: written in full, or as a reference to an earlier step.
-SOLVED = AnyOf(
+SOLVED_FORM = AnyOf(
     (
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)), ListOf(Anything()))),
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)))),
@@ -130,7 +130,7 @@ BELIEF_FORMS: dict[str, Form] = {
     "explained": Noted("fields by the fact that explains them", NamesTo(ListOf(FIELD_NUMBER))),
     "seen_from": Noted("where the impressions were received, as believed now, squares, robot frame", ListOf(PAIR)),
     "map_from": Noted("the first impression on which the map rests", STEP_NUMBER),
-    "solved": Noted("the decisions of encodings since the line before", ListOf(SOLVED)),
+    "solved": Noted("the decisions of encodings since the line before", ListOf(SOLVED_FORM)),
     "regions": Noted("region of each object node", NamesTo(TEXT)),
     "moved": Noted("nodes whose place is known from having been moved", ListOf(TEXT)),
     "necks": Noted("both ends of the line across each door, squares, robot frame", NamesTo(ListOf(PAIR, 2, 2))),
@@ -139,7 +139,7 @@ BELIEF_FORMS: dict[str, Form] = {
         ListOf(Keys({"points": ListOf(PAIR), "chosen": FLAG})),
     ),
 }
-BELIEF = Keys(BELIEF_FORMS, frozenset(BELIEF_FORMS) - {"facts"})
+BELIEF_FORM = Keys(BELIEF_FORMS, frozenset(BELIEF_FORMS) - {"facts"})
 # The line of a step.
 STEP = Keys(
     {
@@ -151,7 +151,7 @@ STEP = Keys(
         "objects": Noted("outlines of movable things by name, table frame", NamesTo(RING)),
         "retina": Noted("gray levels", ListOf(Whole(0, 7), RETINA_FIELDS, RETINA_FIELDS)),
         "touch": Noted("colours, clockwise from north", ListOf(OrNull(TEXT), 8, 8)),
-        "belief": BELIEF,
+        "belief": BELIEF_FORM,
         "why": Noted("why the command was given", TEXT),
     }
 )

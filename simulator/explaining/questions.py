@@ -8,7 +8,7 @@ from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
 from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
-from kb.evidence.proving import EncodingProver
+from kb.evidence.proving import EncodingProver, prove_query_atom
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import MissingRecordError, Record
 from kb.explanation.programs import ExplanationError
@@ -46,6 +46,7 @@ class Questions:
     ) -> None:
         self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
         self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
+        self._rule_files = tuple(rule_files)
         self._absences = AbsenceExplainer(self.beliefs, rule_files)
 
     @property
@@ -75,6 +76,9 @@ class Questions:
             goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
             if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
                 return explain_goal(self.beliefs, goal, at)
+            plain = plain_fact(wanted)
+            if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
+                return self._why_derived(plain, at)
             return self.beliefs.explain(self._instance(wanted, at), at)
         except (MissingRecordError, ExplanationError) as error:
             raise _problem(fact, str(error)) from None
@@ -128,6 +132,17 @@ class Questions:
             return explain_command(self.beliefs, self._task, self._checked(step))
         except (MissingRecordError, ExplanationError) as error:
             raise _problem("step", str(error)) from None
+
+    def _why_derived(self, atom: str, step: int) -> Reason:
+        """Return the reason of an atom of a predicate that users' rules define, or of `object(N)`."""
+        facts = self.beliefs.record.steps[step].facts
+
+        def leaf(fact: str) -> Reason:
+            """Return the reason of a believed fact on which the atom rests."""
+            found = self.beliefs.reason(fact, step)
+            return found or Reason(fact, "it is assumed", ReasonKind.TASK, "what was assumed")
+
+        return prove_query_atom(facts, atom, leaf, self._rule_files)
 
     def _why_verdict(self, wanted: str) -> Reason:
         """Return the reason of the verdict; raise BadInputError when it is another one, or the run goes on."""
@@ -193,6 +208,8 @@ def _one_fact(text: str) -> str:
     if len(found) != 1:
         raise _problem(text, "one fact at a time")
     name, arguments = atom_parts(written)
+    if QUESTION_VARIABLE.fullmatch(name):
+        raise _problem(text, "a fact begins with the name of its predicate, in small letters")
     return f"{name}({','.join(arguments)})" if arguments else name
 
 

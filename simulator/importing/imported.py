@@ -1,4 +1,4 @@
-"""What is read of a file of another format, and how the reader was told to read it."""
+"""The result of reading a file of another format, and the options of reading."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

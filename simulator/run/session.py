@@ -1,8 +1,9 @@
 """One run: the robot wakes in a scenario and acts until it has a verdict; the truth is recorded as it happens."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, runtime_checkable
 
 from kb.body import Body, Command, Impression
 from kb.task.task import Task
@@ -69,6 +70,18 @@ class RobotProtocol(Protocol):
     @property
     def verdict(self) -> VerdictProtocol:
         """The verdict at the end."""
+
+
+@runtime_checkable
+class AdoptingRobotProtocol(Protocol):
+    """A robot that takes other rules and another task while it runs."""
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Take other rules, and another task unless None, for all that comes after the next impression."""
+
+
+class CannotAdoptError(Exception):
+    """Raised by a robot that takes no other rules and no other task while it runs."""
 
 
 # Makes a robot from its body, its task and the options of the run.
@@ -194,6 +207,34 @@ class Session:
             self.step()
             watch(self)
         return self.end()
+
+    def fork(self) -> "Session":
+        """Return a copy of this run that goes on by itself and writes no episode; this run is not changed.
+
+        The copy is at the same step and, left alone, does what this run does, byte for byte: world, robot and random
+        numbers are copied. It takes some milliseconds. Raises TypeError or another exception of `copy.deepcopy` when
+        the robot cannot be copied.
+        """
+        nothing = EpisodeLog(None)
+        return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Let the robot use other rules, and another task, for all that comes after its next impression.
+
+        Parameters
+        ----------
+        kb_files : paths of users' rules, all of them.
+        task : the new task; None to keep the old one. With another task nothing is expected of the truth any more.
+
+        Raises
+        ------
+        CannotAdoptError : the robot cannot do that.
+        """
+        if not isinstance(self.robot, AdoptingRobotProtocol):
+            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
+        self.robot.adopt(kb_files, task)
+        if task is not None:
+            self.scenario = replace(self.scenario, task=task, expectations=None)
 
     def _record(self, report: StepReportProtocol) -> EpisodeLine:
         """Write a step and return its line."""

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.terms import Fact
 from simulator.episode.episode import EpisodeLine, EpisodeLog
+from simulator.episode.record import facts_of_line
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
-from simulator.run.story import facts_of_line
 from simulator.scenario.expectation import expects_verdict
 from simulator.scenario.points import ExpectationOutcome, PointScore, score
 from simulator.scenario.scenario import Scenario, read_scenario

@@ -16,7 +16,7 @@ PANEL_WIDTH, PANEL_GAP, MARGIN, MARK_GAP, SCENARIO_PADDING, MARK_RADIUS = 300.0,
 TITLE_HEIGHT, NOISES_ROW_HEIGHT, AXIS_HEIGHT, TICK_LENGTH = 28.0, 18.0, 44.0, 4.0
 CHARACTER_WIDTH = 7.0  # pixels of a character in the text's size, about
 MAX_NAME_LENGTH = 40  # characters of a scenario's name
-MAX_TICKS = 6  # of an axis
+TICK_DIGITS = (1, 2, 5)  # of the ticks of the logarithmic axis
 STYLE = (
     "text{font:12px sans-serif;fill:#222}.title{font-weight:bold}.grid{stroke:#ddd}.axis{stroke:#444}"
     ".bar{stroke-width:1.6}.band{fill:#f5f5f5}"
@@ -42,9 +42,8 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
     right = left + PANEL_WIDTH + PANEL_GAP
     width, height = right + PANEL_WIDTH + 2 * MARGIN, bottom + AXIS_HEIGHT + MARGIN
     most = max((upper_percentile(count.steps) for count in counts if count.steps), default=1)
-    ticks = nice_ticks(max(1, most))
-    percent = _scale(left, 100.0)
-    commands = _scale(right, ticks[-1])
+    ticks = log_ticks(most)
+    percent, commands = _linear_scale(left, 100.0), _log_scale(right, ticks[-1])
     what = f"success rates and numbers of commands of {len(scenarios)} scenarios at {len(noises)} noises"
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
@@ -60,8 +59,8 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
             parts.append(_band(left, y, right + PANEL_WIDTH - left, row_height))
         parts.append(_text(left - 8, y + row_height / 2 + 4, _short_name(name), anchor="end", title=name))
     parts += _axis(percent, [0, 20, 40, 60, 80, 100], top, bottom, "success rate, percent (bar: 95 % Wilson interval)")
-    parts += _axis(commands, ticks, top, bottom, "commands: median (bar: to the 95th percentile)")
-    parts.append(_text(left - 8, bottom + 18, "scenario", anchor="end"))
+    parts += _axis(commands, ticks, top, bottom, "commands, logarithmic: median (bar: to the 95th percentile)")
+    parts.append(_text(left - 8, top - 6, "scenario", anchor="end"))
     for count in counts:
         if count.noise is not None:
             number = noises.index(count.noise)
@@ -70,21 +69,26 @@ def sweep_picture(counts: Sequence[SweepCount]) -> str:
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
-def nice_ticks(most: float) -> list[float]:
-    """Return evenly spaced round numbers from 0 to the first one that is not below `most`, at most MAX_TICKS + 1.
+def log_ticks(most: float) -> list[int]:
+    """Return 1, 2, 5, 10, 20, ... to the first one that is not below `most`, at least two.
 
-    >>> nice_ticks(37)
-    [0, 10, 20, 30, 40]
+    >>> log_ticks(37)
+    [1, 2, 5, 10, 20, 50]
     """
-    size = 10.0 ** math.floor(math.log10(most / MAX_TICKS))
-    step = next(size * factor for factor in (1, 2, 5, 10) if size * factor * MAX_TICKS >= most)
-    step = max(1.0, step)
-    return [round(step * number) for number in range(math.ceil(most / step) + 1)]
+    ticks = [1, 2]
+    while ticks[-1] < most:
+        ticks.append(TICK_DIGITS[len(ticks) % 3] * 10 ** (len(ticks) // 3))
+    return ticks
 
 
-def _scale(left: float, most: float) -> Scale:
+def _linear_scale(left: float, most: float) -> Scale:
     """Return the scale of a panel: 0 at its left, `most` at its right."""
     return lambda value: left + PANEL_WIDTH * value / most
+
+
+def _log_scale(left: float, most: float) -> Scale:
+    """Return the logarithmic scale of a panel: 1 and all below at its left, `most` at its right."""
+    return lambda value: left + PANEL_WIDTH * math.log(max(1.0, value)) / math.log(most)
 
 
 def _legend(noises: Sequence[float], left: float) -> Iterator[tuple[int, str]]:
@@ -102,7 +106,7 @@ def _legend(noises: Sequence[float], left: float) -> Iterator[tuple[int, str]]:
 
 def _axis(scale: Scale, ticks: Sequence[float], top: float, bottom: float, label: str) -> list[str]:
     """Return the grid, the ticks and the label of a panel."""
-    left, right = scale(0), scale(ticks[-1])
+    left, right = scale(ticks[0]), scale(ticks[-1])
     parts = []
     for value in ticks:
         parts.append(_line(scale(value), top, scale(value), bottom, "grid"))

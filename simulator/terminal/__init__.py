@@ -9,5 +9,4 @@ printing         JSON output
 action_in_words  an action as text
 outcome          one of several things to do, with its exit code
 progress         how much of long work is done, and how long the rest takes
-prompt           the prompt of `utak repl`
 """

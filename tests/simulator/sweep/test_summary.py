@@ -2,7 +2,6 @@
 
 import math
 import xml.etree.ElementTree as ET
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.sweep.carrying_out import problem_of
-from simulator.sweep.picture import nice_ticks, sweep_picture
+from simulator.sweep.picture import log_ticks, sweep_picture
 from simulator.sweep.results import ResultRow
 from simulator.sweep.summary import counts_of, table_of, total_of, upper_percentile, wilson_interval
 
@@ -122,11 +121,11 @@ def test_the_picture_has_a_mark_where_the_numbers_are() -> None:
     texts = {text.text or text[0].tail or "": float(text.attrib["x"]) for text in tree.iter(SVG + "text")}
     found = marks(picture, "circle")
     rate = next(x for title, x in found.items() if "1 of 4 as expected (5 to 70 %)" in title)
-    assert rate == pytest.approx(texts["20"] + (texts["40"] - texts["20"]) / 4, abs=0.2)
+    assert rate == pytest.approx(texts["0"] + (texts["40"] - texts["0"]) * 25 / 40, abs=0.2)
     commands = next(x for title, x in found.items() if "6 commands in the median, 10 at the 95th" in title)
-    assert texts["0"] < commands < texts["50"]
+    assert commands == pytest.approx(texts["5"] + (texts["10"] - texts["5"]) * math.log(6 / 5, 2), abs=0.2)
     assert {"noise 0", "noise 0.5", "scenario", "a", "b"} <= set(texts)
-    assert any("percent" in text for text in texts) and any("commands: median" in text for text in texts)
+    assert any("percent" in text for text in texts) and any("commands, logarithmic" in text for text in texts)
     assert 'fill="#fff"' in picture
 
 
@@ -143,8 +142,8 @@ def test_the_picture_survives_strange_names_many_noises_and_nothing_at_all() -> 
     ET.fromstring(sweep_picture(counts_of([failed("a", 0.0, 0, "died")])))
 
 
-@given(st.floats(1, 1e6))
-def test_ticks_are_round_and_reach_the_greatest_value(most: float) -> None:
-    ticks = nice_ticks(most)
-    assert ticks[0] == 0 and ticks[-1] >= most and 2 <= len(ticks) <= 7
-    assert len({b - a for a, b in pairwise(ticks)}) == 1
+@given(st.floats(0, 1e6))
+def test_ticks_reach_the_greatest_value_and_are_1_2_and_5_times_powers_of_ten(most: float) -> None:
+    ticks = log_ticks(most)
+    assert ticks[-1] >= most and (len(ticks) == 2 or ticks[-2] < most)
+    assert ticks == sorted(digit * 10**power for digit in (1, 2, 5) for power in range(7))[: len(ticks)]
