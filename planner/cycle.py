@@ -150,6 +150,29 @@ class Robot:
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
             raise ValueError("the run is finished")
+        return self.follow(command, why)
+
+    def follow(self, command: Command, why: str) -> StepReport:
+        """Give a command, perceive, and decide anew (steps 10 to 13).
+
+        The command may be another one than was decided: then the robot is led. A task that had ended goes on.
+
+        Parameters
+        ----------
+        command : the command, in the robot's own frame.
+        why : its reason, in words.
+
+        Returns
+        -------
+        StepReport
+            The command, and what is believed after it.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
         with record_decisions() as decisions:

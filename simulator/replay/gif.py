@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.outlines import SEGMENT
+from simulator.replay.packed.outlines import SEGMENT
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 

@@ -143,9 +143,9 @@ function nameOf(said, name) {
 // Hatching where no impression reached, as far as the places of impressions are known.
 function drawUnseen(at) {
   const { west, north, width, height } = at.area, { belief } = at.line, places = new Set();
-  const angle = ((belief.lattice || 0) * Math.PI) / 180, origin = isPoint(belief.origin) ? belief.origin : [0.5, 0.5];
+  const angle = ((isNumber(belief.lattice) ? belief.lattice : 0) * Math.PI) / 180, origin = isPoint(belief.origin) ? belief.origin : [0.5, 0.5];
   const cosine = Math.cos(angle), sine = Math.sin(angle), windows = [];
-  for (const [east, to] of at.episode.seen(at.step).slice(belief.map_from || 0).filter(isPoint)) {
+  for (const [east, to] of at.episode.seen(at.step).slice(isNumber(belief.map_from) ? belief.map_from : 0).filter(isPoint)) {
     const x = Math.floor(east * cosine - to * sine + origin[0] + 1e-6) + 0.5 - origin[0];
     const y = Math.floor(east * sine + to * cosine + origin[1] + 1e-6) + 0.5 - origin[1];
     if (places.has(`${x},${y}`)) continue;
