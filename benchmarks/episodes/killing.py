@@ -1,6 +1,6 @@
-"""Kills `utak run` and `utak sweep` at random moments, and checks what is left: python -m benchmarks.killing.
+"""Kills `utak run` and `utak sweep` at random moments, and checks what is left: python -m benchmarks.episodes.killing.
 
-    python -m benchmarks.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER] [--keep FOLDER]
+    python -m benchmarks.episodes.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER] [--keep FOLDER]
 
 `run` and `sweep` kill the command itself; `worker` kills one of the worker processes of a sweep. Each time:
 
@@ -227,7 +227,7 @@ def campaign(kind: str, count: int, seed: int, scenario: Path, folder: Path) -> 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Kill commands of each kind; return 0 when nothing was wrong, else 1."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.killing", description="Kill runs and sweeps.")
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.episodes.killing", description="Kill runs and sweeps.")
     parser.add_argument("--count", type=int, default=200, help="kills of each kind (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="of the moments (%(default)s)")
     parser.add_argument("--what", default="run,sweep,worker", help="kinds, with commas between (%(default)s)")
