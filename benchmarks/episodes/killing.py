@@ -1,6 +1,7 @@
 """Kills `utak run` and `utak sweep` at random moments, and checks what is left: python -m benchmarks.episodes.killing.
 
-    python -m benchmarks.episodes.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER] [--keep FOLDER]
+    python -m benchmarks.episodes.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER]
+        [--keep FOLDER]
 
 `run` and `sweep` kill the command itself; `worker` kills one of the worker processes of a sweep. Each time:
 
@@ -33,7 +34,7 @@ from simulator.sweep.results import complete_result_lines
 from simulator.terminal import exits
 from utak_command import isolated_command
 
-SCENARIO_FOLDER = Path(__file__).resolve().parent.parent / "examples" / "go_next_room"
+SCENARIO_FOLDER = Path(__file__).resolve().parents[2] / "examples" / "go_next_room"
 RUN_OPTIONS = ("--noise", "0.05", "--seed", "3")
 SWEEP_OPTIONS = ("--noise", "0,0.05", "--seeds", "0:3", "--jobs", "2")
 LATEST_MOMENT = 1.1  # times the duration of a command that is not killed: the last moments are after its end

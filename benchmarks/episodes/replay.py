@@ -23,7 +23,7 @@ from simulator.cli.main import main as utak
 from simulator.episode.episode import Episode, EpisodeLine, encode, read_episode
 from simulator.replay.page import replay_page
 
-EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "push_l_tight_door"  # with noise it takes many steps
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "push_l_tight_door"  # with noise it takes many steps
 RUNS = 3  # of the example, with different seeds, of which long episodes are made
 SEEKS = 100  # steps that are looked at in random order
 HEAD = f"{'episode':<32} steps   episode      page a step     s  first  seek worst"
