@@ -25,7 +25,7 @@ from simulator.scenario.settings import PATH_CHOICES
 EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
 TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
-MAX_STEP_NUMBER = 1_000_000  # the greatest --max-steps
+LAST_STEP_NUMBER = 1_000_000  # the greatest --max-steps
 RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
 FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
 VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")
@@ -33,7 +33,7 @@ VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")
 TEXT = Characters()
 FLAG = OneOf((True, False))
 FACT = Characters(FACT_PATTERN, "a fact")
-STEP_NUMBER = Whole(0, MAX_STEP_NUMBER)
+STEP_NUMBER = Whole(0, LAST_STEP_NUMBER)
 COMMAND_NUMBER = Numeric(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE)
 PAIR = ListOf(COMMAND_NUMBER, 2, 2)  # (x, y) or (east, north) in squares
 # The keys of a straight motion, in squares of Utak's frame.
@@ -105,11 +105,11 @@ HEADER = Keys(
 DIGITS = Characters(f"[0-7]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} digits from 0 to 7")
 FIELD_NUMBER = Whole(0, RETINA_FIELDS - 1)
 # A decision of an encoding: written in full, or as a reference to an earlier step.
-SOLVED = AnyOf(
+SOLVED_FORM = AnyOf(
     (
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)), ListOf(Anything()))),
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)))),
-        Row((TEXT, Row((STEP_NUMBER, Whole(0, MAX_STEP_NUMBER))))),
+        Row((TEXT, Row((STEP_NUMBER, Whole(0, LAST_STEP_NUMBER))))),
     ),
     "a decision, [encoding, facts, answer, about] or [encoding, [step, index]],",
 )
@@ -131,7 +131,7 @@ BELIEF_FORMS: dict[str, Form] = {
     "explained": Noted("fields by the fact that explains them", NamesTo(ListOf(FIELD_NUMBER))),
     "seen_from": Noted("where the impressions were received, as believed now, squares, robot frame", ListOf(PAIR)),
     "map_from": Noted("the first impression on which the map rests", STEP_NUMBER),
-    "solved": Noted("the decisions of encodings since the line before", ListOf(SOLVED)),
+    "solved": Noted("the decisions of encodings since the line before", ListOf(SOLVED_FORM)),
     "regions": Noted("region of each object node", NamesTo(TEXT)),
     "moved": Noted("nodes whose place is known from having been moved", ListOf(TEXT)),
     "necks": Noted("both ends of the line across each door, squares, robot frame", NamesTo(ListOf(PAIR, 2, 2))),
@@ -140,7 +140,7 @@ BELIEF_FORMS: dict[str, Form] = {
         ListOf(Keys({"points": ListOf(PAIR), "chosen": FLAG})),
     ),
 }
-BELIEF = Keys(BELIEF_FORMS, frozenset(BELIEF_FORMS) - {"facts"})
+BELIEF_FORM = Keys(BELIEF_FORMS, frozenset(BELIEF_FORMS) - {"facts"})
 # The line of a step.
 STEP = Keys(
     {
@@ -152,7 +152,7 @@ STEP = Keys(
         "objects": Noted("outlines of movable things by name, table frame", NamesTo(RING)),
         "retina": Noted("gray levels", ListOf(Whole(0, 7), RETINA_FIELDS, RETINA_FIELDS)),
         "touch": Noted("colours, clockwise from north", ListOf(OrNull(TEXT), 8, 8)),
-        "belief": BELIEF,
+        "belief": BELIEF_FORM,
         "why": Noted("why the command was given", TEXT),
     }
 )

@@ -1,4 +1,4 @@
-"""What is read of a file of another format, and how the reader was told to read it."""
+"""The value that readers of other formats return, and the options that they are given."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

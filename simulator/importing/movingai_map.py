@@ -9,7 +9,7 @@ from geometry.kernels.arrays import Bools
 from kb.language.diagnostics import BadInputError, SourceSpan
 from kb.language.source_text import Source
 from simulator.importing.imported import Imported, ImportOptions
-from simulator.importing.raster import Cell, CellWorld, RasterError, roomy_place, scaled_walls, world_text
+from simulator.importing.raster import CellWorld, RasterCell, RasterError, roomy_place, scaled_walls, world_text
 from simulator.importing.text_file import read_raw, text_source
 
 DEFAULT_GOAL = "at(utak, corner(northeast))."  # the goal of a format that has none
@@ -88,7 +88,7 @@ def scenario_of_walls(
 
 def _square(
     source: Source, squares: Bools, scale: Fraction, start: tuple[float, float], offset: tuple[float, float]
-) -> Cell:
+) -> RasterCell:
     """Return the square (column, row) of a place in cells; raise BadInputError when the robot cannot wake there."""
     column, row = (floor((value - left) * scale) for value, left in zip(start, offset, strict=True))
     if not (0 <= row < squares.shape[0] and 0 <= column < squares.shape[1]):

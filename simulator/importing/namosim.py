@@ -18,9 +18,9 @@ from kb.language.source_text import MAX_FILE_BYTES, Source
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.importing.imported import COLOUR_LETTERS, Imported, ImportOptions, decimal
 from simulator.importing.svg_path import (
-    NUMBER,
-    Ring,
+    SVG_NUMBER,
     SvgError,
+    SvgRing,
     Transform,
     parse_path,
     parse_transform,
@@ -57,7 +57,7 @@ class _Shape:
     element: XmlElement
     type: str
     ids: frozenset[str]
-    rings: tuple[Ring, ...]
+    rings: tuple[SvgRing, ...]
     even_odd: bool
 
 
@@ -206,7 +206,7 @@ class _Reader:
                     yield _Shape(element, type_, ids, rings, even_odd)
             waiting += [(child, transform, ids) for child in reversed(element.children)]
 
-    def _rings(self, element: XmlElement, transform: Transform) -> tuple[Ring, ...]:
+    def _rings(self, element: XmlElement, transform: Transform) -> tuple[SvgRing, ...]:
         """Return the rings of an element in squares of the table."""
         name = "d" if element.tag == "path" else "points"
         if element.tag == "path":
@@ -261,12 +261,12 @@ class _Reader:
     def _numbers(self, element: XmlElement, key: str) -> list[float]:
         """Return the numbers in an attribute; [] when it is absent or holds something else."""
         words = element.attributes.get(key, "").replace(",", " ").split()
-        return [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
+        return [float(word) for word in words] if all(SVG_NUMBER.fullmatch(word) for word in words) else []
 
     def _single(self, element: XmlElement, key: str) -> float:
         """Return the number in an attribute, 0 without it; raise BadInputError for something else."""
         text = element.attributes.get(key, "0").strip().removesuffix("px")
-        if not NUMBER.fullmatch(text) or not abs(float(text)) < 1e9:
+        if not SVG_NUMBER.fullmatch(text) or not abs(float(text)) < 1e9:
             raise self._wrong(element, key, f"{key} must be a number")
         return float(text)
 

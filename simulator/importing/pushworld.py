@@ -19,8 +19,8 @@ from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Proble
 from kb.language.source_text import MAX_FILE_BYTES, Source
 from simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
 from simulator.importing.raster import (
-    Cell,
     CellWorld,
+    RasterCell,
     RasterError,
     connected_parts,
     encloses_something,
@@ -31,10 +31,12 @@ from simulator.importing.text_file import read_raw, text_source
 SQUARES_A_CELL = 3  # squares a cell: the robot sees an object of one cell as a square of 3 x 3; a convention
 BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them
 THING_PART = re.compile(r"[mg][0-9a-z_]+")  # an object or a goal
-WORD = re.compile(r"[^ \t]+")
+CELL_WORD = re.compile(r"[^ \t]+")
 PART_HINT = "cells are . W A M0 G0, and several of them joined by +, such as A+G1"
 
-Places = dict[str, dict[Cell, SourceSpan]]  # by part, in lower case: its cells, each with its place in the text
+PuzzlePlaces = dict[
+    str, dict[RasterCell, SourceSpan]
+]  # by part, in lower case: its cells, each with its place in the text
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
@@ -89,15 +91,15 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     return Imported("PushWorld puzzle", drawn.file, drawn.text, *task, tuple(notes))
 
 
-def _places(source: Source) -> tuple[Places, int, int]:
+def _places(source: Source) -> tuple[PuzzlePlaces, int, int]:
     """Return the cells of each part, and the numbers of rows and columns; raise BadInputError for wrong parts."""
     lines = list(source.lines)
     while lines and not lines[-1].strip():
         lines.pop()
-    words = [list(WORD.finditer(line)) for line in lines]
+    words = [list(CELL_WORD.finditer(line)) for line in lines]
     if not words:
         raise BadInputError([source.problem(source.start(), "the puzzle is empty")])
-    places: Places = defaultdict(dict)
+    places: PuzzlePlaces = defaultdict(dict)
     problems: list[Problem] = []
     for number, (line, row) in enumerate(zip(lines, words, strict=True), 1):
         if len(row) != len(words[0]) or not row:
@@ -119,7 +121,7 @@ def _places(source: Source) -> tuple[Places, int, int]:
     return places, len(words), len(words[0])
 
 
-def _problems(source: Source, places: Places) -> "list[Problem]":
+def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
     """Return what makes a puzzle none, or none that TABLETOP can show; [] for nothing."""
     problems = []
     robot = sorted(places.get("a", {}).values())
@@ -131,7 +133,7 @@ def _problems(source: Source, places: Places) -> "list[Problem]":
     for span in sorted(places.get("aw", {}).values())[:1]:
         what = "a wall for the agent alone (AW): in TABLETOP a wall stops objects, too"
         problems.append(source.problem(span, what, "write W where it shall stop everything, or . for floor"))
-    taken: dict[Cell, str] = {}
+    taken: dict[RasterCell, str] = {}
     for part, cells in sorted(places.items()):
         if part[0] == "g":
             if f"m{part[1:]}" not in places:
@@ -161,7 +163,7 @@ def _natural(part: str) -> tuple[int, int | str]:
     return (0, int(part[1:])) if part[1:].isdecimal() and len(part) < 10 else (1, part)
 
 
-def _shift(cells: dict[Cell, SourceSpan], goal: dict[Cell, SourceSpan]) -> tuple[tuple[int, int], bool]:
+def _shift(cells: dict[RasterCell, SourceSpan], goal: dict[RasterCell, SourceSpan]) -> tuple[tuple[int, int], bool]:
     """Return how far an object is from its goal (east, north), in cells, and whether both have the same form."""
     east = min(i for i, _ in goal) - min(i for i, _ in cells)
     north = max(j for _, j in goal) - max(j for _, j in cells)

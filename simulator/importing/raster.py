@@ -19,7 +19,7 @@ from simulator.importing.imported import COLOUR_LETTERS, region_text
 from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
 from simulator.world.world import VERGE_COLOUR
 
-Cell = tuple[int, int]  # (column, row), row 0 in the south
+RasterCell = tuple[int, int]  # (column, row), row 0 in the south
 
 
 class RasterError(ValueError):
@@ -38,8 +38,8 @@ class CellWorld:
     """
 
     walls: Bools
-    objects: tuple[frozenset[Cell], ...]
-    robot: Cell
+    objects: tuple[frozenset[RasterCell], ...]
+    robot: RasterCell
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ def scaled_walls(walls: Bools, scale: Fraction) -> Bools:
     return smaller
 
 
-def roomy_place(walls: Bools) -> Cell | None:
+def roomy_place(walls: Bools) -> RasterCell | None:
     """Return the cell in which a robot wakes that may wake anywhere; None when all is wall.
 
     It lies in the largest part of the floor, there in the south-west, and where its eight neighbours are floor if there
@@ -169,7 +169,7 @@ def roomy_place(walls: Bools) -> Cell | None:
     return int(columns[first]), int(rows[first])
 
 
-def connected_parts(cells: frozenset[Cell]) -> int:
+def connected_parts(cells: frozenset[RasterCell]) -> int:
     """Return the number of edge-connected parts of a set of cells."""
     left, parts = set(cells), 0
     while left:
@@ -184,18 +184,18 @@ def connected_parts(cells: frozenset[Cell]) -> int:
     return parts
 
 
-def encloses_something(cells: frozenset[Cell]) -> bool:
+def encloses_something(cells: frozenset[RasterCell]) -> bool:
     """Return whether the outline of a set of edge-connected cells has a hole."""
     return bool(_outline(cells, 1, 0).interiors)
 
 
-def _outline(cells: frozenset[Cell], scale: int, border: int) -> Any:
+def _outline(cells: frozenset[RasterCell], scale: int, border: int) -> Any:
     """Return the outline of edge-connected cells, a shapely Polygon in squares."""
     corners = np.array(sorted(cells), float) * scale + border
     return shapely.normalize(shapely.coverage_union_all(shapely.box(*corners.T, *(corners + scale).T)).simplify(0))
 
 
-def _colours(objects: Sequence[frozenset[Cell]]) -> tuple[str, ...]:
+def _colours(objects: Sequence[frozenset[RasterCell]]) -> tuple[str, ...]:
     """Return the colour of each object: the letters in turn, and then the least used that no neighbour has.
 
     Neighbours are objects that share an edge.
@@ -216,7 +216,7 @@ def _colours(objects: Sequence[frozenset[Cell]]) -> tuple[str, ...]:
     return tuple(colours)
 
 
-def _names(objects: Sequence[frozenset[Cell]], colours: Sequence[str]) -> tuple[str, ...]:
+def _names(objects: Sequence[frozenset[RasterCell]], colours: Sequence[str]) -> tuple[str, ...]:
     """Return the names that a picture gives objects: colour and number, counted from the west, then from the south."""
     names = [""] * len(objects)
     counts: Counter[str] = Counter()

@@ -22,7 +22,7 @@ from kb.language.diagnostics import BadInputError, SourceSpan
 from kb.language.source_text import MAX_FILE_BYTES, Source
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.importing.imported import Imported, ImportOptions, ObjectGoal, task_of_objects
-from simulator.importing.raster import Cell, CellWorld, RasterError, world_text
+from simulator.importing.raster import CellWorld, RasterCell, RasterError, world_text
 from simulator.importing.text_file import read_raw, text_source
 
 SQUARES_A_BOX = 3  # squares a cell: the robot sees a box as a square of 3 x 3; a convention
@@ -190,7 +190,7 @@ def _split(found: Sequence[tuple[str, SourceSpan]]) -> list[tuple[tuple[str, Sou
     return [tuple(row) for row in rows if row or row is not rows[-1]]
 
 
-def _cells(level: Level) -> dict[Cell, str]:
+def _cells(level: Level) -> dict[RasterCell, str]:
     """Return the mark of each cell; rows are filled up with floor to the width of the longest."""
     width = max(len(row) for row in level.rows)
     return {
@@ -201,7 +201,11 @@ def _cells(level: Level) -> dict[Cell, str]:
 
 
 def _check(
-    source: Source, level: Level, robot: Sequence[Cell], boxes: Sequence[Cell], storages: Sequence[Cell]
+    source: Source,
+    level: Level,
+    robot: Sequence[RasterCell],
+    boxes: Sequence[RasterCell],
+    storages: Sequence[RasterCell],
 ) -> None:
     """Raise BadInputError unless a level has one robot, a box and a storage."""
     problems = []
@@ -216,7 +220,7 @@ def _check(
         raise BadInputError(problems)
 
 
-def _walls(marks: Mapping[Cell, str], robot: Cell) -> Bools:
+def _walls(marks: Mapping[RasterCell, str], robot: RasterCell) -> Bools:
     """Return the walls, (rows, columns) bool, row 0 in the south.
 
     Floor from which a way leads to the edge of the drawing is wall, too, unless the robot, a box or a storage is on
@@ -224,7 +228,7 @@ def _walls(marks: Mapping[Cell, str], robot: Cell) -> Bools:
     """
     columns, rows = (1 + max(cell[axis] for cell in marks) for axis in (0, 1))
     walls = np.zeros((rows, columns), bool)
-    outside: set[Cell] = set()
+    outside: set[RasterCell] = set()
     for cell, mark in sorted(marks.items()):
         if mark == "#":
             walls[cell[1], cell[0]] = True
@@ -237,7 +241,7 @@ def _walls(marks: Mapping[Cell, str], robot: Cell) -> Bools:
     return walls
 
 
-def _floor_from(start: Cell, marks: Mapping[Cell, str]) -> dict[Cell, int]:
+def _floor_from(start: RasterCell, marks: Mapping[RasterCell, str]) -> dict[RasterCell, int]:
     """Return the cells that are no walls to which a way leads, boxes left out, with the length of the way in cells."""
     found, waiting = {start: 0}, deque([start])
     while waiting:
@@ -249,7 +253,7 @@ def _floor_from(start: Cell, marks: Mapping[Cell, str]) -> dict[Cell, int]:
     return found
 
 
-def _assigned(walls: Bools, boxes: Sequence[Cell], storages: Sequence[Cell]) -> list[tuple[int, int]]:
+def _assigned(walls: Bools, boxes: Sequence[RasterCell], storages: Sequence[RasterCell]) -> list[tuple[int, int]]:
     """Return pairs of a box and its storage, by their numbers, so that the ways in sum are the shortest.
 
     As many pairs as there are of the fewer. Boxes take storages one after the other, each by a cheapest chain of

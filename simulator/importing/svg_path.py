@@ -8,9 +8,9 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
-Point = tuple[float, float]
-Ring = list[Point]
-NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+SvgPoint = tuple[float, float]
+SvgRing = list[SvgPoint]
+SVG_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 SEPARATOR = re.compile(r"[ \t\r\n\f]*,?[ \t\r\n\f]*")
 BLANKS = re.compile(r"[ \t\r\n\f]*")
 MAX_CHORDS = 256  # chords for one curve; a convention
@@ -52,7 +52,7 @@ class Transform(NamedTuple):
     e: float = 0.0
     f: float = 0.0
 
-    def of(self, point: Point) -> Point:
+    def of(self, point: SvgPoint) -> SvgPoint:
         """Return where a point goes."""
         x, y = point
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
@@ -75,7 +75,7 @@ def parse_transform(text: str) -> Transform:
         words = part[2].replace(",", " ").split()
         if part[1] not in TRANSFORM_COUNTS or len(words) not in TRANSFORM_COUNTS[part[1]]:
             raise SvgError(part.start(1), f"{part[1][:20]} with {len(words)} numbers is no transform")
-        if not all(NUMBER.fullmatch(word) and abs(float(word)) <= MAX_UNITS for word in words):
+        if not all(SVG_NUMBER.fullmatch(word) and abs(float(word)) <= MAX_UNITS for word in words):
             raise SvgError(part.start(2), "a transform needs numbers")
         whole = whole.after(_single(part[1], [float(word) for word in words]))
         at = part.end()
@@ -100,7 +100,7 @@ def _single(name: str, numbers: Sequence[float]) -> Transform:
     return Transform(cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y)
 
 
-def parse_path(text: str, tolerance: float) -> list[Ring]:
+def parse_path(text: str, tolerance: float) -> list[SvgRing]:
     """Return the closed rings of path data; a part that is not closed is closed by a chord.
 
     Parameters
@@ -154,7 +154,7 @@ def _numbers(text: str, at: int, letter: str) -> tuple[list[float], int]:
             numbers.append(float(text[at]))
             at += 1
             continue
-        word = NUMBER.match(text, at)
+        word = SVG_NUMBER.match(text, at)
         if word is None or not abs(float(word.group())) <= MAX_UNITS:
             raise SvgError(
                 at, f"command {letter} needs {ARGUMENT_COUNTS[letter.lower()]} numbers of at most {MAX_UNITS:g}"
@@ -164,7 +164,7 @@ def _numbers(text: str, at: int, letter: str) -> tuple[list[float], int]:
     return numbers, at
 
 
-def _open_ring(ring: Ring) -> Ring:
+def _open_ring(ring: SvgRing) -> SvgRing:
     """Return a ring without repeated neighbours, the last point different from the first."""
     points = [point for index, point in enumerate(ring) if index == 0 or point != ring[index - 1]]
     while len(points) > 1 and points[-1] == points[0]:
@@ -181,11 +181,11 @@ class _Pen:
     """
 
     def __init__(self, tolerance: float) -> None:
-        self.rings: list[Ring] = [[]]
+        self.rings: list[SvgRing] = [[]]
         self._tolerance = tolerance
-        self._here: Point = (0.0, 0.0)
-        self._begin: Point = (0.0, 0.0)
-        self._handle: tuple[str, Point] | None = None  # the kind and the last control point of the last curve
+        self._here: SvgPoint = (0.0, 0.0)
+        self._begin: SvgPoint = (0.0, 0.0)
+        self._handle: tuple[str, SvgPoint] | None = None  # the kind and the last control point of the last curve
 
     def draw(self, letter: str, numbers: Sequence[float]) -> None:
         """Carry out one command.
@@ -214,7 +214,7 @@ class _Pen:
             points = [(x0 + numbers[i], y0 + numbers[i + 1]) for i in range(0, len(numbers), 2)]
             self._curve(kind, points)
 
-    def _curve(self, kind: str, points: list[Point]) -> None:
+    def _curve(self, kind: str, points: list[SvgPoint]) -> None:
         """Draw a Bezier curve. kind : c, s, q or t. points : its control points and its end."""
         degree = "c" if kind in "cs" else "q"
         if kind in "st":
@@ -223,7 +223,7 @@ class _Pen:
         self._add(_bezier([self._here, *points], self._tolerance))
         self._handle = degree, points[-2]
 
-    def _add(self, points: Sequence[Point]) -> None:
+    def _add(self, points: Sequence[SvgPoint]) -> None:
         """Append points; after a closed part they begin the next one where that began."""
         if not self.rings[-1]:
             self.rings[-1].append(self._here)
@@ -231,7 +231,7 @@ class _Pen:
         self._here, self._handle = points[-1], None
 
 
-def _bezier(control: Sequence[Point], tolerance: float) -> list[Point]:
+def _bezier(control: Sequence[SvgPoint], tolerance: float) -> list[SvgPoint]:
     """Return the ends of the chords of a Bezier curve, without its begin.
 
     The distance to the chords is at most d (d - 1) / 8 times the greatest second difference of the control points, over
@@ -255,7 +255,7 @@ def _bezier(control: Sequence[Point], tolerance: float) -> list[Point]:
     return [*points, control[-1]]
 
 
-def _arc(begin: Point, numbers: Sequence[float], end: Point, tolerance: float) -> list[Point]:
+def _arc(begin: SvgPoint, numbers: Sequence[float], end: SvgPoint, tolerance: float) -> list[SvgPoint]:
     """Return the ends of the chords of an elliptic arc, without its begin (SVG 1.1, F.6).
 
     begin, end : its ends. numbers : both radii, the tilt in degrees, the large-arc flag and the sweep flag.
@@ -315,7 +315,7 @@ def shape_path(tag: str, number: Callable[[str], float], points: str = "") -> st
     return None
 
 
-def ring_area(ring: Sequence[Point]) -> float:
+def ring_area(ring: Sequence[SvgPoint]) -> float:
     """Return the signed area of a ring in square units; positive where it turns from x to y."""
-    pairs: Iterator[tuple[Point, Point]] = zip(ring, [*ring[1:], ring[0]], strict=True)
+    pairs: Iterator[tuple[SvgPoint, SvgPoint]] = zip(ring, [*ring[1:], ring[0]], strict=True)
     return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairs) / 2
