@@ -1,5 +1,6 @@
 """The forms of what commands print under `--json`, and all forms by the names that `utak schema` gives them."""
 
+from kb.language.vocabulary import VERDICT_WORDS
 from simulator.episode.forms import AnyOf, Form, Keys, ListOf, NamesTo, Noted, Numeric, OneOf, OrNull, Whole
 from simulator.episode.wellformed import (
     END,
@@ -9,7 +10,6 @@ from simulator.episode.wellformed import (
     STEP,
     STEP_NUMBER,
     TEXT,
-    VERDICT_WORDS,
 )
 
 MAX_LENGTH = 1e12  # squares of a route; above every route on a table that can be read

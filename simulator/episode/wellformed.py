@@ -1,7 +1,7 @@
 """The forms of an episode's lines: every value that simulator.episode.record and the robot write (docs/files.md)."""
 
 from kb.body import DIRECTIONS
-from kb.language.vocabulary import MAX_TABLE_SIDE
+from kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
 from simulator.episode.forms import (
     AnyOf,
     Anything,
@@ -28,7 +28,6 @@ TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a conven
 LAST_STEP_NUMBER = 1_000_000  # the greatest --max-steps
 RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
 FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
-VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")
 
 TEXT = Characters()
 FLAG = OneOf((True, False))
