@@ -34,9 +34,8 @@ THING_PART = re.compile(r"[mg][0-9a-z_]+")  # an object or a goal
 CELL_WORD = re.compile(r"[^ \t]+")
 PART_HINT = "cells are . W A M0 G0, and several of them joined by +, such as A+G1"
 
-PuzzlePlaces = dict[
-    str, dict[RasterCell, SourceSpan]
-]  # by part, in lower case: its cells, each with its place in the text
+# By part, in lower case: its cells, each with its place in the text.
+PuzzlePlaces = dict[str, dict[RasterCell, SourceSpan]]
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
