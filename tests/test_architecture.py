@@ -126,9 +126,11 @@ def test_seams_may_be_given_other_parts(program: str, tmp_path: Path) -> None:
 
 def test_the_laws_look_at_a_house_that_is_there() -> None:
     for package in laws.MEASURED:
-        assert len(list(laws.modules(ROOT, (package,)))) > 30, package
+        assert len(list(laws.modules(ROOT, (package,)))) > (10 if package == laws.FACE else 30), package
     assert (ROOT / laws.PURE_WORLD).is_dir()
     assert (ROOT / laws.NUMBA_IN).exists()
+    assert all((ROOT / place).exists() for place in laws.OPTIONAL_IN.values())
+    assert all((ROOT / front).exists() for front in laws.FRONTS_WITH_CODE)
     assert all((ROOT / room).is_dir() for room in laws.CLINGO_IN)
 
 
@@ -150,6 +152,15 @@ def test_whatever_is_imported_waits_for_neither_numba_nor_networkx() -> None:
     )
     assert run(program, *names) == "[]"
     assert run("import networkx\n" + program) == "['networkx']"  # the program sees what is loaded
+
+
+def test_nobody_imports_the_face_for_python_and_it_starts_light() -> None:
+    loaded = ast.literal_eval(run("import utak; print(sorted(sys.modules))"))
+    assert {"utak"} == {name for name in loaded if name.split(".")[0] in laws.HOUSE}
+    assert not {"numpy", "shapely", "clingo", "numba", "networkx", "typing", "gymnasium"} & set(loaded)
+    names = ("simulator.cli.main", "simulator.run.session", "planner.cycle", "kb.knowledge", "geometry")
+    program = "import importlib\nfor name in sys.argv[2:]: importlib.import_module(name)\nprint('utak' in sys.modules)"
+    assert run(program, *names) == "False"
 
 
 def test_the_command_line_starts_light() -> None:

@@ -172,6 +172,12 @@ class Rulebook:
         if problems:
             raise BadInputError(problems)
 
+    @property
+    def predicates(self) -> frozenset[Signature]:
+        """All predicates (name, number of arguments) that these rules name or declare."""
+        named = {atom.signature for one in self.statements for atom in (*one.heads, *one.body)}
+        return frozenset(named | self._declared)
+
     def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
         """Return the rules that take part in an encoding, in the order of the files; () for none.
 

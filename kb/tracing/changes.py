@@ -14,7 +14,7 @@ from typing import NamedTuple
 import clingo
 
 from kb.tracing.candidates import CandidateFacts
-from kb.tracing.switches import MAX_CHANGE_SIZE, Change, SwitchedProgram
+from kb.tracing.switches import MAX_CHANGE_SIZE, FactChange, SwitchedProgram
 from kb.tracing.syntax import ParsedProgram
 
 MAX_CHECKS = 400  # changes that are tried size by size; a convention, about a second
@@ -70,7 +70,7 @@ class _ChoiceSearch:
     possible : a change of least size after which some answer holds it, at whatever cost.
     """
 
-    def __init__(self, switched: SwitchedProgram, wanted: clingo.Symbol, possible: Change) -> None:
+    def __init__(self, switched: SwitchedProgram, wanted: clingo.Symbol, possible: FactChange) -> None:
         self.switched, self.wanted, self.possible = switched, wanted, possible
         self._about = self._switches_about()
 
@@ -91,16 +91,16 @@ class _ChoiceSearch:
         found = self._greedy()
         return _as_found(self.switched, found, found is not None and len(found) <= size, gave_up=True)
 
-    def _first_that_holds(self, options: Iterable[Change]) -> Change | None:
+    def _first_that_holds(self, options: Iterable[FactChange]) -> FactChange | None:
         """Return the first change after which the wanted atom is part of a best answer; None when none is."""
         return next((change for change in options if self._holds(change)), None)
 
-    def _holds(self, change: Change) -> bool:
+    def _holds(self, change: FactChange) -> bool:
         """Return whether the wanted atom is part of some best answer after a change."""
         excess = self.switched.excess(change)
         return excess is not None and not any(excess)
 
-    def _changes_of_size(self, size: int, count: int) -> Iterator[Change]:
+    def _changes_of_size(self, size: int, count: int) -> Iterator[FactChange]:
         """Yield the changes of a size: those that only take facts away, and for two those that replace one, first."""
         seen = dict.fromkeys(combinations(range(len(self.switched.removable)), size))
         yield from seen
@@ -116,20 +116,20 @@ class _ChoiceSearch:
         facts = [clingo.parse_term(fact) for fact in (*self.switched.removable, *self.switched.addable)]
         return [n for n, fact in enumerate(facts) if not fact.arguments or about.intersection(fact.arguments)]
 
-    def _extensions(self) -> Iterator[Change]:
+    def _extensions(self) -> Iterator[FactChange]:
         """Yield the least possible change with one more switch: all removals, then candidates about the wanted atom."""
         removals = range(len(self.switched.removable))
         options = [*removals, *(index for index in self._about if index not in removals)]
         yield from (_joined(self.possible, (index,)) for index in options if index not in self.possible)
 
-    def _replacements(self) -> Iterator[Change]:
+    def _replacements(self) -> Iterator[FactChange]:
         """Yield the least possible change with one more given fact about the wanted atom replaced."""
         about = set(self._about)
         for gone, added in self._pairs():
             if gone in about and added in about and not {gone, added} & set(self.possible):
                 yield _joined(self.possible, (gone, added))
 
-    def _pairs(self) -> Iterator[Change]:
+    def _pairs(self) -> Iterator[FactChange]:
         """Yield the pairs of a given fact and a candidate that differ in one argument."""
         gone = [clingo.parse_term(fact) for fact in self.switched.removable]
         for index, text in enumerate(self.switched.addable):
@@ -140,12 +140,12 @@ class _ChoiceSearch:
                     if sum(one != other for one, other in pairs) == 1:
                         yield number, len(gone) + index
 
-    def _greedy(self) -> Change | None:
+    def _greedy(self) -> FactChange | None:
         """Return a change found by taking away the fact that helps most, again and again; None when that fails."""
         change, limit = self.possible, self.switched.checks + MAX_GREEDY_CHECKS
         best = self.switched.excess(change)
         while best is not None and any(best):
-            helped: tuple[tuple[int, ...], Change] | None = None
+            helped: tuple[tuple[int, ...], FactChange] | None = None
             for index in range(len(self.switched.removable)):
                 if index in change:
                     continue
@@ -160,7 +160,7 @@ class _ChoiceSearch:
             best, change = helped
         return None if best is None else self._without_idle_parts(change)
 
-    def _without_idle_parts(self, change: Change) -> Change:
+    def _without_idle_parts(self, change: FactChange) -> FactChange:
         """Return a change of which no member can be left out."""
         for index in change:
             fewer = tuple(other for other in change if other != index)
@@ -169,12 +169,12 @@ class _ChoiceSearch:
         return change
 
 
-def _joined(change: Change, more: Change) -> Change:
+def _joined(change: FactChange, more: FactChange) -> FactChange:
     """Return two changes as one."""
     return tuple(sorted({*change, *more}))
 
 
-def _as_found(switched: SwitchedProgram, change: Change | None, least: bool, gave_up: bool = False) -> FoundChange:
+def _as_found(switched: SwitchedProgram, change: FactChange | None, least: bool, gave_up: bool = False) -> FoundChange:
     """Return a change as facts; for None that there is none, or that the search gave up."""
     if change is None:
         return FoundChange((), (), False, not gave_up)

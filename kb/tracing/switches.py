@@ -14,7 +14,7 @@ from kb.tracing.candidates import CandidateFacts
 from kb.tracing.syntax import ParsedProgram
 
 MAX_CHANGE_SIZE = 12  # facts of one change that is looked for size by size; a convention
-Change = tuple[int, ...]
+FactChange = tuple[int, ...]
 
 
 class SwitchedProgram:
@@ -49,14 +49,14 @@ class SwitchedProgram:
         atom = known[wanted]
         self._wanted = None if atom is None else atom.literal
 
-    def least_of_one_answer(self) -> Change | None:
+    def least_of_one_answer(self) -> FactChange | None:
         """Return a change of least size after which the only answer holds the wanted atom; None when none does.
 
         For programs without choices.
         """
         return None if self._wanted is None else self._solved([self._wanted], "opt")
 
-    def least_possible(self) -> Change | None:
+    def least_possible(self) -> FactChange | None:
         """Return a change of least size after which some answer holds the wanted atom, at whatever cost; or None.
 
         For programs with choices.
@@ -71,7 +71,7 @@ class SwitchedProgram:
                 return found
         return None
 
-    def excess(self, change: Change) -> tuple[int, ...] | None:
+    def excess(self, change: FactChange) -> tuple[int, ...] | None:
         """Return by how much the best answer with the wanted atom is dearer than the best one, after a change.
 
         One number for each level of priority, the highest first; only zeros when the wanted atom is part of a best
@@ -86,9 +86,9 @@ class SwitchedProgram:
             return None
         return tuple(one - other for one, other in zip(with_wanted, best, strict=True))
 
-    def _solved(self, assumptions: Sequence[int], mode: str) -> Change | None:
+    def _solved(self, assumptions: Sequence[int], mode: str) -> FactChange | None:
         """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
-        best: list[Change] = []
+        best: list[FactChange] = []
 
         def keep(model: clingo.Model) -> None:
             """Keep the change of a model."""

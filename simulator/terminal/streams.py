@@ -78,6 +78,10 @@ class GuardedStream:
         for line in lines:
             self.write(line)
 
+    def erase_rows(self, count: int) -> None:
+        """Move the cursor of a terminal up by some rows, to the first column, and erase what is from there on."""
+        self._attempt("write", f"\x1b[{count}F\x1b[J")
+
     def flush(self) -> None:
         """Flush the stream."""
         if self._stream is not None:

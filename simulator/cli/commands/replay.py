@@ -1,0 +1,40 @@
+"""`utak replay`: show a recorded episode, as a page, as a moving picture or as text."""
+
+import argparse
+import sys
+from typing import Any
+
+from simulator.terminal import exits
+
+
+def add(parts: Any) -> None:
+    """Declare the subcommand."""
+    part = parts.add_parser(
+        "replay",
+        help="show a recorded episode step by step",
+        description="Show a recorded episode step by step: as text on the standard output, or in a file.",
+    )
+    part.add_argument("episode", metavar="EP.jsonl", help="an episode that `utak run --log` wrote")
+    form = part.add_mutually_exclusive_group()
+    form.add_argument("--html", metavar="FILE", help="write one page of HTML that plays it in any browser")
+    form.add_argument("--gif", metavar="FILE", help="write a moving picture (needs pillow: pip install 'utak[gif]')")
+    form.add_argument("--text", action="store_true", help="print actions, reasons, tables and changed facts (default)")
+    part.add_argument("--force", action="store_true", help="overwrite a file that is no page or picture")
+    part.set_defaults(execute=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Read the episode and show it."""
+    from simulator.replay.output import read_replayable, write_gif, write_page
+
+    episode = read_replayable(options.episode)
+    if options.html is not None:
+        write_page(options.html, episode, options.force)
+    elif options.gif is not None:
+        write_gif(options.gif, episode, options.force)
+    else:
+        from simulator.replay.transcript import transcript
+
+        for text in transcript(options.episode, episode):
+            sys.stdout.write(text)
+    return exits.SUCCESS

@@ -1,0 +1,62 @@
+"""The changes in the facts of a world model from one step to the next."""
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from typing import NamedTuple
+
+EDGE_FACT = "segment("  # facts that begin so are counted by node: one more corner renumbers all edges behind it
+FACT_NUMBER = re.compile(r"([(,])-?\d+(?=[,)])", re.ASCII)  # an argument that is a number
+
+
+class Changes(NamedTuple):
+    """The difference between the facts of two steps.
+
+    Attributes
+    ----------
+    added, removed : facts that are new, or gone.
+    changed : pairs of a former and a new fact that differ in numbers alone.
+    edges : how many edges of each node's outline are new, or gone where none is new.
+    """
+
+    added: list[str]
+    removed: list[str]
+    changed: list[tuple[str, str]]
+    edges: dict[str, int]
+
+
+def changes(before: Sequence[str], after: Sequence[str]) -> Changes:
+    """Return what changed from the facts of a step to those of the next one.
+
+    Examples
+    --------
+    >>> changes(["kind(o1,object,20)."], ["kind(o1,object,95).", "node(o2)."])
+    Changes(added=['node(o2).'], removed=[], changed=[('kind(o1,object,20).', 'kind(o1,object,95).')], edges={})
+    """
+    old, new = set(before), set(after)
+    gone, come = [fact for fact in before if fact not in new], [fact for fact in after if fact not in old]
+    edges = Counter(map(_node, filter(_is_edge, come)))
+    lost = Counter(map(_node, filter(_is_edge, gone)))
+    edges.update({name: count for name, count in lost.items() if name not in edges})
+    waiting: dict[str, list[str]] = defaultdict(list)
+    for fact in gone:
+        if not _is_edge(fact):
+            waiting[FACT_NUMBER.sub(r"\1#", fact)].append(fact)
+    added, changed = [], []
+    for fact in come:
+        former = waiting.get(FACT_NUMBER.sub(r"\1#", fact))
+        if former:
+            changed.append((former.pop(0), fact))
+        elif not _is_edge(fact):
+            added.append(fact)
+    return Changes(added, [fact for rest in waiting.values() for fact in rest], changed, dict(edges))
+
+
+def _is_edge(fact: str) -> bool:
+    """Return whether a fact is an edge of an outline."""
+    return fact.startswith(EDGE_FACT)
+
+
+def _node(fact: str) -> str:
+    """Return the node of an edge."""
+    return fact[len(EDGE_FACT) :].partition(",")[0]

@@ -1,0 +1,194 @@
+"""An episode as a moving picture (GIF): on the left the table as it is, on the right what the robot believes.
+
+This is the only module that uses pillow.
+"""
+
+import io
+import math
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+from PIL import Image, ImageDraw, ImageFont
+
+from kb.language.vocabulary import MAX_TABLE_SIDE
+from simulator.episode.episode import Episode, EpisodeLine
+from simulator.replay.packed.outlines import SEGMENT
+from simulator.terminal.action_in_words import describe
+from simulator.terminal.streams import escape_controls
+
+PANEL_PIXELS = 420  # the width or height of each of the two pictures, whichever is greater
+GAP_PIXELS = 12  # between and around the two pictures
+TEXT_PIXELS = 14  # the height of a line of text
+MAX_CAPTION_CHARACTERS = 400  # of a text, of which a line shows as many as fit
+TEXT_LINES = 3  # below the pictures
+STEP_MILLISECONDS = 700  # how long a step is shown
+END_MILLISECONDS = 3000  # how long the last one is shown
+# Colours by the numbers with which they are drawn; blue, vermillion, green and purple of Okabe and Ito.
+PALETTE = {
+    "ground": (255, 255, 255),
+    "ink": (17, 17, 17),
+    "verge": (207, 207, 202),
+    "thing": (185, 216, 234),
+    "fixed": (150, 150, 145),
+    "robot": (0, 122, 88),
+    "place": (168, 67, 124),
+    "beyond": (238, 238, 235),
+    "edge 0": (200, 220, 235),
+    "edge 1": (110, 170, 212),
+    "edge 2": (0, 114, 178),
+    "object 0": (240, 205, 185),
+    "object 1": (224, 140, 90),
+    "object 2": (194, 74, 0),
+}
+COLOURS = {name: number for number, name in enumerate(PALETTE)}
+Pixels = list[tuple[float, float]]
+
+
+class GifScale(NamedTuple):
+    """Places squares of the table, and hundredths of squares of the robot frame, on a picture.
+
+    Attributes
+    ----------
+    width, height : of the table, in squares.
+    pixels : the side of a square.
+    origin : where the robot woke, in squares, table frame.
+    heading : the direction in which it faced then, in degrees, counter-clockwise from the table's north.
+    """
+
+    width: int
+    height: int
+    pixels: float
+    origin: tuple[float, float]
+    heading: float
+
+    def table(self, x: float, y: float) -> tuple[float, float]:
+        """Return the pixel of a point of the table."""
+        return x * self.pixels, (self.height - y) * self.pixels
+
+    def robot(self, east: float, north: float) -> tuple[float, float]:
+        """Return the pixel of a point of the robot frame, in squares."""
+        angle = math.radians(self.heading)
+        x = self.origin[0] + east * math.cos(angle) - north * math.sin(angle)
+        y = self.origin[1] + east * math.sin(angle) + north * math.cos(angle)
+        return self.table(x, y)
+
+
+def animation(episode: Episode) -> bytes:
+    """Return an episode as a GIF picture.
+
+    Parameters
+    ----------
+    episode : the episode, with one step at least.
+
+    Returns
+    -------
+    The bytes of the picture: one frame a step.
+    """
+    frames = _frames(episode)
+    first = next(frames)
+    times = [STEP_MILLISECONDS] * (len(episode.steps) - 1) + [END_MILLISECONDS]
+    stream = io.BytesIO()
+    first.save(stream, "GIF", save_all=True, append_images=frames, duration=times, loop=0, disposal=1, optimize=False)
+    return stream.getvalue()
+
+
+def _frames(episode: Episode) -> Iterator[Any]:
+    """Yield the frame of each step."""
+    width, height = episode.header["world"]["table"]
+    pixels = PANEL_PIXELS / max(width, height)
+    x, y = episode.steps[0]["utak"]
+    scale = GifScale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
+    panel = math.ceil(width * pixels) + GAP_PIXELS
+    size = 2 * panel + GAP_PIXELS, math.ceil(height * pixels) + 2 * GAP_PIXELS + TEXT_LINES * (TEXT_PIXELS + 4)
+    colours = [part for colour in PALETTE.values() for part in colour]
+    font = ImageFont.load_default(TEXT_PIXELS)
+    places: Pixels = []
+    for line in episode.steps:
+        places.append(scale.table(*line["utak"]))
+        image = Image.new("P", size, COLOURS["ground"])
+        image.putpalette(colours)
+        image.paste(_true(episode, line, scale, places), (GAP_PIXELS, GAP_PIXELS))
+        image.paste(_believed(line, scale), (panel + GAP_PIXELS, GAP_PIXELS))
+        on = ImageDraw.Draw(image)
+        for row, text in enumerate(_words(episode, line)):
+            at = GAP_PIXELS, size[1] - (TEXT_LINES - row) * (TEXT_PIXELS + 4) - 4
+            on.text(at, _fitting(text, font, 2 * panel - GAP_PIXELS), COLOURS["ink"], font=font)
+        yield image
+
+
+def _words(episode: Episode, line: EpisodeLine) -> list[str]:
+    """Return the lines of text below a step: what was done, why, and how the run ended."""
+    words = [f"step {line['step']}: {describe(line['action'])}", line["why"]]
+    if episode.result is not None and line is episode.steps[-1]:
+        words.append(f"{episode.result['verdict']}: {episode.result['reason']}")
+    return words
+
+
+def _panel(scale: GifScale, colour: str) -> Any:
+    """Return an empty picture of the size of the table."""
+    size = math.ceil(scale.width * scale.pixels), math.ceil(scale.height * scale.pixels)
+    image = Image.new("P", size, COLOURS[colour])
+    image.putpalette([part for rgb in PALETTE.values() for part in rgb])
+    return image
+
+
+def _true(episode: Episode, line: EpisodeLine, scale: GifScale, places: Pixels) -> Any:
+    """Return the left picture: the table as it is, and the robot's places so far."""
+    image = _panel(scale, "ground")
+    on, world = ImageDraw.Draw(image), episode.header["world"]
+    for rings in world["verge"]:
+        for number, ring in enumerate(rings):
+            _fill(on, ring, scale, "ground" if number else "verge")
+    for thing in world["fixed"].values():
+        for number, ring in enumerate(thing["rings"]):
+            _fill(on, ring, scale, "ground" if number else "fixed")
+    for name, ring in line["objects"].items():
+        _fill(on, ring, scale, "thing", 3 if name == line["held"] else 1)
+    if len(places) > 1:
+        on.line(places, COLOURS["robot"], 1)
+    _dot(on, places[-1], COLOURS["robot"])
+    return image
+
+
+def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: GifScale, colour: str, outline: int = 0) -> None:
+    """Draw a filled ring of points of the table, with an outline of so many pixels."""
+    points = [scale.table(x, y) for x, y in ring]
+    on.polygon(points, COLOURS[colour], COLOURS["ink"] if outline else None, outline or 1)
+
+
+def _believed(line: EpisodeLine, scale: GifScale) -> Any:
+    """Return the right picture: the believed outlines, the surer, the stronger, and the robot's believed place."""
+    image = _panel(scale, "beyond")
+    on = ImageDraw.Draw(image)
+    for fact in line["belief"]["facts"]:
+        match = SEGMENT.fullmatch(fact)
+        if match is None:
+            continue
+        east, north, to_east, to_north = (int(part) / 100 for part in match[3][1:].split(","))
+        if max(map(abs, (east, north, to_east, to_north))) > MAX_TABLE_SIDE:
+            continue
+        kind = "edge" if match[1] in ("floor", "verge") else "object"
+        strength = min(2, int(match[4]) * 3 // 100)
+        on.line(
+            [scale.robot(east, north), scale.robot(to_east, to_north)], COLOURS[f"{kind} {strength}"], 1 + strength // 2
+        )
+    place = line["belief"].get("place")
+    if isinstance(place, list) and len(place) == 2 and all(isinstance(v, int | float) for v in place):
+        east, north = place
+        _dot(on, scale.robot(east, north), COLOURS["place"])
+    return image
+
+
+def _dot(on: ImageDraw.ImageDraw, at: tuple[float, float], colour: int) -> None:
+    """Draw a disc of eight pixels."""
+    on.ellipse([at[0] - 4, at[1] - 4, at[0] + 4, at[1] + 4], colour, COLOURS["ground"])
+
+
+def _fitting(text: str, font: Any, width: int) -> str:
+    """Return a text without control characters, cut to a width in pixels."""
+    clean = escape_controls(text, lines=False)[:MAX_CAPTION_CHARACTERS]
+    if font.getlength(clean) <= width:
+        return clean
+    fits = bisect_right(range(len(clean)), width, key=lambda size: font.getlength(clean[:size] + "..."))
+    return clean[: max(fits - 1, 0)] + "..."

@@ -1,0 +1,66 @@
+"""Replays as files: reading an episode that can be shown, and writing its page or its moving picture."""
+
+from pathlib import Path
+
+from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
+from simulator.episode.episode import Episode, read_episode
+from simulator.episode.output_files import keep_first, open_for_writing, write_whole
+from simulator.replay.page import is_page, replay_page
+
+
+def read_replayable(path: Path | str) -> Episode:
+    """Return an episode with one step at least.
+
+    Raises CannotOpenError when it cannot be read, BadInputError when it is damaged or has no step.
+    """
+    episode = read_episode(path)
+    if not episode.steps:
+        raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), "the episode ends before its first step")])
+    return episode
+
+
+def write_page(path: Path | str, episode: Episode, force: bool = False) -> None:
+    """Write the page of an episode, with trees of reasons; `force` overwrites no-pages. Raises CannotOpenError."""
+    from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
+
+    write_whole(path, replay_page(episode, trees_of_episode(episode)), is_page, "page of HTML", force)
+
+
+def check_page_path(path: Path | str, force: bool = False) -> None:
+    """Raise CannotOpenError unless a page can be written at a path; an empty file is made where there was none."""
+    open_for_writing(path, is_page, "page of HTML", force).close()
+
+
+def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
+    """Write an episode as a moving picture.
+
+    Parameters
+    ----------
+    path : the file.
+    episode : the episode.
+    force : whether to overwrite what is no GIF picture.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be written, or pillow is not installed.
+    """
+    try:
+        from simulator.replay.gif import animation
+    except ImportError:
+        what = "moving pictures need pillow, which is not installed: pip install 'utak[gif]'"
+        raise CannotOpenError(str(path), what) from None
+    stream = open_for_writing(path, _is_gif, "GIF picture", force)
+    try:
+        picture = animation(episode)
+        keep_first(stream, 0)
+        stream.write(picture)
+        stream.flush()
+    except OSError as error:
+        raise CannotOpenError(str(path), f"it cannot be written: {error.strerror}") from None
+    finally:
+        stream.close()
+
+
+def _is_gif(head: bytes) -> bool:
+    """Return whether a file with these first bytes is a GIF picture."""
+    return head.startswith((b"GIF87a", b"GIF89a"))

@@ -1,0 +1,195 @@
+// The two maps: the table as it is, and what the robot believes of it.
+
+const RETINA_REACH = 16; // squares: the retina covers 32 x 32 squares about the robot's own square
+const MIN_OUTSIDE = 4, OUTSIDE_SHARE = 0.25; // how far beyond the table is shown: squares, or a share of its greater side
+const LABEL_SIZE = 11; // pixels
+
+// The area that both maps show, in squares of the picture: the table, and what is believed a little beyond it.
+function areaOf(episode, places) {
+  const [width, height] = episode.header.world.table;
+  let [west, north, east, south] = [0, 0, width, height];
+  const outside = Math.max(MIN_OUTSIDE, OUTSIDE_SHARE * Math.max(width, height));
+  if (episode.bounds) {
+    const [w, s, e, n] = episode.bounds.map((value) => value / 100);
+    for (const corner of [[w, s], [w, n], [e, s], [e, n]]) {
+      const [x, y] = places.robot(corner);
+      west = Math.max(Math.min(west, x), -outside);
+      north = Math.max(Math.min(north, y), -outside);
+      east = Math.min(Math.max(east, x), width + outside);
+      south = Math.min(Math.max(south, y), height + outside);
+    }
+  }
+  return { west, north, width: east - west, height: south - north };
+}
+
+// The table: verge, fixed and movable things, the robot, what it holds and its way up to the step.
+function drawTruth(at) {
+  const { episode, step, line, places } = at, world = episode.header.world, group = svg("g", { class: "truth" });
+  const [width, height] = world.table;
+  group.append(svg("rect", { class: "floor", width, height }));
+  for (const rings of world.verge) group.append(svg("path", { class: "verge", "fill-rule": "evenodd", d: pathOf(rings, places.table, true) }));
+  for (const [name, thing] of Object.entries(world.fixed)) {
+    group.append(svg("path", { class: "fixed", "fill-rule": "evenodd", d: pathOf(thing.rings, places.table, true) }));
+    group.append(label(at, thing.rings[0], places.table, `${name} (fixed)`));
+  }
+  for (const [name, ring] of Object.entries(line.objects)) {
+    const held = name === line.held;
+    group.append(svg("path", { class: held ? "thing held" : "thing", d: pathOf([ring], places.table, true) }));
+    group.append(label(at, ring, places.table, held ? `${name} held` : name));
+  }
+  if (at.layers.has("track")) {
+    group.append(svg("path", { class: "track", d: pathOf([episode.columns.utak.slice(0, step + 1)], places.table, false) }));
+  }
+  return group;
+}
+
+// The robot: a disc with a line to its own north.
+function drawRobot(at) {
+  const [x, y] = at.places.table(at.line.utak), size = 6 * at.unit, angle = (-at.episode.header.world.heading * Math.PI) / 180;
+  const tip = [x + 2 * size * Math.sin(angle), y - 2 * size * Math.cos(angle)];
+  return svg("g", { class: "robot" },
+    svg("circle", { cx: x, cy: y, r: size }),
+    svg("line", { x1: x, y1: y, x2: tip[0], y2: tip[1] }));
+}
+
+// A name above a ring of points.
+function label(at, ring, place, text) {
+  const points = ring.map(place), easts = points.map(([x]) => x), top = Math.min(...points.map(([, y]) => y));
+  const half = 0.3 * LABEL_SIZE * text.length * at.unit, middle = (Math.min(...easts) + Math.max(...easts)) / 2;
+  const x = Math.min(Math.max(middle, at.area.west + half), at.area.west + at.area.width - half);
+  return svg("text", { x: rounded(x), y: rounded(Math.max(top - 0.7 * LABEL_SIZE * at.unit, at.area.north + 0.7 * LABEL_SIZE * at.unit)), "font-size": rounded(LABEL_SIZE * at.unit), class: "label" }, shown(text));
+}
+
+// The fields of the retina over the table, the darker the fuller.
+function drawImpression(at) {
+  const group = svg("g", { class: "impression" }), [x, y] = at.line.utak.map((value) => Math.floor(value) + 0.5);
+  const { places } = placedAt(at, [x, y]);
+  FIELDS.forEach(({ east, north, side }, field) => {
+    const level = at.line.retina[field];
+    if (!level) return;
+    const ring = squareOf(east - 0.5, north - 0.5, side);
+    group.append(svg("path", { d: pathOf([ring], places.robot, true), "fill-opacity": rounded((level / 7) * 0.55) }));
+  });
+  group.append(svg("path", { class: "reach", d: pathOf([squareOf(-RETINA_REACH - 0.5, -RETINA_REACH - 0.5, 2 * RETINA_REACH)], places.robot, true) }));
+  return group;
+}
+
+const placedAt = (at, origin) => ({ places: placing(at.episode.header, origin) });
+const squareOf = (west, south, side) => [[west, south], [west + side, south], [west + side, south + side], [west, south + side]];
+
+// What is believed: floor, verge, objects, doors, corners, rooms; the surer, the stronger.
+function drawBelief(at) {
+  const { said, outlines, places } = at, group = svg("g", { class: "belief" }), place = places.robot;
+  if (at.layers.has("unseen")) group.append(drawUnseen(at));
+  const kinds = kindsOf(said), floor = outlines.get("floor") || [];
+  group.append(svg("path", { class: "floor", "fill-rule": "evenodd", d: pathOf(ringsOf(floor), place, true) }));
+  for (const [name, edges] of outlines) {
+    const kind = kinds.get(name) || { word: "object", sure: 0 };
+    if (kind.word === "object") {
+      group.append(svg("path", { class: "thing", "fill-rule": "evenodd", d: pathOf(ringsOf(edges), place, true), "fill-opacity": rounded(0.1 + 0.5 * kind.sure) }));
+    }
+    const bySure = new Map();
+    for (const edge of edges) {
+      if (!bySure.has(edge.sure)) bySure.set(edge.sure, []);
+      bySure.get(edge.sure).push([edge.from, edge.to]);
+    }
+    for (const [sure, lines] of bySure) {
+      group.append(svg("path", { class: `edge ${kind.word}`, d: pathOf(lines, place, false), "stroke-opacity": rounded(0.15 + 0.85 * sure) }));
+    }
+  }
+  for (const [name, ends] of Object.entries(at.line.belief.necks || {})) {
+    if (!Array.isArray(ends) || ends.length !== 2 || !ends.every(isPoint)) continue;
+    group.append(svg("path", { class: "door", d: pathOf([ends], place, false) }), label(at, ends, place, name));
+  }
+  for (const [name, east, north] of said("corner", 3)) {
+    const point = [hundredths(east), hundredths(north)];
+    if (point.some(Number.isNaN)) continue;
+    const [x, y] = place(point), size = 4 * at.unit;
+    group.append(svg("rect", { class: "corner", x: x - size, y: y - size, width: 2 * size, height: 2 * size }, svg("title", {}, shown(`corner ${name}`))));
+  }
+  if (at.layers.has("pathgraph")) group.append(drawPathgraph(at));
+  if (at.layers.has("routes")) group.append(drawRoutes(at));
+  if (at.layers.has("track")) {
+    const track = at.episode.seen(at.step).filter(isPoint);
+    group.append(svg("path", { class: "track", d: pathOf([track], place, false) }));
+  }
+  for (const [name, edges] of outlines) {
+    if (!["floor", "verge"].includes(name)) group.append(label(at, edges.map((edge) => edge.from), place, nameOf(said, name)));
+  }
+  if (isPoint(at.line.belief.place)) {
+    const [x, y] = place(at.line.belief.place), size = 8 * at.unit;
+    group.append(svg("path", { class: "place", d: `M${x} ${y - size}L${x + size} ${y}L${x} ${y + size}L${x - size} ${y}Z` }, svg("title", {}, "where the robot believes it is")));
+  }
+  return group;
+}
+
+// What each node most likely is: { word, sure }.
+function kindsOf(said) {
+  const kinds = new Map();
+  for (const [name, word, sure] of said("kind", 3)) {
+    const kind = { word: ["floor", "verge", "object"].includes(word) ? word : "object", sure: percent(sure) };
+    if (!kinds.has(name) || kinds.get(name).sure < kind.sure) kinds.set(name, kind);
+  }
+  return kinds;
+}
+
+// A node with its likeliest shape: "o2 l_shape 98".
+function nameOf(said, name) {
+  const shapes = said("shape", 3).filter((args) => args[0] === name && args[1] !== "polygon");
+  const best = shapes.reduce((a, b) => (a && Number(a[2]) >= Number(b[2]) ? a : b), null);
+  const held = said("held", 1).some((args) => args[0] === name) ? " held" : "";
+  return best && Number(best[2]) > 0 ? `${name} ${best[1]} ${best[2]}${held}` : name + held;
+}
+
+// Hatching where no impression reached, as far as the places of impressions are known.
+function drawUnseen(at) {
+  const { west, north, width, height } = at.area, { belief } = at.line, places = new Set();
+  const angle = ((isNumber(belief.lattice) ? belief.lattice : 0) * Math.PI) / 180, origin = isPoint(belief.origin) ? belief.origin : [0.5, 0.5];
+  const cosine = Math.cos(angle), sine = Math.sin(angle), windows = [];
+  for (const [east, to] of at.episode.seen(at.step).slice(isNumber(belief.map_from) ? belief.map_from : 0).filter(isPoint)) {
+    const x = Math.floor(east * cosine - to * sine + origin[0] + 1e-6) + 0.5 - origin[0];
+    const y = Math.floor(east * sine + to * cosine + origin[1] + 1e-6) + 0.5 - origin[1];
+    if (places.has(`${x},${y}`)) continue;
+    places.add(`${x},${y}`);
+    const middle = [x * cosine + y * sine, y * cosine - x * sine];
+    windows.push(squareOf(middle[0] - RETINA_REACH - 0.5, middle[1] - RETINA_REACH - 0.5, 2 * RETINA_REACH));
+  }
+  const all = { x: rounded(west), y: rounded(north), width: rounded(width), height: rounded(height) };
+  return svg("g", {},
+    svg("mask", { id: "never-seen", maskUnits: "userSpaceOnUse", ...all },
+      svg("rect", { ...all, fill: "white" }), svg("path", { d: pathOf(windows, at.places.robot, true), fill: "black" })),
+    svg("rect", { class: "unseen", ...all, fill: "url(#hatch)", mask: "url(#never-seen)" }));
+}
+
+// The pathgraph of the believed floor. Facts name the ends of a link, not its way: links are drawn straight.
+function drawPathgraph(at) {
+  const { said, places } = at, group = svg("g", { class: "pathgraph" }), junctions = new Map();
+  for (const [name, east, north, clearance] of said("junction", 4)) {
+    const point = [hundredths(east), hundredths(north)];
+    if (!point.some(Number.isNaN)) junctions.set(name, { point, clearance });
+  }
+  for (const [name, first, last, length, clearance] of said("link", 5)) {
+    const ends = [junctions.get(first), junctions.get(last)];
+    if (!ends[0] || !ends[1]) continue;
+    const title = svg("title", {}, shown(`${name}: length ${length / 100}, clearance ${clearance / 100}`));
+    if (first === last) {
+      const [x, y] = places.robot(ends[0].point);
+      group.append(svg("circle", { class: "link", cx: x, cy: y - 1, r: 1 }, title));
+    } else group.append(svg("path", { class: "link", d: pathOf([ends.map((end) => end.point)], places.robot, false) }, title));
+  }
+  for (const [name, { point, clearance }] of junctions) {
+    const [cx, cy] = places.robot(point);
+    group.append(svg("circle", { class: "junction", cx, cy, r: 3 * at.unit }, svg("title", {}, shown(`${name}: clearance ${clearance / 100}`))));
+  }
+  return group;
+}
+
+// The routes that were weighed for the next command: the chosen one is drawn solid.
+function drawRoutes(at) {
+  const group = svg("g", { class: "routes" }), routes = Array.isArray(at.line.belief.routes) ? at.line.belief.routes : [];
+  for (const route of [...routes].sort((a, b) => Boolean(a.chosen) - Boolean(b.chosen))) {
+    const points = Array.isArray(route.points) ? route.points.filter(isPoint) : [];
+    group.append(svg("path", { class: route.chosen ? "route chosen" : "route", d: pathOf([points], at.places.robot, false) }));
+  }
+  return group;
+}

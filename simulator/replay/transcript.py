@@ -1,0 +1,67 @@
+"""An episode as text: of each step the action, the reason, the true table and the facts that changed."""
+
+from collections.abc import Iterator
+
+from simulator.episode.episode import Episode
+from simulator.replay.changes import changes
+from simulator.run.recorded_story import RecordedStory
+from simulator.terminal.action_in_words import describe
+from simulator.terminal.streams import escape_controls
+
+MAX_LISTED_FACTS = 40  # facts of one kind of change that a step lists; a convention
+
+
+def transcript(name: str, episode: Episode) -> Iterator[str]:
+    """Yield the text of each step of an episode, and of its end.
+
+    Parameters
+    ----------
+    name : the name of the file, for messages.
+    episode : the episode, with one step at least.
+
+    Yields
+    ------
+    Text with line ends, one step at a time.
+
+    Raises
+    ------
+    BadInputError : a step records no table that can be drawn.
+    """
+    story = RecordedStory(name, episode)
+    before: list[str] | None = None
+    while True:
+        line, facts = story.line, [_clean(fact) for fact in story.line["belief"]["facts"]]
+        head = f"step {line['step']}: {describe(line['action'])}: {_clean(line['why'])}"
+        yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *_changes(before, facts), "", ""])
+        before = facts
+        if not story.advance():
+            break
+    if episode.result is None:
+        yield "the episode was cut short here\n"
+    else:
+        yield f"{episode.result['verdict']} after {episode.result['steps']} steps: {_clean(episode.result['reason'])}\n"
+
+
+def _changes(before: list[str] | None, facts: list[str]) -> Iterator[str]:
+    """Yield one line for each fact that changed; None stands for the facts before the first step."""
+    if before is None:
+        yield f"{len(facts)} facts"
+        return
+    found = changes(before, facts)
+    yield from _listed([f"~ {new}  was {old}" for old, new in found.changed], "changed")
+    yield from _listed([f"+ {fact}" for fact in found.added], "added")
+    yield from _listed([f"- {fact}" for fact in found.removed], "removed")
+    for name, count in found.edges.items():
+        yield f"~ outline of {name}: {count} edge{'s' if count > 1 else ''}"
+
+
+def _listed(rows: list[str], word: str) -> Iterator[str]:
+    """Yield the first rows, and how many more there are."""
+    yield from rows[:MAX_LISTED_FACTS]
+    if len(rows) > MAX_LISTED_FACTS:
+        yield f"... {len(rows) - MAX_LISTED_FACTS} more {word}"
+
+
+def _clean(text: str) -> str:
+    """Return a text of an episode on one line, without control characters."""
+    return escape_controls(text, lines=False)
