@@ -1,4 +1,4 @@
-"""What the 160 fields of the retina observe, what was predicted, and how it was explained, written with few characters.
+"""Impressions with few characters: what 160 fields observe, what was predicted for them, and how it was explained.
 
 Digits are written as what they are above others: the greatest level above the least, what is observed above the
 greatest. `status` is told by these but for exceptions, and `cells` by `status`. `explained` is told by a letter for
