@@ -28,10 +28,14 @@ class RecordedStory:
     name : the name of the file, for messages.
     episode : the episode.
     kb_files : the paths of the rule files with which it was made, as far as they are given again.
+
+    Attributes
+    ----------
+    name, kb_files : as given.
     """
 
     def __init__(self, name: str, episode: Episode, kb_files: tuple[str, ...] = ()) -> None:
-        self.name, self._episode, self._kb_files = name, episode, kb_files
+        self.name, self._episode, self.kb_files = name, episode, kb_files
         self._at = 0
         self._rules = AssumedRules()
         self._checked: dict[int, list[str]] = {}  # the facts of the step that was asked for last
@@ -101,14 +105,14 @@ class RecordedStory:
         """
         conditions = RunConditions((), recorded_scenario(self.header, self.lines[0]).task)
         for change in self.changes:
-            conditions = changed_conditions(conditions, change, self._kb_files)
+            conditions = changed_conditions(conditions, change, self.kb_files)
         return conditions
 
     @property
     def rule_files(self) -> tuple[str, ...]:
         """The paths of the rules that queries use: the user's files, and assumptions that the header states."""
         assumed = self._rules.files(self.conditions.assumptions) if self.changes else ()
-        return (*self._kb_files, *assumed)
+        return (*self.kb_files, *assumed)
 
     @property
     def next_action(self) -> tuple[EpisodeLine | None, str] | None:
@@ -165,7 +169,7 @@ class RecordedStory:
         """
         try:
             scenario = recorded_scenario(self.header, self.lines[0])
-            settings = recorded_settings(self.header, self._kb_files)
+            settings = recorded_settings(self.header, self.kb_files)
         except (ValueError, KeyError, TypeError, AttributeError, shapely.errors.ShapelyError) as error:
             raise self._damaged(-1, f"this run cannot be repeated: {error}") from None
         live, differing = LiveStory(scenario, settings, make), None

@@ -46,7 +46,7 @@ def test_rules_and_facts_of_own_predicates(tmp_path: Path) -> None:
 
 def test_the_place_is_that_of_the_text() -> None:
     for text, place in {
-        "door(d1). shape(o1, sqare, 90).": "assume:1:21-21",
+        "door(d1). shape(o1, sqare, 90).": "assume:1:21-25",
         "door(d1).\n  in(o1, here).": "assume:2:10-13",
         "shape(o1, square, 5000000000).": "assume:1:19-28",
     }.items():
