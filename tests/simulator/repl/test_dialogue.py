@@ -281,6 +281,31 @@ def test_an_episode_of_another_world_is_not_repeated(
     assert "must be given again with --kb" in talk(dialogue_of(path, engine), capsys, "assume door(d9).")[1]
 
 
+DAMAGED_HEADERS = [
+    ("claims", [["shape(x,", 1]]), ("claims", [3]), ("claims", [["a", "b"]]), ("goals", ["at(utak,q)"]), ("goals", []),
+    ("parameters", {"x y": "object"}), ("parameters", {"x": "thing"}), ("expect", ["within("]),
+]  # fmt: skip
+
+
+def test_damaged_headers_and_changes_are_survived(
+    episode: Path, engine: QueryEngine, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [json.loads(row) for row in episode.read_text().splitlines()]
+    path = tmp_path / "ep.jsonl"
+    for key, value in DAMAGED_HEADERS:
+        head = {**rows[0], "task": {**rows[0]["task"], key: value}}
+        path.write_text("".join(json.dumps(row) + "\n" for row in [head, *rows[1:]]))
+        out, err = talk(dialogue_of(path, engine), capsys, "plan", "goal", "assume door(d9).", "?- node(org).", "show")
+        assert err and out.startswith("yes\n"), (key, value)
+    changes = [{"step": 0, "assume": "nonsense("}, {"step": -1, "goal": "x"}, 7, {"step": True, "retract": "y"}]
+    path.write_text("".join(json.dumps(row) + "\n" for row in [{**rows[0], "changes": changes}, *rows[1:]]))
+    dialogue = dialogue_of(path, engine)
+    assert talk(dialogue, capsys, "?- node(org).", "assume", "goal")[0] == (
+        "yes\nnothing is assumed at this step\nat(utak,x).\n"
+    )
+    assert "error" in talk(dialogue, capsys, "assume door(d9).")[1]  # the change cannot be repeated
+
+
 def test_older_episodes_bind_their_parameters_too(
     episode: Path, engine: QueryEngine, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
