@@ -1,4 +1,4 @@
-"""The beliefs of the robot after a step, and the answers to questions about them."""
+"""The world model after a step, and the answers to questions about it."""
 
 import atexit
 from collections.abc import Iterator, Mapping

@@ -11,8 +11,6 @@ from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from simulator.terminal.prompt import Prompt
-
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
 from kb.reasoning.query import QueryEngine
@@ -23,7 +21,6 @@ from simulator.terminal.action_in_words import describe
 
 PROJECT_FOLDER = Path(__file__).resolve().parents[2]
 RECORDED = (("go_northeast", "2"), ("push_square_corner", "3"))  # runs that are recorded: example, most commands
-PROMPT_LINES = ("show", "facts", "facts o1", "step", "?- node(X).", "step 2", "show", "run", "facts")
 ASKED_SHARE = 0.05  # of the episodes that are asked a question: each takes a process about 5 ms
 HOSTILE_VALUES = (  # JSON texts that are put in the place of values
     "null", "true", "-1", "0.5", "1e999", "NaN", "-Infinity", '""', "[]", "{}", "[[]]", "[" * 3000, '{"a":' * 3000,
@@ -117,7 +114,7 @@ def _with_other_lines(draw: random.Random, raw: bytes) -> bytes:
 def read_through(path: Path, engine: QueryEngine, ask: bool) -> None:
     """Read an episode, draw and list every step; raise what goes wrong.
 
-    path : the episode. engine : answers questions. ask : whether to ask one, and to go through it at the prompt, too.
+    path : the episode. engine : answers questions. ask : whether to ask one.
     """
     story = open_story(path, Settings())
     while True:
@@ -128,18 +125,6 @@ def read_through(path: Path, engine: QueryEngine, ask: bool) -> None:
             break
     if ask:
         engine.ask(facts, "node(X)")
-        _prompted(path, engine)
-
-
-def _prompted(path: Path, engine: QueryEngine) -> None:
-    """Give the lines of a user to the prompt; raise AssertionError when it meets a bug."""
-    said: list[str] = []
-    prompt = Prompt(open_story(path, Settings()), engine, said.append)
-    for line in PROMPT_LINES:
-        prompt.obey(line)
-    bugs = [text for text in said if "bug of ours" in text or "Traceback" in text]
-    if bugs:
-        raise AssertionError(bugs[0])
 
 
 def episodes(

@@ -3,9 +3,12 @@
 A file is named by step, encoding and number, such as 0007-shapes-2.lp: the third decision of step 7 (they count from
 0). Its best answer set, by `python -m clingo FILE`, is what the robot decided. `index.jsonl` has a line for each
 decision, also for those that were made before and have no file of their own.
+
+Nothing is left out of an encoding; negated atoms with an anonymous variable are written otherwise, for viasp.
 """
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -19,6 +22,8 @@ from simulator.episode.episode import Episode, EpisodeLine
 from simulator.episode.record import rules_sum
 
 INDEX_NAME = "index.jsonl"
+# A comment, a text in quotes, or a negated atom with its name and arguments.
+NEGATED_ATOM = re.compile(r'%\*(?s:.*?)\*%|%[^\n]*|"(?:[^"\\]|\\.)*"|\bnot\s+([a-z]\w*)\(([^()]*)\)')
 RULES_HEAD = "% The user's rules that take part in this encoding (--kb)."
 
 
@@ -92,11 +97,13 @@ class ProgramDump:
         if path is None:
             raise self._damaged(step, f"decision {number} is of an encoding that utak does not have")
         self._check_facts(step, number, facts)
-        rules = read_rules(self._rule_files(step)).rules_reaching(encoding) if self._sums else ()
+        given = self._rule_files(step)
+        rules = read_rules(given).rules_reaching(encoding) if given else ()
         answered = "there is no answer" if answer is None else f"{len(answer)} atoms, see {INDEX_NAME}"
         parts = [f"% Decision {number} of step {step}: {path.name}. What the robot decided: {answered}."]
-        parts += [RULES_HEAD, *(one.written for one in rules)] if rules else []
-        parts += [path.read_text().rstrip(), "% The facts of this decision.", *(f"{fact}." for fact in facts)]
+        program = [RULES_HEAD, *(one.written for one in rules)] if rules else []
+        parts.append(without_anonymous_negation("\n".join([*program, path.read_text().rstrip()])))
+        parts += ["% The facts of this decision.", *(f"{fact}." for fact in facts)]
         name = f"{step:04d}-{encoding}-{number}.lp"
         (self._folder / name).unlink(missing_ok=True)  # a link is replaced, not followed
         self._append(name, "\n".join([*parts, ""]))
@@ -139,6 +146,36 @@ def rules_at(head: Mapping[str, Any], step: int) -> list[str]:
     stages = [entry for entry in head.get("forked", ()) if entry["until"] >= step]
     sums: list[str] = (stages[0] if stages else head)["options"]["kb"]
     return sums
+
+
+def without_anonymous_negation(text: str) -> str:
+    r"""Return a program in which `not p(X, _)` is `not some_p_1(X)`, with `some_p_1(X) :- p(X, _).` at its end.
+
+    Both say that p holds for X with nothing. viasp (2.3) cannot draw the first form. Comments and texts in quotes are
+    left alone, and so are negated atoms whose arguments have arguments.
+
+    >>> without_anonymous_negation("q(X) :- r(X), not p(X, _).")
+    'q(X) :- r(X), not some_p_1(X).\nsome_p_1(A1) :- p(A1, _).'
+    """
+    helpers: dict[str, str] = {}
+
+    def rewritten(found: re.Match[str]) -> str:
+        arguments = [part.strip() for part in (found[2] or "").split(",")]
+        if "_" not in arguments:
+            return found[0]
+        kept = [number for number, argument in enumerate(arguments, 1) if argument != "_"]
+        name = "_".join(["some", found[1], *map(str, kept)])
+        variables = [f"A{number}" if number in kept else "_" for number in range(1, len(arguments) + 1)]
+        head = _atom(name, [f"A{number}" for number in kept])
+        helpers[name] = f"{head} :- {_atom(found[1], variables)}."
+        return f"not {_atom(name, [arguments[number - 1] for number in kept])}"
+
+    return "\n".join([NEGATED_ATOM.sub(rewritten, text), *helpers.values()])
+
+
+def _atom(name: str, arguments: Sequence[str]) -> str:
+    """Return an atom as text."""
+    return f"{name}({', '.join(arguments)})" if arguments else name
 
 
 def dump_episode(

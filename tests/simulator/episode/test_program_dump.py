@@ -30,7 +30,7 @@ def dump(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     """Return the folder with the decisions of a run, its episode, and the name of the example."""
     name, noise = request.param
     place = tmp_path_factory.mktemp("dump")
-    options = ["--noise", noise, "--max-steps", "6", "--log", str(place / "ep.jsonl"), "--dump-asp", str(place / "asp")]
+    options = ["--noise", noise, "--max-steps", "2", "--log", str(place / "ep.jsonl"), "--dump-asp", str(place / "asp")]
     assert main(["run", str(ROOT / "examples" / name), *options]) in (0, 1, 75)
     return place / "asp", place / "ep.jsonl", name
 
@@ -110,14 +110,15 @@ def test_rules_of_the_user_stand_in_the_programs_that_they_reach(tmp_path: Path)
     rules, folder = tmp_path / "mine.lp", tmp_path / "asp"
     rules.write_text(RULES)
     scenario = str(ROOT / "examples" / "push_square_next_room")
-    options = ["--max-steps", "2", "--kb", str(rules), "--log", str(tmp_path / "ep.jsonl"), "--dump-asp", str(folder)]
+    options = ["--max-steps", "1", "--kb", str(rules), "--log", str(tmp_path / "ep.jsonl"), "--dump-asp", str(folder)]
     assert main(["run", scenario, *options]) in (0, 1, 75)
     files = {entry["file"]: entry for entry in index_of(folder)}
     reached = {entry["encoding"] for name, entry in files.items() if "--kb" in (folder / name).read_text()}
     assert "interpretation" in reached
     assert "aims" not in reached
     for name, entry in files.items():
-        check_decision(folder / name, entry["answer"], tmp_path)
+        if entry["encoding"] in reached:
+            check_decision(folder / name, entry["answer"], tmp_path)
     again = ["query", str(tmp_path / "ep.jsonl"), "node(X)", "--dump-asp"]
     assert main([*again, str(tmp_path / "b")]) == 65  # the rules of the run must be given again
     assert main([*again, str(tmp_path / "c"), "--kb", str(rules)]) == 0
