@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
 from kb.localisation.field_account import Accommodation
-from kb.reasoning.decisions import SolverCall, record_decisions
 from kb.task.task import Task
+from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict
@@ -104,6 +104,7 @@ class Robot:
         self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
         self._has_restarted = False
         self._journal = Journal()
+        self._decided: list[SolverCall] = []  # what was decided between two steps, for the record of the next one
 
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
@@ -149,6 +150,29 @@ class Robot:
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
             raise ValueError("the run is finished")
+        return self.follow(command, why)
+
+    def follow(self, command: Command, why: str) -> StepReport:
+        """Give a command, perceive, and decide anew (steps 10 to 13).
+
+        The command may be another one than was decided: then the robot is led. A task that had ended goes on.
+
+        Parameters
+        ----------
+        command : the command, in the robot's own frame.
+        why : its reason, in words.
+
+        Returns
+        -------
+        StepReport
+            The command, and what is believed after it.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
         with record_decisions() as decisions:
@@ -160,7 +184,8 @@ class Robot:
             if self._must_restart:
                 accommodated = self._restart(impression) or accommodated
         self._test()
-        return self._report(command, impression, accommodated, why, decisions)
+        earlier, self._decided = self._decided, []
+        return self._report(command, impression, accommodated, why, [*earlier, *decisions])
 
     def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
         """Take other rules, and perhaps another task, for all that comes after the next impression.
@@ -209,7 +234,8 @@ class Robot:
             rules = tuple(Path(file) for file in options.kb_files)
             self.knowledge.rules = rules
             self.decider = Decider(task, options.paths, rules, options.pull)
-            self._decide()
+            with record_decisions() as self._decided:
+                self._decide()
             held = self.model.held
             if held is not None and self.decision.command is not None:
                 self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")

@@ -8,7 +8,7 @@ from typing import Any
 
 from geometry.kernels.arrays import XY
 from kb.localisation.state import TrackerState
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
 ROUTES_ENCODING = "routes"  # the encoding whose candidates are routes

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from simulator.cli.main import main
 from simulator.run.trial import run_trial
 from simulator.scenario.untrusted import SCENARIO_FILES
 
@@ -26,6 +27,11 @@ def test_there_are_twelve_exercises_at_three_levels() -> None:
         levels.append(int(level))
     assert levels == sorted(levels)
     assert set(levels) == {1, 2, 3}
+
+
+def test_the_files_of_all_exercises_are_as_they_must_be(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(EXERCISES)]) == 0
+    assert capsys.readouterr().out.count(": ok\n") == 12
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)

@@ -1,4 +1,4 @@
-"""What the robot believes after a step, and the answers to questions about it."""
+"""The world model after a step, and the answers to questions about it."""
 
 import atexit
 from collections.abc import Iterator, Mapping

@@ -73,5 +73,5 @@ def _unfolding(reason: Reason, levels: int) -> str:
     if not reason.rests_on:
         return f"<div>{claim}</div>"
     below = "".join(_unfolding(one, levels - 1) for one in reason.rests_on)
-    unfolded = " open" if levels > 0 else ""
+    unfolded = ' open="open"' if levels > 0 else ""
     return f'<details{unfolded}><summary>{claim}</summary><div style="margin-left:1.5em">{below}</div></details>'

@@ -10,5 +10,6 @@ shortest    the length of the shortest walk, by an exact visibility graph
 narrowness  the passage named in a verdict, compared with the true one
 stopwatch   the time of the robot's thinking
 drawing     a world drawn in letters
+browser     a small driver of Chromium, for pages
 tally       the table of a campaign
 """

@@ -1,4 +1,4 @@
-"""Outcomes of reading something: accepted, refused with a place, or a fault."""
+"""The outcomes of reading something: accepted, refused with a place, or a fault."""
 
 import re
 import signal

@@ -8,7 +8,7 @@ from kb.evidence.inputs import Given, input_reason
 from kb.evidence.reason import Reason, ReasonKind
 from kb.explanation.whynot import explain_absence
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
 SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from typing import Protocol
 
 from kb.evidence.atoms import atom_parts
-from kb.evidence.declared import meaning
 from kb.evidence.inputs import FLOOR, VERGE, Given, input_reason
+from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.witness import (
@@ -18,35 +18,13 @@ from kb.evidence.witness import (
 )
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
 from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 ROBOT = "org"  # the node of the robot
 ROBOT_ALIAS = "utak"  # its name in questions
-FACT_SENTENCES = {  # what facts say; numbers stand for their arguments
-    "node": "{0} is a part of the world",
-    "kind": "{0} is believed to be {1}, with confidence {2} of 100",
-    "child": "{1} is a part of {0}",
-    "offset": "{0} lies {1} east and {2} north of what it is a part of, in hundredths of squares",
-    "held": "the robot holds {0}",
-    "rect": "{0} lies between {1} and {3} east and between {2} and {4} north, in hundredths of squares",
-    "segment": "a piece of the boundary of {0} leads from ({2}, {3}) to ({4}, {5}), with confidence {6} of 100",
-    "shape": "{0} has the shape {1} with confidence {2} of 100",
-    "colour": "{0} was felt to have colour {1}",
-    "movable": "{0} can be moved with confidence {1} of 100",
-    "adjacent": "{0} and {1} touch",
-    "room": "{0} is a part of the floor between doors",
-    "door": "{0} is a door: a neck of the floor that is narrow enough and seen well enough",
-    "connects": "door {0} leads from room {1} to room {2}",
-    "width": "door {0} is {1} hundredths of a square wide",
-    "in": "the middle of {0} lies in room {1}",
-    "corner": "the corner of the known floor furthest {0} is at ({1}, {2}), in hundredths of squares",
-    "unseen": "{1} squares of room {0} are not settled",
-    "crosses": "link {0} leads through door {1}",
-    "bound": "parameter {0} of the task means {1}",
-}
 
 
-class Prover(Protocol):
+class AnswerProver(Protocol):
     """Explains the answer of an encoding."""
 
     def __call__(self, call: SolverCall, atom: str, leaf: Callable[[str], Reason]) -> Reason:
@@ -66,7 +44,7 @@ class FactExplainer:
     record : as given.
     """
 
-    def __init__(self, record: Record, prove: Prover) -> None:
+    def __init__(self, record: Record, prove: AnswerProver) -> None:
         self.record = record
         self._prove = prove
 
@@ -94,8 +72,10 @@ class FactExplainer:
         if fact not in self.record.steps[step].fact_set:
             return None
         name, arguments = atom_parts(fact)
+        if name == "parameter":
+            return Reason(fact, words_of("belief", fact), ReasonKind.TASK, "the task")
         below = self._below(fact, name, arguments, step)
-        return Reason(fact, _in_words(name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
+        return Reason(fact, words_of("belief", fact), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
         """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it.
@@ -128,7 +108,7 @@ class FactExplainer:
         if name == "colour":
             felt = felt_reason(self.record, step, node_squares(self.record.steps[step], node), arguments[1], node)
             return [felt] if felt else [self._squares(node, step)]
-        if name in ("door", "width", "connects", "crosses"):
+        if name in ("door", "width", "threshold", "connects", "crosses"):
             return self._door_reasons(name, arguments, step)
         if name == "corner":
             return self._corner_reasons(arguments, step)
@@ -298,9 +278,3 @@ def plain_fact(fact: str) -> str:
     things = {number for number, type_ in enumerate(types) if type_ == THING_ARGUMENT}
     named = [ROBOT if at in things and argument == ROBOT_ALIAS else argument for at, argument in enumerate(arguments)]
     return f"{name}({','.join(named)})" if named else name
-
-
-def _in_words(name: str, arguments: tuple[str, ...]) -> str:
-    """Return what a fact of the world model says, in words; what its declaration says where there is no sentence."""
-    sentence = FACT_SENTENCES.get(name)
-    return sentence.format(*arguments) if sentence else meaning("belief", name, arguments)

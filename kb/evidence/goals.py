@@ -8,7 +8,7 @@ from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import ROBOT, ROBOT_ALIAS, FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
     "aims": ("choose", "this subgoal was chosen"),

@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 from geometry.kernels.arrays import Square
 from kb.evidence.atoms import atom_parts
-from kb.evidence.declared import meaning
+from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.witness import UNITS_PER_SQUARE, command_reason, felt_reason, line_squares, node_squares, seen_reason
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 FLOOR, VERGE = "floor", "verge"  # the nodes of the whole floor and of all that bounds it
 TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "not_through"})  # what start.lp and goal.lp say
@@ -44,7 +44,7 @@ def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int],
     fact_reason : returns the reason of a fact of the world model at a step; None when it is not believed then.
     """
     name, arguments = atom_parts(given.atom)
-    says = meaning(given.call.encoding, name, arguments)
+    says = words_of(given.call.encoding, given.atom)
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]

@@ -1,12 +1,15 @@
 """Proof trees of encodings as reasons; the facts that an encoding was given are traced further."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 from kb.evidence.reason import Reason, ReasonKind
 from kb.explanation.belief import explain_query_atom
+from kb.explanation.programs import decision_program
 from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
-from kb.reasoning.decisions import SolverCall
+from kb.explanation.wording import atom_words
+from kb.tracing.decisions import SolverCall
 
 KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
     "derived": ReasonKind.RULE,
@@ -21,7 +24,7 @@ KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
 
 
 class EncodingProver:
-    """Explains the answers of encodings by the rules that derived them; satisfies `kb.evidence.beliefs.Prover`.
+    """Explains the answers of encodings by the rules that derived them; satisfies `kb.evidence.beliefs.AnswerProver`.
 
     Parameters
     ----------
@@ -46,6 +49,16 @@ class EncodingProver:
         """
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
         return _reason(proof.root, leaf, {})
+
+
+@lru_cache(maxsize=4096)
+def words_of(encoding: str, atom: str) -> str:
+    """Return an atom of an encoding in plain words, as the encoding says its predicate reads; '' where it does not.
+
+    encoding : its name without `.lp`; `belief` for facts of the world model. atom : the atom, as text.
+    """
+    words = atom_words(atom, decision_program(encoding).words)
+    return "" if words == atom else words
 
 
 def prove_query_atom(

@@ -6,7 +6,7 @@ from typing import Any
 
 from geometry.kernels.arrays import XY, Square
 from kb.perception.frame import Frame
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 RecordLine = Mapping[str, Any]  # the JSON object of one step of an episode
 

@@ -65,9 +65,7 @@ class DecisionProgram:
     CannotOpenError, BadInputError : a file with users' rules cannot be read or has errors.
     """
 
-    def __init__(
-        self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS
-    ) -> None:
+    def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
         self.encoding, self._seconds = encoding, seconds
         path = _path_of(encoding)
         self._users: tuple[Statement, ...] = read_rules(rule_files).rules_reaching(encoding) if rule_files else ()

@@ -5,7 +5,7 @@ from typing import Any
 
 from kb.explanation.values import Absence, Proof, ProofNode, RivalChoice
 
-DEPTHS = {"short": 0, "mid": 2, "long": 1_000}  # levels below the claim that a text shows, by its depth
+LEVELS_BY_DEPTH = {"short": 0, "mid": 2, "long": 1_000}  # levels below the claim that a text shows, by its depth
 RIVALS_SHOWN = {"short": 1, "mid": 3, "long": 1_000}  # other ways to choose that a text names, by its depth
 
 
@@ -33,12 +33,12 @@ def render(found: Proof | Absence, depth: str = "mid") -> str:
             if found.proof is not None:
                 lines += [
                     "Then it would hold:",
-                    *_lines(found.proof.root, DEPTHS[depth], RIVALS_SHOWN[depth], 1, set()),
+                    *_lines(found.proof.root, LEVELS_BY_DEPTH[depth], RIVALS_SHOWN[depth], 1, set()),
                 ]
         return "\n".join(lines)
     if depth == "short":
         return short_sentence(found.root)
-    return "\n".join(_lines(found.root, DEPTHS[depth], RIVALS_SHOWN[depth], 0, set()))
+    return "\n".join(_lines(found.root, LEVELS_BY_DEPTH[depth], RIVALS_SHOWN[depth], 0, set()))
 
 
 def short_sentence(node: ProofNode) -> str:

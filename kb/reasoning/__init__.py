@@ -3,7 +3,6 @@
 Modules in reading order:
 
 solver        one answer of our encodings to facts, or none
-decisions     the record of what encodings were given and answered
 encoding_constants  constants that an encoding states, for Python to use the same number
 sentences     the plain sentences of rules, in comments before them
 worker        a separate process for programs of users; can be killed

@@ -100,6 +100,11 @@ class QueryEngine:
         """End the separate process; an exception is not suppressed."""
         self.close()
 
+    @property
+    def process_id(self) -> int | None:
+        """The number of the separate process; None while none runs."""
+        return self._worker.process_id
+
     def use_rules(self, rules: Sequence[str]) -> None:
         """Use the rules of these files, and no others, in all further queries.
 

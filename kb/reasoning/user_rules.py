@@ -7,7 +7,8 @@ too much memory or is no rule at all is only an error of its file. The rules are
 
 import atexit
 import re
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,7 +20,7 @@ from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import MAX_TERM_DEPTH, facts_from_text
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
-from kb.language.tokens import tokenize
+from kb.language.tokens import Token, tokenize
 from kb.language.vocabulary import Signature
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
@@ -28,6 +29,7 @@ from kb.reasoning.solver import KB_ENCODINGS
 from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
+TOKENS_BETWEEN_CLOCKS = 1000  # tokens read between two looks at the clock: some milliseconds
 MAX_CONFLICTS = 100_000  # conflicts of clingo's search for the best answer; bounds it on every machine alike
 
 
@@ -146,10 +148,17 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
 
     seconds : the limit of wall-clock time.
     """
-    problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
+    end = time.monotonic() + seconds
+    try:
+        problems = list(_not_allowed(source, _until(end, tokenize(source, []))))
+        if not problems:
+            problems = list(integers_beyond_32_bits(source, _until(end, tokenize(source, []))))
+    except TimeoutError:
+        what = f"these rules were given up: it took more than {seconds:g} seconds to read them"
+        raise BadInputError([source.problem(source.start(), what)]) from None
     if problems:
         raise BadInputError(problems)
-    found = rules_worker().exchange({"read": source.text}, seconds)
+    found = rules_worker().exchange({"read": source.text}, max(0.0, end - time.monotonic()))
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
@@ -174,14 +183,22 @@ def words_of_rules(source: Source, statements: Sequence[Statement]) -> tuple[Rul
     return read_sentences(source, rules)
 
 
-def _not_allowed(source: Source) -> Iterator[Problem]:
+def _until(end: float, tokens: Iterable[Token]) -> Iterator[Token]:
+    """Yield tokens; raise TimeoutError after the moment `end`, in seconds of the monotonic clock."""
+    for number, token in enumerate(tokens):
+        if number % TOKENS_BETWEEN_CLOCKS == 0 and time.monotonic() > end:
+            raise TimeoutError
+        yield token
+
+
+def _not_allowed(source: Source, tokens: Iterable[Token]) -> Iterator[Problem]:
     """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
 
     One for each `#include` in the order of the text; nothing after the first bracket that is nested more than
-    MAX_TERM_DEPTH deep.
+    MAX_TERM_DEPTH deep. `tokens` are those of the source.
     """
     depth = 0
-    for token in tokenize(source, []):
+    for token in tokens:
         if token.text == "#include":
             yield source.problem(token.span, "#include is not allowed", "give each file with a --kb of its own")
         depth += (token.text == "(") - (token.text == ")")

@@ -5,6 +5,7 @@ the separate process of kb.reasoning.query_worker for programs with users' rules
 
 Modules in reading order:
 
+decisions     the record of what encodings were given and answered
 syntax        statements with places for hidden variables; one alternative of each pool
 instrument    helping rules that make clingo say which instances of rules hold
 answers       programs grounded once: whole answers, instances, best answers under assumptions

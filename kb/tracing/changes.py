@@ -18,7 +18,7 @@ from kb.tracing.syntax import ParsedProgram
 
 MAX_CHECKS = 900  # changes that are tried where costs decide; a convention, one to three seconds
 MAX_CHANGE_SIZE = 12  # facts of one change; a convention
-Change = tuple[int, ...]  # indices of switches, ascending
+FactChange = tuple[int, ...]  # indices of switches, ascending
 
 
 class FoundChange(NamedTuple):
@@ -87,7 +87,7 @@ class ChangeSearch:
                 found.append(atom.literal)
         return found
 
-    def _possible_change(self) -> Change | None:
+    def _possible_change(self) -> FactChange | None:
         """Return a change of least size after which some answer holds the atom, at whatever cost; None without one."""
         wanted = self._control.symbolic_atoms[self._wanted]
         if wanted is None:
@@ -102,9 +102,9 @@ class ChangeSearch:
                 return found
         return None
 
-    def _solved(self, assumptions: Sequence[int], mode: str) -> Change | None:
+    def _solved(self, assumptions: Sequence[int], mode: str) -> FactChange | None:
         """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
-        best: list[Change] = []
+        best: list[FactChange] = []
 
         def keep(model: clingo.Model) -> None:
             """Keep the change of a model."""
@@ -116,11 +116,11 @@ class ChangeSearch:
         settings.opt_mode = "opt"
         return best[0] if best else None
 
-    def _change_of(self, model: clingo.Model) -> Change:
+    def _change_of(self, model: clingo.Model) -> FactChange:
         """Return the switches that are on in a model."""
         return tuple(index for index, literal in enumerate(self._switches) if model.is_true(literal))
 
-    def _holds(self, change: Change) -> bool:
+    def _holds(self, change: FactChange) -> bool:
         """Return whether the wanted atom is part of some best answer after a change."""
         self._checks += 1
         on = set(change)
@@ -137,7 +137,7 @@ class ChangeSearch:
         self._control.solve(assumptions=list(assumptions), on_model=lambda model: costs.append(list(model.cost)))
         return costs[-1] if costs else None
 
-    def _changes_of_size(self, size: int) -> Iterator[Change]:
+    def _changes_of_size(self, size: int) -> Iterator[FactChange]:
         """Yield the changes of a size: those that only take facts away, and for two those that replace one, first."""
         removals = len(self._removable)
         seen = dict.fromkeys(combinations(range(removals), size))
@@ -148,7 +148,7 @@ class ChangeSearch:
             seen |= dict.fromkeys(near)
         yield from (change for change in combinations(range(len(self._switches)), size) if change not in seen)
 
-    def _replacements(self) -> Iterator[Change]:
+    def _replacements(self) -> Iterator[FactChange]:
         """Yield the pairs of a given fact and a candidate that differ in one argument."""
         gone = [clingo.parse_term(fact) for fact in self._removable]
         for index, text in enumerate(self._addable):
@@ -159,7 +159,7 @@ class ChangeSearch:
                     if sum(one != other for one, other in pairs) == 1:
                         yield number, len(gone) + index
 
-    def _greedy(self, possible: Change) -> FoundChange:
+    def _greedy(self, possible: FactChange) -> FoundChange:
         """Return a change of which no member can be left out, found by taking away facts one after the other."""
         change = possible
         for index in range(len(self._removable)):
@@ -175,14 +175,14 @@ class ChangeSearch:
                 change = fewer
         return self._as_found(change, False)
 
-    def _wanted_is_possible(self, change: Change) -> bool:
+    def _wanted_is_possible(self, change: FactChange) -> bool:
         """Return whether some answer holds the wanted atom after a change, whatever it costs."""
         on = set(change)
         assumptions = [literal if index in on else -literal for index, literal in enumerate(self._switches)]
         wanted = self._control.symbolic_atoms[self._wanted]
         return wanted is not None and bool(self._control.solve(assumptions=[*assumptions, wanted.literal]).satisfiable)
 
-    def _as_found(self, change: Change, least: bool) -> FoundChange:
+    def _as_found(self, change: FactChange, least: bool) -> FoundChange:
         """Return a change as facts."""
         count = len(self._removable)
         in_way = tuple(sorted(self._removable[index] for index in change if index < count))

@@ -132,9 +132,7 @@ class Domains:
             self._join_aggregate(number, aggregate)
         return found
 
-    def _relation(
-        self, left: AST | tuple[str], right: AST, sign: int, fixed: frozenset[str] = frozenset()
-    ) -> Relation:
+    def _relation(self, left: AST | tuple[str], right: AST, sign: int, fixed: frozenset[str] = frozenset()) -> Relation:
         """Return two terms held against each other; the left one may be the name of a variable alone."""
         second = calculation(right, self._constants)
         if isinstance(left, tuple):

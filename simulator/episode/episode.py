@@ -146,6 +146,14 @@ def _damaged(path: str, number: int, what: str, column: int = 1) -> BadInputErro
     return BadInputError([Problem(path, SourceSpan(number, column, column), what)])
 
 
+def _was_changed(row: bytes) -> bool:
+    """Return whether a header states changes of the run from outside (simulator.run.changes)."""
+    with suppress(ValueError):
+        head = json.loads(row)
+        return isinstance(head, dict) and bool(head.get("changes"))
+    return False
+
+
 def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
     """Return the problem of a value, placed at the key that leads to it."""
     at = column(raw.decode("utf-8"), where)
@@ -215,6 +223,8 @@ class EpisodeLog:
         if self._number <= len(self._recorded):
             if text.encode("ascii") != self._recorded[self._number - 1]:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
+                if self._number == 1 and _was_changed(self._recorded[0]):
+                    what = "this run was changed at the prompt, so `utak run` cannot repeat it: `utak repl` can"
                 raise _damaged(str(self._path), self._number, what)
         elif self._stream is not None:
             try:

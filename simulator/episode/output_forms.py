@@ -6,6 +6,7 @@ from simulator.episode.wellformed import (
     END,
     FLAG,
     HEADER,
+    OPTIONS,
     RESULT_FORMS,
     STEP,
     STEP_NUMBER,
@@ -44,6 +45,10 @@ ROUTES_OUTPUT = Keys(
     }
 )
 SCORE = Keys({"earned": Numeric(0, MAX_COUNT), "possible": Numeric(0, MAX_COUNT)})
+# The options of a scenario that was tested.
+TRIAL_OPTIONS = Keys({**OPTIONS.forms, "kb": Noted("the names of the files of rules", ListOf(TEXT))})
+# One expectation of a scenario: `came` says what came instead, and is empty where it is met.
+EXPECTATION = Keys({"expected": TEXT, "met": FLAG, "came": TEXT, "points": Whole(0, MAX_COUNT)})
 # One scenario of `utak test --json`.
 TRIAL = Keys(
     {
@@ -56,9 +61,11 @@ TRIAL = Keys(
         "achieved": OrNull(FLAG),
         "steps": OrNull(STEP_NUMBER),
         "reason": OrNull(TEXT),
+        "options": OrNull(TRIAL_OPTIONS),
         "faults": ListOf(TEXT),
         "points": OrNull(SCORE),
-        "expectations": ListOf(Keys({"expected": TEXT, "met": FLAG})),
+        "weighed": Noted("whether the scenario's author weighed its expectations", FLAG),
+        "expectations": ListOf(EXPECTATION),
         "last_steps": ListOf(Keys({"step": STEP_NUMBER, "action": TEXT, "why": TEXT})),
         "command": Noted("the command that tries it again", TEXT),
         "seconds": Numeric(0, MAX_LENGTH),

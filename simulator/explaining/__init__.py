@@ -3,6 +3,7 @@
 Modules in reading order:
 
 questions  questions about a run or an episode, answered with trees of reasons
+trees      trees for the steps of a whole episode, cut to what a page can hold
 
 Public names: `Questions`, `questions_of_episode`.
 """

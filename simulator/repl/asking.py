@@ -35,7 +35,8 @@ class Pages:
         dialogue.printer.table(self._answer.variables, rows[self._shown : end])
         self._shown = min(end, len(rows))
         if self._shown < len(rows):
-            dialogue.printer.note(f"{self._shown} of {len(rows)} rows; ; shows more")
+            units = units_of(self._answer.variables, self._answer.types)
+            dialogue.printer.note(f"rows 1 to {self._shown} of {len(rows)}: type ; for more. {units}".rstrip())
             return True
         if self._answer.more:
             dialogue.printer.say(f"... and more than these {len(rows)} rows")

@@ -11,6 +11,7 @@ from simulator.repl.completion import CompletionWord
 from simulator.terminal.streams import StreamError
 
 MAX_HISTORY_LINES = 1000  # statements that are remembered; a convention
+PLAIN_PROMPT_VARIABLE = "UTAK_PLAIN_PROMPT"  # set, it lets the prompt take readline where prompt_toolkit is installed
 CONTINUATION = "  ... "  # the prompt of a line that continues a statement
 Complete = Callable[[str], tuple[str, list[CompletionWord]]]  # the word at the end of a text, and what completes it
 
@@ -208,7 +209,7 @@ def open_reader(complete: Complete, history: History, is_whole: Callable[[str], 
         return PipedLines()
     if not sys.stdout.isatty():
         return PromptingLines()
-    if os.environ.get("TERM") not in (None, "", "dumb"):
+    if os.environ.get("TERM") not in (None, "", "dumb") and not os.environ.get(PLAIN_PROMPT_VARIABLE):
         with suppress(ImportError):
             return ToolkitLines(complete, history.read(), is_whole)
     return ReadlineLines(complete, history.read())

@@ -11,13 +11,13 @@ from simulator.run.interrupts import defer_interrupt
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 
-MAX_STEP_NUMBER = 1_000_000  # the greatest number of steps that a command takes; a convention
+MAX_GOTO_STEP = 1_000_000  # the greatest number of steps that a command takes; a convention
 OUTLINE_START = "segment("  # facts about outlines: many of them change at every step
 
 
 def whole_number(text: str) -> int | None:
-    """Return the number that a text denotes, 0 to MAX_STEP_NUMBER; None for anything else."""
-    if text.isascii() and text.isdigit() and len(text) <= 9 and int(text) <= MAX_STEP_NUMBER:
+    """Return the number that a text denotes, 0 to MAX_GOTO_STEP; None for anything else."""
+    if text.isascii() and text.isdigit() and len(text) <= 9 and int(text) <= MAX_GOTO_STEP:
         return int(text)
     return None
 

@@ -5,6 +5,7 @@ This is the only module that uses pillow.
 
 import io
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -12,13 +13,14 @@ from PIL import Image, ImageDraw, ImageFont
 
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.outlines import SEGMENT
+from simulator.replay.packed.outlines import SEGMENT
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 
 PANEL_PIXELS = 420  # the width or height of each of the two pictures, whichever is greater
 GAP_PIXELS = 12  # between and around the two pictures
 TEXT_PIXELS = 14  # the height of a line of text
+MAX_CAPTION_CHARACTERS = 400  # of a text, of which a line shows as many as fit
 TEXT_LINES = 3  # below the pictures
 STEP_MILLISECONDS = 700  # how long a step is shown
 END_MILLISECONDS = 3000  # how long the last one is shown
@@ -43,7 +45,7 @@ COLOURS = {name: number for number, name in enumerate(PALETTE)}
 Pixels = list[tuple[float, float]]
 
 
-class Scale(NamedTuple):
+class GifScale(NamedTuple):
     """Places squares of the table, and hundredths of squares of the robot frame, on a picture.
 
     Attributes
@@ -96,7 +98,7 @@ def _frames(episode: Episode) -> Iterator[Any]:
     width, height = episode.header["world"]["table"]
     pixels = PANEL_PIXELS / max(width, height)
     x, y = episode.steps[0]["utak"]
-    scale = Scale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
+    scale = GifScale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
     panel = math.ceil(width * pixels) + GAP_PIXELS
     size = 2 * panel + GAP_PIXELS, math.ceil(height * pixels) + 2 * GAP_PIXELS + TEXT_LINES * (TEXT_PIXELS + 4)
     colours = [part for colour in PALETTE.values() for part in colour]
@@ -123,7 +125,7 @@ def _words(episode: Episode, line: EpisodeLine) -> list[str]:
     return words
 
 
-def _panel(scale: Scale, colour: str) -> Any:
+def _panel(scale: GifScale, colour: str) -> Any:
     """Return an empty picture of the size of the table."""
     size = math.ceil(scale.width * scale.pixels), math.ceil(scale.height * scale.pixels)
     image = Image.new("P", size, COLOURS[colour])
@@ -131,7 +133,7 @@ def _panel(scale: Scale, colour: str) -> Any:
     return image
 
 
-def _true(episode: Episode, line: EpisodeLine, scale: Scale, places: Pixels) -> Any:
+def _true(episode: Episode, line: EpisodeLine, scale: GifScale, places: Pixels) -> Any:
     """Return the left picture: the table as it is, and the robot's places so far."""
     image = _panel(scale, "ground")
     on, world = ImageDraw.Draw(image), episode.header["world"]
@@ -149,13 +151,13 @@ def _true(episode: Episode, line: EpisodeLine, scale: Scale, places: Pixels) -> 
     return image
 
 
-def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: Scale, colour: str, outline: int = 0) -> None:
+def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: GifScale, colour: str, outline: int = 0) -> None:
     """Draw a filled ring of points of the table, with an outline of so many pixels."""
     points = [scale.table(x, y) for x, y in ring]
     on.polygon(points, COLOURS[colour], COLOURS["ink"] if outline else None, outline or 1)
 
 
-def _believed(line: EpisodeLine, scale: Scale) -> Any:
+def _believed(line: EpisodeLine, scale: GifScale) -> Any:
     """Return the right picture: the believed outlines, the surer, the stronger, and the robot's believed place."""
     image = _panel(scale, "beyond")
     on = ImageDraw.Draw(image)
@@ -185,8 +187,8 @@ def _dot(on: ImageDraw.ImageDraw, at: tuple[float, float], colour: int) -> None:
 
 def _fitting(text: str, font: Any, width: int) -> str:
     """Return a text without control characters, cut to a width in pixels."""
-    clean = escape_controls(text, lines=False)[:400]
-    cut = clean
-    while cut and font.getlength(cut + ("..." if cut != clean else "")) > width:
-        cut = cut[:-1]
-    return cut if cut == clean else cut + "..."
+    clean = escape_controls(text, lines=False)[:MAX_CAPTION_CHARACTERS]
+    if font.getlength(clean) <= width:
+        return clean
+    fits = bisect_right(range(len(clean)), width, key=lambda size: font.getlength(clean[:size] + "..."))
+    return clean[: max(fits - 1, 0)] + "..."

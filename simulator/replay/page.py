@@ -1,7 +1,7 @@
 """The page of an episode: one HTML file that needs nothing else, neither a server nor a network.
 
 The parts of the page lie in the folder `page_parts` as a browser reads them. They are put together here: what inflates
-the episode stands in the page as it is, the player is deflated like the episode. A policy in the page allows no script
+stands in the page as it is, the player and the episode are deflated. A policy in the page allows no script
 and no style but these, and no request at all; so no text of an episode can do anything.
 """
 
@@ -15,7 +15,7 @@ from string import Template
 from typing import Any
 
 from simulator.episode.episode import Episode
-from simulator.replay.packing import deflated, packed_episode
+from simulator.replay.packed.packing import deflated, packed_episode
 from simulator.terminal.streams import escape_controls
 
 LOADER = ("inflate.js", "loader.js")  # the scripts that stand in a page as they are
@@ -35,7 +35,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
 
     Returns
     -------
-    The whole page, in ASCII.
+    The whole page.
 
     Raises
     ------
@@ -44,19 +44,19 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
     if not episode.steps:
         raise ValueError("an episode without a step cannot be replayed")
     loader, player = (_script(names) for names in (LOADER, PLAYER))
-    style = _part("style.css")
-    goals = _clipped(", ".join(episode.header["task"]["goals"]))
-    return Template(_part("page.html")).substitute(
-        title=html.escape(f"Utak: {goals}"),
-        heading=html.escape(goals) or "no goal",
+    style, shell = _part("style.css"), Template(_part("body.html"))
+    body = shell.substitute(
+        heading=html.escape(_goals(episode)) or "no goal",
         about=html.escape(_about(episode)),
         legend=_part("legend.html"),
         help=_part("help.html"),
-        style=style,
+    )
+    return Template(_part("page.html")).substitute(
+        title=html.escape(f"Utak: {_goals(episode)}"),
         style_hash=_hash(style),
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",
-        player=deflated(player),
+        player=deflated({"style": style, "body": body, "script": player}),
         episode="\n".join(packed_episode(episode, trees)),
     )
 
@@ -79,6 +79,11 @@ def _script(names: Sequence[str]) -> str:
 def _hash(text: str) -> str:
     """Return what a content security policy calls a script or a style."""
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
+
+
+def _goals(episode: Episode) -> str:
+    """Return the goals of an episode in a line."""
+    return _clipped(", ".join(episode.header["task"]["goals"]))
 
 
 def _about(episode: Episode) -> str:

@@ -1,6 +1,8 @@
 """Changes of a run from outside: assumptions made and taken back, and other goals, each from a step on."""
 
+import shutil
 import tempfile
+import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -109,10 +111,10 @@ def _problem(file: str, text: str, what: str, hint: str = "") -> BadInputError:
 
 
 class AssumedRules:
-    """Rule files of assumptions, for the encodings: they lie in a folder of this process that ends with it."""
+    """Rule files of assumptions, for the encodings: they lie in a folder of their own that ends with this object."""
 
     def __init__(self) -> None:
-        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._folder: Path | None = None
         self._paths: dict[str, str] = {}  # by the text of the rule
 
     def files(self, assumptions: Sequence[Assumption]) -> tuple[str, ...]:
@@ -122,9 +124,10 @@ class AssumedRules:
     def _file(self, rule: str) -> str:
         """Return the path of the file with a rule; it is written when it is asked for the first time."""
         if self._folder is None:
-            self._folder = tempfile.TemporaryDirectory(prefix="utak-assumed-", ignore_cleanup_errors=True)
+            self._folder = Path(tempfile.mkdtemp(prefix="utak-assumed-"))
+            weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
         if rule not in self._paths:
-            path = Path(self._folder.name) / f"{len(self._paths)}.lp"
+            path = self._folder / f"{len(self._paths)}.lp"
             path.write_text(f"{rule}\n")
             self._paths[rule] = str(path)
         return self._paths[rule]

@@ -59,6 +59,11 @@ def stages_until(
     """
     if encode(head["world"]) != encode(header(scenario, Settings())["world"]):
         raise _unlike(name, 1, "the episode is of another world than the scenario's", "a fork keeps the world")
+    steps = [change.get("step") for change in head.get("changes", ())]
+    changed = [at if isinstance(at, int) else 0 for at in steps]
+    if changed and (step is None or min(changed) <= step):
+        what = f"the run was changed at the prompt, from step {min(changed)} on, and cannot be repeated beyond"
+        raise _unlike(name, 1, what, "fork it at an earlier step, or change it again at the prompt of utak repl")
     entries = list(head.get("forked", ())) if step is None else _entries_until(head, step)
     if [entry["until"] for entry in entries] != sorted(entry["until"] for entry in entries):
         raise _unlike(name, 1, "forked: stages in the order of their steps are wanted: the episode is damaged")

@@ -4,12 +4,11 @@ from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
-from simulator.scenario.untrusted import SCENARIO_FILES
+from simulator.sweep.contents import EXPECTATIONS_FILE
 from simulator.sweep.executors.tasks import DIED, RAISED, TOO_LONG, Executor, TaskOutcome
 from simulator.sweep.plan import SweepPlan, SweepRun
 from simulator.sweep.results import ResultRow, ResultsProtocol, RowForm
 
-EXPECTATIONS_FILE = SCENARIO_FILES[-1]  # expect.lp
 ROW_NAMES = ("scenario", "noise", "seed")  # the values of a row that tell which run it is of
 Watch = Callable[[SweepRun, TaskOutcome], None]  # called after each run
 

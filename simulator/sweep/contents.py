@@ -8,9 +8,10 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from kb.language.source_text import read_source
-from simulator.scenario.untrusted import SCENARIO_FILES
 
-RULE_FILE_SUFFIX = ".lp"  # of the files of rules that a worker writes
+EXPECTATIONS_FILE = "expect.lp"
+# The files of a scenario that a run reads. trial.lp is no part of a run: it says how `utak test` runs and what it asks.
+RUN_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", EXPECTATIONS_FILE)
 
 
 class ScenarioContents(NamedTuple):
@@ -39,7 +40,7 @@ def read_contents(folder: Path, name: str) -> ScenarioContents:
 
     Raises CannotOpenError when a file cannot be read, BadInputError when it is no ASCII text.
     """
-    found = [(file, read_source(folder / file).text) for file in SCENARIO_FILES if (folder / file).exists()]
+    found = [(file, read_source(folder / file).text) for file in RUN_FILES if (folder / file).exists()]
     return ScenarioContents(name, tuple(found))
 
 

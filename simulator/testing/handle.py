@@ -31,6 +31,8 @@ class WorkerHandle:
     def __init__(self, folder: str | None = None) -> None:
         self._folder = folder
         self._process: subprocess.Popen[bytes] | None = None
+        self._busy: subprocess.Popen[bytes] | None = None  # the process that a thread waits for
+        self._closed = False
 
     def ask(self, wish: dict[str, Any]) -> dict[str, Any]:
         """Return the record of a scenario, and its report as `report`.
@@ -52,8 +54,11 @@ class WorkerHandle:
         if self._process is None:
             self._process = _start(self._folder)
         worker, self._process = self._process, None
+        self._busy = worker
         assert worker.stdin is not None
         assert worker.stdout is not None
+        if self._closed:
+            worker.kill()
         try:
             with suppress(OSError):  # the process has ended, which the empty answer tells, too
                 worker.stdin.write(json.dumps(wish).encode("ascii") + b"\n")
@@ -62,6 +67,8 @@ class WorkerHandle:
         except BaseException:
             _end(worker)
             raise
+        finally:
+            self._busy = None
         if not line.endswith(b"\n"):
             code = _end(worker)
             raise WorkerEndedError(f"the process that runs the scenario ended with exit code {code}")
@@ -70,8 +77,11 @@ class WorkerHandle:
         return record
 
     def close(self) -> None:
-        """End the process, if one runs."""
-        worker, self._process = self._process, None
+        """End the process, if one runs; a thread that waits for its answer gets WorkerEndedError."""
+        self._closed = True
+        busy, worker, self._process = self._busy, self._process, None
+        if busy is not None:
+            busy.kill()  # the thread that waits for it closes its streams
         if worker is not None:
             _end(worker)
 

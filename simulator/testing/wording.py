@@ -20,11 +20,11 @@ TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the w
 
 def outcome_line(record: TrialRecord) -> str:
     """Return the line about one scenario: the outcome, the points where its author weighed them, and the reasons."""
-    word = TEST_OUTCOME_WORDS[record["exit_code"]][0]
+    word, folder = TEST_OUTCOME_WORDS[record["exit_code"]][0], _flat(record["scenario"])
     if record["verdict"] is None:
-        return f"{word} {record['scenario']}: see above"
+        return f"{word} {folder}: see above"
     points = f"{_points(record)}: " if record["weighed"] else ""
-    return f"{word} {record['scenario']}: {points}{escape_controls(_message(record), lines=False)}"
+    return f"{word} {folder}: {points}{_flat(_message(record))}"
 
 
 def _points(record: TrialRecord) -> PointScore:

@@ -53,7 +53,7 @@ class Tabletop:
         self.world, self.noise = world, noise
         self._senses = Senses(world.heading)
         self._north = direction(world.heading)  # cosine and sine of Utak's heading
-        immovable = [world.verge, _table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
+        immovable = [world.verge, table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
         self._immovable = [obstacle_part(polygon) for polygon in immovable]
         self._parts_at_start = {thing.name: obstacle_part(thing.polygon) for thing in world.movable}
         self._obstacles_at_start: dict[str | None, Obstacles] = {}
@@ -258,7 +258,7 @@ def _require_finite(*values: float) -> None:
             raise ValueError(f"a command with {values}: not a finite number")
 
 
-def _table_edge(width: int, height: int) -> Any:
+def table_edge(width: int, height: int) -> Any:
     """Return the frame around the table, in squares."""
     table = shapely.box(0, 0, width, height)
     return shapely.box(

@@ -1,4 +1,4 @@
-"""How actions are written: as a dictionary, as a box of numbers, or as one number."""
+"""The forms of actions: as a dictionary, as a box of numbers, or as one number."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -140,7 +140,8 @@ def _run(
 
     head = _recorded_header(options) or {}
     settings = settings_of(options, head.get("options"))
-    before = stages_until(options.log, head, None, scenario, [*options.kb, *options.from_kb]) if head else []
+    rules = [*options.kb, *options.from_kb]
+    before = stages_until(options.log, head, None, scenario, rules) if "forked" in head else []
     with EpisodeLog(options.log, options.resume, options.force, listen) as log:
         if not before:
             return Session(scenario, settings, make_robot, log).run(watch)
@@ -223,7 +224,8 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
     if json:
         print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
-    truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
+    achieved = ", achieved" if result.believed else ", as expected"  # by `verdict(V)` of expect.lp
+    truth = {None: "", True: achieved, False: ", not achieved"}[result.achieved]
     print(
         f"{result.verdict} in {result.steps} steps{truth}: {escape_controls(result.reason, lines=False)}", file=stream
     )

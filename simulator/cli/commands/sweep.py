@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from simulator.sweep.plan import SweepPlan, SweepRun
     from simulator.sweep.results import ResultRow
 
-MAX_JOBS = 1024  # the greatest --jobs; a convention
+MAX_SWEEP_JOBS = 1024  # the greatest --jobs; a convention
 MAX_SECONDS = 1_000_000  # the greatest --seconds; a convention
 # The end of the help text.
 RESULTS_HELP = (
@@ -272,7 +272,7 @@ def _noises(text: str) -> tuple[float, ...]:
 
 def _jobs(text: str) -> int:
     """Return the number for `--jobs`."""
-    return parse_whole(text, 0, MAX_JOBS)
+    return parse_whole(text, 0, MAX_SWEEP_JOBS)
 
 
 def _seconds(text: str) -> float:

@@ -1,10 +1,10 @@
-// Reads the packed episode (simulator/replay/packing.py): the lines of its steps, one at a time.
+// Reads the packed episode (simulator/replay/packed/packing.py): the lines of its steps, one at a time.
 
 const CHECKPOINT = 25; // steps between states that are kept once they were read
 const MAX_LINES_KEPT = 50; // lines that are kept once they were read
 const DIGITS = 1e6; // places are rounded to so many parts of a square
 
-// The value to which a difference leads (simulator/replay/delta.py).
+// The value to which a difference leads (simulator/replay/packed/delta.py).
 function patched(old, how) {
   if (Array.isArray(how)) {
     if (how.length === 1) return how[0];
@@ -27,7 +27,7 @@ function patched(old, how) {
   return Object.fromEntries(found);
 }
 
-// The edges of an outline: [east, north, east, north], from corners as simulator/replay/outlines.py writes them.
+// The edges of an outline: [east, north, east, north], from corners as simulator/replay/packed/outlines.py writes them.
 function edgesOf(corners) {
   const edges = [];
   let ring = [];
@@ -67,58 +67,95 @@ function joinedFacts(others, corners, confidences) {
 const raised = (digits, below) => Array.from(digits, (digit, i) => (Number(digit) + Number(below[i])) % 8).join("");
 const isDigits = (text) => typeof text === "string" && /^[0-7]{160}$/.test(text);
 
+// The status of each field: as levels and bounds tell it, but for exceptions such as "12p40e"
+// (simulator/replay/packed/impressions.py).
+function statusOf({ retina, belief: { least, most } }, exceptions) {
+  const recorded = isDigits(least) && isDigits(most);
+  const letters = retina.map((level, field) => {
+    if (!recorded) return "p";
+    const low = Number(least[field]), high = Number(most[field]);
+    return level < low || level > high ? "n" : low === high ? "p" : "e";
+  });
+  for (const [, field, letter] of exceptions.matchAll(/(\d+)([pen])/g)) letters[field] = letter;
+  return letters.join("");
+}
+
+// How many fields have each status.
+function countsOf(status) {
+  const counts = {};
+  for (const letter of status) counts[STATUS[letter]] = (counts[STATUS[letter]] || 0) + 1;
+  return counts;
+}
+
+// The facts that say where the robot and, from there, the floor have their origins.
+function offsetFacts(place) {
+  const [east, north] = place.map((v) => Math.floor(100 * v + 0.5));
+  return [`offset(org,${east},${north}).`, `offset(floor,${0 - east},${0 - north}).`];
+}
+
 // A line of an episode from its columns by path, and what the index tells of it.
-function lineOf(columns, step, index) {
+function lineOf(columns, step, index, movable) {
   const line = { step, action: index.action[step], motion: index.motion[step], utak: index.utak[step] }, belief = {};
-  const get = (...path) => columns.get(path.join("\n"));
+  line.belief = belief;
+  const get = (...path) => columns.get(JSON.stringify(path));
   for (const [path, value] of columns) {
-    const [first, second] = path.split("\n");
+    const [first, second] = JSON.parse(path);
     if (value === undefined) continue;
     if (second === undefined) line[first] = value;
     else if (first === "belief") belief[second] = value;
   }
+  line.objects = Object.fromEntries(Object.entries(line.objects).map(([name, pose]) => [name, isNumber(pose[0]) ? placed(pose, movable[name].rings[0]) : pose]));
   if (index.place[step] !== null) belief.place = index.place[step];
   if (index.seen_from[step] !== 0) belief.seen_from = index.seen(step);
   if (get("facts", "others") !== undefined) {
-    belief.facts = joinedFacts(get("facts", "others"), get("facts", "corners"), get("facts", "confidences"));
+    belief.facts = joinedFacts([...get("facts", "others"), ...(get("facts", "offsets") ? offsetFacts(belief.place) : [])], get("facts", "corners"), get("facts", "confidences"));
   }
   let below = "";
   for (const name of ["least", "most", "retina"]) {
-    let text = get("retina", name);
-    if (text === undefined) continue;
+    let text = get("packed", name);
     if (isDigits(text)) below = text = below ? raised(text, below) : text;
     else below = "";
     if (name === "retina") line.retina = Array.from(text, Number);
-    else belief[name] = text;
+    else if (text !== undefined) belief[name] = text;
   }
-  if (Array.isArray(belief.explained)) {
-    const [facts, letters] = belief.explained, found = new Map(facts.map((fact) => [fact, []]));
+  if (get("packed", "status") !== undefined) {
+    belief.status = statusOf(line, get("packed", "status"));
+    if (belief.cells === undefined) belief.cells = countsOf(belief.status);
+  }
+  if (get("packed", "explained") !== undefined) {
+    const [facts, letters] = get("packed", "explained"), found = new Map(facts.map((fact) => [fact, []]));
     let at = 0;
     Array.from(belief.status).forEach((status, field) => {
       if (status === "e") found.get(facts[letters.charCodeAt(at++) - 97]).push(field);
     });
     belief.explained = Object.fromEntries(found);
   }
-  const solved = belief.solved;
-  if (solved && solved.order) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : solved.last[key]));
-  line.belief = belief;
+  const solved = get("packed", "solved");
+  if (solved) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : solved.last[key]));
   return line;
 }
 
-// Where the robot was, and believed to be, at every step: what motions and commands tell is filled in.
+// Where the robot was, how it moved, and where it believed to be, at every step: what is told otherwise is filled in
+// (simulator/replay/packed/tracks.py).
 function filledIn(columns) {
   const { action, motion, utak, place } = columns;
   for (let step = 1; step < utak.length; step += 1) {
-    if (utak[step] === 0) {
-      const [dx, dy] = (motion[step] && motion[step].translate) || [0, 0];
-      utak[step] = [utak[step - 1][0] + dx, utak[step - 1][1] + dy];
-    }
+    if (motion[step] === 0) motion[step] = { translate: utak[step].map((v, i) => round(v - utak[step - 1][i])) };
+    else if (motion[step] && motion[step].rotate !== undefined && !motion[step].about) motion[step].about = utak[step];
     if (place[step] === 0) {
       const way = action[step] || {}, told = [way.east || 0, way.north || 0];
-      place[step] = place[step - 1].map((v, i) => Math.floor((v + told[i]) * DIGITS + 0.5) / DIGITS);
+      place[step] = place[step - 1].map((v, i) => round(v + told[i]));
     }
   }
   return columns;
+}
+
+const round = (value) => Math.floor(value * DIGITS + 0.5) / DIGITS;
+
+// The outline of a thing with a pose [x, y, degrees]; first is its outline in the header.
+function placed([x, y, degrees], first) {
+  const cosine = Math.cos((degrees * Math.PI) / 180), sine = Math.sin((degrees * Math.PI) / 180);
+  return first.map(([a, b]) => [a - first[0][0], b - first[0][1]]).map(([dx, dy]) => [x + dx * cosine - dy * sine, y + dx * sine + dy * cosine]);
 }
 
 // Where all impressions up to a step were received, as believed at that step: a function of the step. What was believed
@@ -130,7 +167,7 @@ function placesSeen(place, anew) {
     while (at < step) {
       at += 1;
       if (anew[at] === 0) places.push(place[at]);
-      else places = patched([...places, place[at]], anew[at]);
+      else places = patched([...places, place[at]], anew[at]).slice();
     }
     return places.slice();
   };
@@ -144,7 +181,7 @@ function openEpisode([packedIndex, ...packedBlocks]) {
 
   function block(number) {
     if (!blocks[number]) {
-      const parts = unpacked(packedBlocks[number]).map(([path, how]) => [path.join("\n"), how]);
+      const parts = unpacked(packedBlocks[number]).map(([path, how]) => [JSON.stringify(path), how]);
       blocks[number] = { parts, states: [] };
     }
     return blocks[number];
@@ -171,7 +208,7 @@ function openEpisode([packedIndex, ...packedBlocks]) {
     if (!lines.has(step)) {
       if (lines.size >= MAX_LINES_KEPT) lines.delete(lines.keys().next().value);
       const found = state(step);
-      lines.set(step, { line: lineOf(found, step, columns), trees: found.get("replay\ntrees") || [] });
+      lines.set(step, { line: lineOf(found, step, columns, index.header.world.movable), trees: found.get('["replay","trees"]') || [] });
     }
     return lines.get(step);
   }

@@ -1,4 +1,4 @@
-// Inflates deflated data (RFC 1951): base64 text to text. All browsers have had what it needs for ten years.
+// Inflates deflated data (RFC 1951), from text in base 85 to text.
 
 const LENGTH_BASE = [3, 4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 17, 19, 23, 27, 31, 35, 43, 51, 59, 67, 83, 99, 115, 131, 163, 195, 227, 258];
 const LENGTH_BITS = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 0];
@@ -105,11 +105,23 @@ function inflated(packed) {
   return out.subarray(0, size);
 }
 
-// The JSON value that a base64 text of deflated ASCII stands for.
-function unpacked(base64) {
-  const binary = atob(base64), bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; i += 1) bytes[i] = binary.charCodeAt(i);
-  const plain = inflated(bytes), parts = [];
+const SIGNS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%.()*+-;,=/?@^_:{|}~";
+
+// The bytes that a text in base 85 stands for: four for each five signs, the last of them cut short.
+function bytesOf(text) {
+  const groups = Math.ceil(text.length / 5), values = new Uint8Array(128), bytes = new Uint8Array(groups * 4);
+  Array.from(SIGNS).forEach((sign, value) => { values[sign.charCodeAt(0)] = value; });
+  for (let group = 0; group < groups; group += 1) {
+    let number = 0;
+    for (let i = group * 5; i < group * 5 + 5; i += 1) number = number * 85 + (i < text.length ? values[text.charCodeAt(i)] : 84);
+    for (let i = 3; i >= 0; i -= 1, number = Math.floor(number / 256)) bytes[group * 4 + i] = number % 256;
+  }
+  return bytes.subarray(0, Math.floor(text.length * 4 / 5));
+}
+
+// The JSON value that a text in base 85 of deflated ASCII stands for.
+function unpacked(text) {
+  const plain = inflated(bytesOf(text)), parts = [];
   for (let i = 0; i < plain.length; i += 8192) parts.push(String.fromCharCode.apply(null, plain.subarray(i, i + 8192)));
   return JSON.parse(parts.join(""));
 }

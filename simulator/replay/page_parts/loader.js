@@ -1,6 +1,10 @@
-// Inflates the player and runs it. The policy of the page allows just this script.
+// Inflates the player and runs it. The policy of the page allows just this style and this script.
 
 window.unpacked = unpacked;
-const player = document.createElement("script");
-player.textContent = unpacked(document.getElementById("player").textContent.trim());
-document.body.append(player);
+const parts = unpacked(document.getElementById("player").textContent.trim());
+for (const [name, place] of [["style", document.head], ["script", document.body]]) {
+  if (name === "script") document.body.insertAdjacentHTML("afterbegin", parts.body);
+  const element = document.createElement(name);
+  element.textContent = parts[name];
+  place.append(element);
+}

@@ -1,4 +1,4 @@
-"""What a Dask worker does with a task: it passes it to a worker process of its own, one for each of its threads.
+"""The part of a Dask worker: it passes a task to a worker process of its own, one for each of its threads.
 
 So a run that crashes, takes too long or needs too much memory ends that process alone, and not the Dask worker. The
 state of this module lives in the Dask worker; each sweep has its own processes there, by the sweep's name.

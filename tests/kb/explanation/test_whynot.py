@@ -1,4 +1,4 @@
-"""What would have to be otherwise: each change is tried, each smaller part of it, and on small models each smaller one."""
+"""Changes that whynot names: each is tried, each smaller part of it, and on small models each smaller one."""
 
 import re
 from itertools import combinations

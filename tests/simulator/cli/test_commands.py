@@ -3,7 +3,6 @@
 import io
 import json
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -208,22 +207,14 @@ def test_new_writes_a_valid_scenario(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert (folder / "goal.lp").read_text() == before
 
 
-def test_scenarios_are_pytest_tests(scene: Path) -> None:
-    root = scene.parent
-    shutil.copy(ROOT / "examples" / "conftest.py", root / "conftest.py")
-    with (root / "conftest.py").open("a") as stream:
-        stream.write(f"\nimport sys\nsys.path.insert(0, {str(Path(__file__).parents[1])!r})\n")
-        stream.write("import scripted_robot\nscripted_robot.install()\n")
-    expecting(scene, "fails.")
-    expecting(shutil.copytree(scene, root / "bad"), "within(0).")
-    expecting(shutil.copytree(scene, root / "worse"), "within(x).")
-    (root / "pytest.ini").write_text(f"[pytest]\npythonpath = {ROOT}\n")
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(root)]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-    assert "1 passed" in done.stdout
-    assert "2 failed" in done.stdout
-    assert "not met: within(0)" in done.stdout
-    assert "expect.lp:1:8-8: error: a number of steps must be an integer, not x" in done.stdout
+def test_an_expected_verdict_is_told_of(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(expecting(scene, "verdict(limit)."))]) == 75
+    assert capsys.readouterr().out == "limit in 30 steps, as expected: the script has ended\n"
+    assert main(["test", str(scene)]) == 0
+    assert main(["run", str(expecting(scene, "verdict(done). within(3)."))]) == 75
+    seen = capsys.readouterr()
+    assert "not met: verdict(done): the verdict is limit\nnot met: within(3): 30 commands were given\n" in seen.err
+    assert main(["test", str(scene)]) == 1
 
 
 def test_routes_pass_an_object_on_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,6 +14,8 @@ from random_scenes import write_scene
 
 from kb.language.source_text import lies_outside, read_source
 from simulator.cli.main import main
+from simulator.episode.forms import complaints
+from simulator.episode.output_forms import NAMED_FORMS
 from simulator.terminal import exits
 
 SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
@@ -71,6 +73,7 @@ def test_outcomes_are_one_json_object_and_junit_xml(
     assert main(arguments) == 66
     first = capsys.readouterr().out
     found = json.loads(first)
+    assert list(complaints(NAMED_FORMS["test"], found)) == []
     assert found["exit_code"] == 66
     assert found["counts"] == {"passed": 0, "failed": 2, "bad": 1, "absent": 2, "bug": 0}
     assert found["points"] == {"earned": 2, "possible": 6}

@@ -141,6 +141,9 @@ DAMAGE = {
     ),
     "task: a claim is no fact with a confidence": lambda rows: rows[0]["task"].update(claims=[["a(b)"]]),
     "forked: a list of values is wanted": lambda rows: rows[0].update(forked=3),
+    "the run was changed at the prompt, from step 2 on": lambda rows: rows[0].update(
+        changes=[{"step": 2, "assume": "shape(o1,square,90)."}]
+    ),
     "the key until is missing": lambda rows: rows[0].update(forked=[{"options": {}, "task": {}}]),
 }
 

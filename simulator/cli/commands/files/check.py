@@ -48,11 +48,16 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _parts(path: Path) -> list[Path]:
-    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone."""
+    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone.
+
+    Files of a task without a world and without expectations, such as the solution of an exercise, are no scenario.
+    """
     names = ("world.lp", "world.txt", "start.lp", "goal.lp")
     if not path.is_dir() or any((path / name).exists() for name in names):
         return [path]
-    return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
+    folders = sorted({goal.parent for goal in path.rglob("goal.lp")})
+    others = ("world.lp", "world.txt", "expect.lp")
+    return [folder for folder in folders if any((folder / name).exists() for name in others)] or [path]
 
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:

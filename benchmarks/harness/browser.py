@@ -6,6 +6,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -16,6 +17,13 @@ CHROMIUM = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
 )
 ANSWER_SECONDS = 30.0  # an answer that takes longer is an error
+# Puts a pipe where Chromium expects it, on the descriptors 3 and 4, and becomes Chromium.
+LAUNCHER = """
+import fcntl, os, sys
+for number, target in [(fcntl.fcntl(int(sys.argv[i + 1]), fcntl.F_DUPFD, 10), 3 + i) for i in (0, 1)]:
+    os.dup2(number, target)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
 KEY_CODES = {" ": 32, "PageUp": 33, "PageDown": 34, "End": 35, "Home": 36, "ArrowLeft": 37, "ArrowRight": 39}
 
 
@@ -39,9 +47,9 @@ class Browser:
             "--disable-dev-shm-usage",
         ]
         command += ["--disable-component-update", f"--user-data-dir={self._profile.name}"]
-        shell = ["sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", *command]
+        launch = [sys.executable, "-ISc", LAUNCHER, str(to_browser), str(from_browser), *command]
         self._process = subprocess.Popen(
-            shell, pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            launch, pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         os.close(to_browser)
         os.close(from_browser)
@@ -91,7 +99,9 @@ class Browser:
             ready, _, _ = select.select([self._read], [], [], max(0.0, until - time.monotonic()))
             if not ready:
                 return None
-            self._rest += os.read(self._read, 1 << 20)
+            part = os.read(self._read, 1 << 20)
+            assert part, "the browser has ended"
+            self._rest += part
         message, _, self._rest = self._rest.partition(b"\0")
         found: dict[str, Any] = json.loads(message)
         return found
@@ -99,13 +109,10 @@ class Browser:
     def open(self, path: Path, address: str = "") -> None:
         """Open a file and wait until it is loaded."""
         self.call("Page.navigate", url="about:blank")
+        self.wait("location.href === 'about:blank' && document.readyState === 'complete'")
         self.events.clear()
         self.call("Page.navigate", url=path.resolve().as_uri() + address)
-        until = time.monotonic() + ANSWER_SECONDS
-        while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
-            event = self._next(until - time.monotonic())
-            assert event is not None, "the page was not loaded in time"
-            self.events.append(event)
+        self.wait("location.protocol === 'file:' && document.readyState === 'complete'")
 
     def run(self, expression: str) -> Any:
         """Return the JSON value of an expression of JavaScript."""

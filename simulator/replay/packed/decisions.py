@@ -7,31 +7,41 @@ index]]` for one that was taken before. A decision among hundreds of candidates 
 import re
 from typing import Any
 
-MAX_CANDIDATES = 6  # candidates of one decision that a page keeps, besides those chosen; a convention, docs/replay.md
-MAX_OTHER_FACTS = 60  # facts of one decision, besides those of candidates, that a page keeps; a convention
-NUMBER = re.compile(r"\d{1,9}", re.ASCII)
+# What is kept of one decision, from much to little: so many candidates besides those chosen, and so many other facts.
+# With none of either, its answer alone is kept. Conventions; docs/replay.md.
+DETAILS = ((6, 60), (2, 20), (0, 0))
+CANDIDATE_NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 
 
-def trimmed(entry: Any) -> Any:
+def trimmed(entry: Any, detail: tuple[int, int] = DETAILS[0]) -> Any:
     """Return a decision as a page keeps it: with the facts of its first candidates and of those chosen.
 
-    A candidate is a number that stands as the first argument of facts; it is chosen when the answer names it. At most
-    MAX_CANDIDATES that were not chosen are kept, those with the least numbers, and of the other facts the first
-    MAX_OTHER_FACTS. Where facts are left out, a fifth item says how many; what is said about candidates is then kept
-    for those alone that are kept, with 0 for those between them. Values of other forms are returned as they are.
+    Parameters
+    ----------
+    entry : an entry of `belief.solved`.
+    detail : how many candidates that were not chosen are kept, those with the least numbers; and how many of the facts
+        that speak of no candidate. A candidate is a number that is the first argument of facts; it is chosen when the
+        answer names it.
+
+    Returns
+    -------
+    The entry. Where facts are left out, a fifth item says how many, and what is said about candidates is kept for those
+    alone whose facts are kept, with 0 for those between them. Entries of other forms are returned as they are.
     """
     if not isinstance(entry, list) or len(entry) != 4:
         return entry
     encoding, facts, answer, about = entry
     if not all(isinstance(part, list) for part in (facts, answer, about)):
         return entry
-    chosen = {number for atom in answer for number in NUMBER.findall(str(atom))}
+    if detail == (0, 0):
+        return [encoding, [], answer, [], len(facts)]
+    chosen = {number for atom in answer for number in CANDIDATE_NUMBER.findall(str(atom))}
     candidates = sorted({_candidate(fact) for fact in facts} - chosen - {""}, key=int)
-    named = chosen | set(candidates[:MAX_CANDIDATES])
+    named = chosen | set(candidates[: detail[0]])
     kept, others = [], 0
     for fact in facts:
         others += not _candidate(fact)
-        if _candidate(fact) in named or (not _candidate(fact) and others <= MAX_OTHER_FACTS):
+        if _candidate(fact) in named or (not _candidate(fact) and others <= detail[1]):
             kept.append(fact)
     if len(kept) == len(facts):
         return entry
@@ -44,10 +54,10 @@ def trimmed(entry: Any) -> Any:
 def _candidate(fact: Any) -> str:
     """Return the number that is the first argument of a fact; "" when there is none."""
     first = str(fact).partition("(")[2].partition(",")[0].removesuffix(")")
-    return first if NUMBER.fullmatch(first) else ""
+    return first if CANDIDATE_NUMBER.fullmatch(first) else ""
 
 
-def by_encoding(solved: Any, before: Any) -> Any:
+def by_encoding(solved: list[Any], before: dict[str, Any] | None) -> dict[str, Any]:
     """Return the decisions of a step, with each kept by its encoding until the encoding is asked again.
 
     Parameters
@@ -59,11 +69,9 @@ def by_encoding(solved: Any, before: Any) -> Any:
     -------
     `{"order": [...], "last": {...}}`. `order` has, for each decision, its key in `last`, or the decision itself where
     it refers to an earlier one. What encodings were given that were not asked at this step stays in `last`, so that the
-    next time only differences need be told. Values of other forms are returned as they are.
+    next time only differences need be told.
     """
-    if not isinstance(solved, list):
-        return solved
-    last = dict(before["last"]) if isinstance(before, dict) and "last" in before else {}
+    last = dict(before["last"]) if before is not None else {}
     order: list[Any] = []
     for entry in solved:
         if isinstance(entry, list) and len(entry) > 2 and isinstance(entry[0], str):

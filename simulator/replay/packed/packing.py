@@ -1,0 +1,183 @@
+"""An episode packed for a page: what changes from step to step, in blocks that are read one by one.
+
+A packed episode is a list of texts, each deflated JSON in base 85: an index, then the blocks. The index has
+
+- `header`, `result`: those of the episode;
+- `columns`: `action`, `motion`, `utak`, `place` and `seen_from` of all steps (`simulator.replay.packed.tracks`);
+- `events`: the steps of each kind of event; `bounds`: the least and greatest coordinates of all outlines;
+- `steps`, `block`: how many steps the episode and a block have; `detail`: what is kept of decisions.
+
+A block is a list with one column for every key of its lines, `[path, differences]`, each difference from the value of
+the step before in the same block; the first step of a block differs from nothing. `page_parts/decode.js` reads this.
+"""
+
+import base64
+import json
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from simulator.episode.episode import Episode, EpisodeLine
+from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
+from simulator.replay.packed.delta import GONE, difference
+from simulator.replay.packed.events import episode_events
+from simulator.replay.packed.impressions import pack_impression
+from simulator.replay.packed.outlines import split_facts
+from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
+
+STEPS_PER_BLOCK = (
+    500  # a compromise: longer blocks pack better, shorter ones are read faster; benchmarks/episodes/replay.py
+)
+# Bytes of a packed episode of up to STEPS_PER_BLOCK steps, and for each step more, that may be exceeded only when no
+# detail of decisions is left to leave out. With the player, 500 steps have 150 KB and 5,000 steps 1.5 MB; a convention.
+PACKED_BYTES = 110_000
+BYTES_PER_STEP = 285
+MAX_SAFE_INTEGER = 2**53  # the greatest integer that a browser's numbers hold exactly
+NO_HTML = str.maketrans("&<>`", ".,/:")  # what takes the place of the signs of base 85 that mean something in HTML
+Path = tuple[str, ...]  # the keys that lead to a value of a step's line
+SOLVED = ("belief", "solved")
+
+
+def packed_episode(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None) -> list[str]:
+    """Return an episode as the texts that a page holds.
+
+    Parameters
+    ----------
+    episode : the episode, with one step at least.
+    trees : explanations by step: lists of `{"text": ..., "children": [...]}`, whose children are of the same form.
+
+    Returns
+    -------
+    The index and the blocks, of ASCII without blanks and without signs that mean something in HTML.
+    """
+    budget = PACKED_BYTES + BYTES_PER_STEP * max(0, len(episode.steps) - STEPS_PER_BLOCK)
+    texts: list[str] = []
+    for detail in DETAILS:
+        texts = _packed(episode, detail, trees or {})
+        if sum(map(len, texts)) <= budget:
+            break
+    return texts
+
+
+def _packed(episode: Episode, detail: tuple[int, int], trees: Mapping[int, Sequence[Any]]) -> list[str]:
+    """Return the texts of an episode whose decisions are cut to a detail."""
+    lines = [slim(kept_line(line, detail)) for line in episode.steps]
+    index = {
+        "header": slim(episode.header),
+        "result": slim(episode.result),
+        "steps": len(lines),
+        "columns": track_columns(lines),
+        "events": episode_events(episode),
+        "bounds": _bounds(lines),
+        "block": STEPS_PER_BLOCK,
+        "detail": list(detail),
+    }
+    blocks = [lines[first : first + STEPS_PER_BLOCK] for first in range(0, len(lines), STEPS_PER_BLOCK)]
+    movable = episode.header["world"]["movable"]
+    return [deflated(index), *(deflated(_block(block, movable, trees)) for block in blocks)]
+
+
+def kept_line(line: EpisodeLine, detail: tuple[int, int] = DETAILS[0]) -> EpisodeLine:
+    """Return a step's line with its decisions cut to a detail (`simulator.replay.packed.decisions.trimmed`)."""
+    solved = line["belief"].get("solved")
+    if not isinstance(solved, list):
+        return line
+    return line | {"belief": line["belief"] | {"solved": [trimmed(entry, detail) for entry in solved]}}
+
+
+def deflated(value: Any) -> str:
+    """Return a JSON value as text: deflated without a head (RFC 1951), in base 85 without signs of HTML."""
+    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return base64.b85encode(packer.compress(text.encode("ascii")) + packer.flush()).decode("ascii").translate(NO_HTML)
+
+
+def slim(value: Any) -> Any:
+    """Return a JSON value as a browser can hold it: whole floats as integers, too great integers as text."""
+    if isinstance(value, float) and value.is_integer() and abs(value) < MAX_SAFE_INTEGER:
+        return int(value)
+    if isinstance(value, int) and abs(value) > MAX_SAFE_INTEGER:
+        return str(value)
+    if isinstance(value, list):
+        return [slim(item) for item in value]
+    if isinstance(value, dict):
+        return {key: slim(item) for key, item in value.items()}
+    return value
+
+
+def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
+    """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame.
+
+    Returns None when there are none. Facts of other forms count for nothing.
+    """
+    found: set[str] = set()
+    for line in lines:
+        found.update(fact for fact in line["belief"]["facts"] if fact.startswith("rect("))
+    boxes = []
+    for fact in sorted(found):
+        parts = fact[len("rect(") : -len(").")].split(",")[1:]
+        if len(parts) == 4 and all(part.removeprefix("-").isdecimal() and len(part) < 10 for part in parts):
+            boxes.append([int(part) for part in parts])
+    if not boxes:
+        return None
+    west, south, east, north = zip(*boxes, strict=True)
+    return [min(west), min(south), max(east), max(north)]
+
+
+def _block(
+    lines: Sequence[EpisodeLine], movable: Mapping[str, EpisodeLine], trees: Mapping[int, Sequence[Any]]
+) -> list[Any]:
+    """Return the columns of some steps: pairs of a path of keys, and the differences from step to step."""
+    prepared = [dict(_prepared(line, movable)) for line in lines]
+    for line, values in zip(lines, prepared, strict=True):
+        if line["step"] in trees:
+            values["replay", "trees"] = slim(list(trees[line["step"]]))
+    decided: Any = None
+    for values in prepared:
+        if isinstance(values.get(SOLVED), list):
+            decided = values["packed", "solved"] = by_encoding(values.pop(SOLVED), decided)
+    paths = dict.fromkeys(path for line in prepared for path in line)
+    return [[list(path), _differences([line.get(path, _Absent) for line in prepared])] for path in paths]
+
+
+class _Absent:
+    """Stands for a value that a step's line does not have."""
+
+
+def _differences(values: Sequence[Any]) -> list[Any]:
+    """Return the difference of each value from the one before; GONE where there is none."""
+    found: list[Any] = []
+    before: Any = _Absent
+    for value in values:
+        if value is _Absent:
+            found.append(GONE)
+        else:
+            found.append([value] if before is _Absent else difference(before, value))
+        before = value
+    return found
+
+
+def _prepared(line: EpisodeLine, movable: Mapping[str, EpisodeLine]) -> Iterator[tuple[Path, Any]]:
+    """Yield the entries of a step's line that no column of the index has, written so that little changes."""
+    for key, value in line.items():
+        if key not in ("step", "action", "motion", "utak", "objects", "retina", "belief"):
+            yield (key,), value
+    yield ("objects",), poses(line["objects"], movable)
+    impression, belief = pack_impression(line)
+    for key, value in impression.items():
+        yield ("packed", key), value
+    place = believed_place(line)
+    if place is not None:
+        del belief["place"]
+    if places_anew(line) is not None:
+        del belief["seen_from"]
+    split = split_facts(belief["facts"])
+    if split is not None:
+        del belief["facts"]
+        told = place is not None and set(offset_facts(place)) <= set(split.others)
+        yield ("facts", "offsets"), told
+        yield ("facts", "others"), [f for f in split.others if not told or f not in offset_facts(place or [])]
+        yield ("facts", "corners"), split.corners
+        yield ("facts", "confidences"), split.confidences
+    for key, value in belief.items():
+        yield ("belief", key), value
