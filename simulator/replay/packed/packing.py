@@ -20,7 +20,6 @@ from typing import Any
 from simulator.episode.episode import Episode, EpisodeLine
 from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
 from simulator.replay.packed.delta import GONE, difference
-from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
 from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
