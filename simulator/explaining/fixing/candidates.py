@@ -90,7 +90,7 @@ def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: lis
     ranges: list[tuple[GapRange, ...]] = []
     for gap in (*passages, *new_doors_of(world)):
         if gap.width < widest - LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
-            sides = (GapSide.LEFT,) if gap.is_new else (GapSide.BOTH, GapSide.LEFT, GapSide.RIGHT)
+            sides = [GapSide.LEFT] if gap.is_new else (GapSide.BOTH, GapSide.LEFT, GapSide.RIGHT)
             found = [one for side in sides if (one := _range(scenario.world, carried, gap, side, widest)) is not None]
             if found:
                 ranges.append(tuple(found))

@@ -23,11 +23,13 @@ from simulator.world.world import World
 
 WIDTH_STEP = 0.25  # squares; widths are tried in these steps; a convention
 FINE_CELLS = 4  # cells along a square, in worlds whose walls do not lie on whole squares; a convention
+CELL_DIAGONAL = math.sqrt(2) / FINE_CELLS  # squares; how far a wall may lie from where the raster shows it
 MAX_FINE_SIDE = 256  # squares; greater tables are surveyed in whole squares; a convention
-MIN_NECK_RATIO = 1.25  # how many times as wide the floor must be on both sides of a passage; as kb.world.doors has it
+MIN_NECK_RATIO = 1.05  # how many times as wide the floor is on both sides of a passage; a convention, near 1
 WALL_MARGIN = 0.5  # squares about a passage within which its walls are measured; a convention
 ROUGH_MARGIN = 1.5  # squares about a passage found on a raster within which its walls lie; more than a cell's diagonal
 JAMB_MARGIN = 0.05  # squares beyond jambs that lie askew, so that no sliver of them stays; more than the tolerance
+MAX_MEASURINGS = 8  # times that a gap in a thick wall is measured further; each time the window grows; a convention
 JAMB_TOLERANCE = 0.01  # squares by which a wall may be further away and still bounds a passage; coordinates are rounded
 LENGTH_TOLERANCE = 1e-6  # squares; rounding of lengths
 MIN_FLOOR_AREA = 1e-6  # square squares; smaller pieces of floor come from rounding
@@ -117,9 +119,20 @@ def _halfway(one: XY, other: XY) -> XY:
 
 
 def _measured(solid: Any, rough: Gap) -> Gap:
-    """Return a gap that was found on a raster with the ends and the width that its walls have."""
-    window = shapely.from_wkt(rough.wall).buffer(max(ROUGH_MARGIN, rough.width / 2))
-    left, right = _walls_beside(solid, window, rough)
+    """Return a gap that was found on a raster with the ends, the width and the depth that its walls have."""
+    gap = _measured_once(solid, rough)
+    for _ in range(MAX_MEASURINGS):
+        again = _measured_once(solid, gap)
+        if again.depth <= gap.depth + JAMB_TOLERANCE:
+            break
+        gap = again
+    return gap
+
+
+def _measured_once(solid: Any, rough: Gap) -> Gap:
+    """Return a gap with the measures that its walls have near where it was thought to be."""
+    margin = max(ROUGH_MARGIN, rough.width / 2)
+    left, right = _walls_beside(solid, shapely.from_wkt(rough.wall), margin, CELL_DIAGONAL, rough)
     if left.is_empty or right.is_empty or left.distance(right) < LENGTH_TOLERANCE:
         return rough
     width = float(left.distance(right))
@@ -258,14 +271,24 @@ def _sweep(shape: Any, offset: XY) -> Any:
     return shapely.union_all([part for part in parts if part.area > 0])
 
 
-def _width(solid: Any, window: Any, gap: Gap) -> float:
-    """Return how far the walls on the left and on the right of a gap are apart within a window, in squares."""
-    left, right = _walls_beside(solid, window.buffer(WALL_MARGIN, cap_style="flat", join_style="mitre"), gap)
+def _width(solid: Any, opening: Any, gap: Gap) -> float:
+    """Return how far the walls on the left and on the right of an opening are apart, in squares."""
+    left, right = _walls_beside(solid, opening, WALL_MARGIN, LENGTH_TOLERANCE, gap)
     return math.inf if left.is_empty or right.is_empty else float(left.distance(right))
 
 
-def _walls_beside(solid: Any, window: Any, gap: Gap) -> list[Any]:
-    """Return what is solid on the left and on the right of a gap's middle within a window."""
+def _walls_beside(solid: Any, opening: Any, margin: float, apart: float, gap: Gap) -> list[Any]:
+    """Return what is solid on the left and on the right of a gap's middle.
+
+    Parameters
+    ----------
+    solid : all that is solid.
+    opening : the opening between the walls.
+    margin : how far about it the walls are cut off, in squares.
+    apart : how far from it a wall may be; what stands further away, as before a door, is no wall of it.
+    gap : the gap.
+    """
+    window = opening.buffer(margin)
     near = solid.intersection(window)
     x0, y0, x1, y1 = window.bounds
     reach = 2 * (x1 - x0 + y1 - y0)
@@ -274,7 +297,8 @@ def _walls_beside(solid: Any, window: Any, gap: Gap) -> list[Any]:
     halves = []
     for sign in (1, -1):
         far = [(px + sign * x * reach, py + sign * y * reach) for px, py in (b, a)]
-        halves.append(near.intersection(shapely.Polygon([a, b, *far])))
+        parts = shapely.get_parts(near.intersection(shapely.Polygon([a, b, *far])))
+        halves.append(shapely.union_all([part for part in parts if part.area > 0 and part.distance(opening) <= apart]))
     return halves
 
 

@@ -18,7 +18,7 @@ from simulator.explaining.fixing.candidates import (
     is_out_of_commands,
 )
 from simulator.explaining.fixing.changes import Change, Dropped, MoreCommands, Wider
-from simulator.explaining.fixing.gaps import WIDTH_STEP
+from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
 from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, Prover
 from simulator.explaining.fixing.recorded import RecordedRun
 from simulator.run.robots import make_robot
@@ -158,7 +158,8 @@ class FixSearch:
             self._ranges |= {(one.gap, one.side): one for one in ranges}
             found = self._gap(ranges)
             if found is None:
-                gaps.append(ranges[0].change(ranges[0].most))
+                strongest = next((one for one in ranges if one.side == GapSide.BOTH), ranges[0])
+                gaps.append(strongest.change(strongest.most))
             else:
                 self._fixes.append(found)
         for place in candidates.led:
@@ -241,20 +242,22 @@ class FixSearch:
         return changes
 
     def _fewest(self, changes: Changes, place: int) -> Changes:
-        """Return working changes with one width bisected between no step, which fails, and the steps it has."""
+        """Return working changes with one width as small as possible: with one step less they are shown to fail.
+
+        First the steps just above what geometry allows are tried, further and further up; then the rest is bisected.
+        """
         change = changes[place]
         assert isinstance(change, Wider)
         fails, works = 0, change.steps
-        middle = self._ranges[change.gap, change.side].least - 1
+        least = self._ranges[change.gap, change.side].least
+        trials = [least + 2**k - 1 for k in range(change.steps.bit_length())] + [least - 1]
         while works - fails > 1:
-            if not fails < middle < works:
-                middle = (works + fails) // 2
-            if self._works(_with_steps(changes, place, middle)):
-                works = middle
+            steps = next((one for one in trials if fails < one < works), (works + fails) // 2)
+            if self._works(_with_steps(changes, place, steps)):
+                works = steps
                 self._fixes[-1] = _with_steps(changes, place, works)
             else:
-                fails = middle
-            middle = (works + fails) // 2
+                fails = steps
         return _with_steps(changes, place, works)
 
 
