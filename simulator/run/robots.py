@@ -1,18 +1,14 @@
 """The robot that the command line runs: here simulator and planner are wired together."""
 
-from typing import TYPE_CHECKING
-
 from kb.body import Body
 from kb.task.task import Task
 from planner.stages import stages
+from simulator.run.session import RobotProtocol
 from simulator.run.warming import warm
 from simulator.scenario.settings import Settings
 
-if TYPE_CHECKING:
-    from planner.cycle import Robot
 
-
-def make_robot(body: Body, task: Task, settings: Settings) -> "Robot":
+def make_robot(body: Body, task: Task, settings: Settings) -> RobotProtocol:
     """Return the robot of `planner.cycle` for a body and a task; compile the geometry kernels that it needs first."""
     from planner.cycle import Options
     from planner.cycle import Robot as Mind

@@ -88,8 +88,16 @@ def floor_of(world: World) -> Any:
 
 
 def passages_of(world: World) -> list[Gap]:
-    """Return the passages of the floor, the narrowest first, then from the south and the west."""
-    solid = solid_of(world)
+    """Return the passages of the floor, the narrowest first, then from the south and the west.
+
+    Those between walls alone are among them, also where a fixed thing stands in the way.
+    """
+    found = {gap.wall: gap for gap in (*_passages_in(world, world.verge), *_passages_in(world, solid_of(world)))}
+    return sorted(found.values(), key=lambda gap: (gap.width, gap.place[1], gap.place[0]))
+
+
+def _passages_in(world: World, solid: Any) -> list[Gap]:
+    """Return the passages of what is left of a table beside a solid, in no particular order."""
     cells = _cells_per_square(solid, world)
     free = ~_covered(solid, world, cells)
     if not free.any():
@@ -102,7 +110,7 @@ def passages_of(world: World) -> list[Gap]:
         gap = _gap_between(_halfway(a, c), _halfway(b, d), shapely.MultiPoint([a, b, c, d]), passage.width / cells)
         gap = replace(gap, room=min(passage.sides) / cells)
         found.append(gap if cells == 1 else _measured(solid, gap))
-    return sorted(found, key=lambda gap: (gap.width, gap.place[1], gap.place[0]))
+    return found
 
 
 def _gap_between(left: XY, right: XY, mouths: Any, width: float) -> Gap:

@@ -114,7 +114,7 @@ class Prover:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
         self._check_time()
         self.runs += 1
-        leader = Leader(variant.led[0]) if variant.led else None
+        leader = Leader(variant.led[0], self.make) if variant.led else None
         session = Session(
             variant.scenario, variant.settings, self.make if leader is None else leader.make, EpisodeLog(None)
         )

@@ -215,7 +215,7 @@ class FixSearch:
     def _gap(self, ranges: tuple[GapRange, ...]) -> Changes | None:
         """Return a gap made wider by as few steps as work, on the side where the fewest suffice; None when none do."""
         best: Changes | None = None
-        for number, one in enumerate(ranges):
+        for number, one in enumerate(one for one in ranges if one.alone):
             for steps in _probes(one, 0 if number else 1) if best is None else _below(one, best):
                 probed = (one.change(steps),)
                 if self._works(probed):
