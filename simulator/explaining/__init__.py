@@ -3,6 +3,7 @@
 Modules in reading order:
 
 questions  questions about a run or an episode, answered with trees of reasons
+fixing     the smallest changes with which a run that failed would have worked
 
 Public names: `Questions`, `questions_of_episode`.
 """

@@ -1,4 +1,4 @@
-"""`utak explain`: why a fact is believed, why a command was given, what a cell is laid to; and what would have worked."""
+"""`utak explain`: why a fact is believed, why a command was given, what a cell is laid to, what would have worked."""
 
 import argparse
 import sys

@@ -13,7 +13,7 @@ from planner.stages import stages
 from simulator.explaining.fixing.bounds import cannot_pass
 from simulator.explaining.fixing.changes import Away, Dropped, Led, Wider, dropped_goals
 from simulator.explaining.fixing.gaps import (
-    LENGTH_TOLERANCE,
+    GAP_LENGTH_TOLERANCE,
     WIDTH_STEP,
     Gap,
     GapSide,
@@ -91,7 +91,7 @@ def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: lis
     passages = passages_of(world)
     ranges: list[tuple[GapRange, ...]] = []
     for gap in (*passages, *new_doors_of(world)):
-        if gap.width < widest - LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
+        if gap.width < widest - GAP_LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
             found = _ranges_of(world, carried, gap, widest)
             ranges += [found] if found else []
     led = tuple(_led_places(scenario, passages, seen_from))
@@ -121,7 +121,7 @@ def _ranges_of(world: World, carried: tuple[Thing, ...], gap: Gap, widest: float
     can be widest, because what cannot pass a gap cannot pass a narrower one; it is a guess for the other sides.
     """
     limit = min(widest, max(gap.room, gap.width + 1.0))
-    most_wanted = math.floor((limit - gap.width) / WIDTH_STEP + LENGTH_TOLERANCE)
+    most_wanted = math.floor((limit - gap.width) / WIDTH_STEP + GAP_LENGTH_TOLERANCE)
     most_by_side = {}
     for side in [GapSide.LEFT] if gap.is_new else GapSide:
         most = most_wanted

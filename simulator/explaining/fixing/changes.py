@@ -50,12 +50,12 @@ class Wider:
 
     @property
     def by(self) -> float:
-        """By how many squares it is wider."""
+        """Return by how many squares it is wider."""
         return self.steps * WIDTH_STEP
 
     @property
     def width(self) -> float:
-        """How wide it is then, in squares."""
+        """Return how wide it is then, in squares."""
         return self.gap.width + self.by
 
 
@@ -196,8 +196,8 @@ def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
 def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow: bool) -> tuple[Fact, ...] | None:
     """Return what expect.lp asks of a changed scenario; None when nothing.
 
-    Left out are: `fails`, and beside it `unmoved` and `within`, which speak of the failure; `unmoved` of a thing that is
-    away; `within` when commands are added; and, when a goal for Utak or for things is dropped, where Utak or things
+    Left out are: `fails`, and beside it `unmoved` and `within`, which speak of the failure; `unmoved` of a thing that
+    is away; `within` when commands are added; and, when a goal for Utak or for things is dropped, where Utak or things
     must be, because expect.lp speaks of all goals together.
     """
     if scenario.expectations is None:

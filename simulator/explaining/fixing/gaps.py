@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
@@ -31,7 +31,7 @@ ROUGH_MARGIN = 1.5  # squares about a passage found on a raster within which its
 JAMB_MARGIN = 0.05  # squares beyond jambs that lie askew, so that no sliver of them stays; more than the tolerance
 MAX_MEASURINGS = 8  # times that a gap in a thick wall is measured further; each time the window grows; a convention
 JAMB_TOLERANCE = 0.01  # squares by which a wall may be further away and still bounds a passage; coordinates are rounded
-LENGTH_TOLERANCE = 1e-6  # squares; rounding of lengths
+GAP_LENGTH_TOLERANCE = 1e-6  # squares; rounding of lengths
 MIN_FLOOR_AREA = 1e-6  # square squares; smaller pieces of floor come from rounding
 MAX_OPENED_WALL = 8  # squares; no door is made in a thicker wall; a convention
 
@@ -68,12 +68,12 @@ class Gap:
 
     @property
     def is_new(self) -> bool:
-        """Whether it is a new door, where there was none."""
+        """Return whether it is a new door, where there was none."""
         return self.width == 0.0
 
     @property
     def place(self) -> XY:
-        """The point halfway between its ends."""
+        """Return the point halfway between its ends."""
         return (self.left[0] + self.right[0]) / 2, (self.left[1] + self.right[1]) / 2
 
 
@@ -105,7 +105,7 @@ def _passages_in(world: World, solid: Any) -> list[Gap]:
     found = []
     for passage in Screen(free).passages(MIN_NECK_RATIO):
         (a, b), (c, d) = ([(x / cells, y / cells) for x, y in mouth] for mouth in passage.mouths)
-        if math.dist(_halfway(a, c), _halfway(b, d)) < LENGTH_TOLERANCE:
+        if math.dist(_halfway(a, c), _halfway(b, d)) < GAP_LENGTH_TOLERANCE:
             continue  # its mouths cross each other: there is no direction in which it could be made wider
         gap = _gap_between(_halfway(a, c), _halfway(b, d), shapely.MultiPoint([a, b, c, d]), passage.width / cells)
         gap = replace(gap, room=min(passage.sides) / cells)
@@ -141,7 +141,7 @@ def _measured_once(solid: Any, rough: Gap) -> Gap:
     """Return a gap with the measures that its walls have near where it was thought to be."""
     margin = max(ROUGH_MARGIN, rough.width / 2)
     left, right = _walls_beside(solid, shapely.from_wkt(rough.wall), margin, CELL_DIAGONAL, rough)
-    if left.is_empty or right.is_empty or left.distance(right) < LENGTH_TOLERANCE:
+    if left.is_empty or right.is_empty or left.distance(right) < GAP_LENGTH_TOLERANCE:
         return rough
     width = float(left.distance(right))
     q, p = shapely.get_coordinates(shapely.shortest_line(right, left)).tolist()
@@ -221,7 +221,7 @@ def widened(world: World, gap: Gap, side: GapSide, by: float) -> World | None:
     or when other parts of the floor would be joined as well.
     """
     shape = shapely.from_wkt(gap.wall)
-    if not gap.is_new and gap.depth < LENGTH_TOLERANCE:
+    if not gap.is_new and gap.depth < GAP_LENGTH_TOLERANCE:
         shape = _thickened(shape, gap, by)
     floor = floor_of(world)
     local = shape if gap.is_new else _part_at(shape.intersection(floor), gap.place)
@@ -241,7 +241,7 @@ def widened(world: World, gap: Gap, side: GapSide, by: float) -> World | None:
     changed = replace(world, verge=verge)
     if not verge.is_valid or verge.is_empty:
         return None
-    if not gap.is_new and _width(solid_of(changed), swept, gap) < gap.width + by - LENGTH_TOLERANCE:
+    if not gap.is_new and _width(solid_of(changed), swept, gap) < gap.width + by - GAP_LENGTH_TOLERANCE:
         return None
     parts, holes = _topology(floor)
     new_parts, new_holes = _topology(floor_of(changed))
@@ -273,7 +273,7 @@ def _sweep(shape: Any, offset: XY) -> Any:
         lines = [part.exterior] if part.geom_type == "Polygon" else [part] if part.geom_type == "LineString" else []
         for line in lines:
             points = shapely.get_coordinates(line)
-            for p, q in zip(points[:-1], points[1:], strict=True):
+            for p, q in pairwise(points):
                 corners = [p, q, q + offset, p + offset]
                 parts.append(shapely.MultiPoint(corners).convex_hull)
     return shapely.union_all([part for part in parts if part.area > 0])
@@ -281,7 +281,7 @@ def _sweep(shape: Any, offset: XY) -> Any:
 
 def _width(solid: Any, opening: Any, gap: Gap) -> float:
     """Return how far the walls on the left and on the right of an opening are apart, in squares."""
-    left, right = _walls_beside(solid, opening, WALL_MARGIN, LENGTH_TOLERANCE, gap)
+    left, right = _walls_beside(solid, opening, WALL_MARGIN, GAP_LENGTH_TOLERANCE, gap)
     return math.inf if left.is_empty or right.is_empty else float(left.distance(right))
 
 
@@ -328,7 +328,7 @@ def _clean(verge: Any) -> Any:
 def _cells_per_square(solid: Any, world: World) -> int:
     """Return into how many cells a square's side is divided: 1 where all walls lie on whole squares."""
     points = shapely.get_coordinates(solid)
-    on_squares = bool(np.all(np.abs(points - np.round(points)) < LENGTH_TOLERANCE))
+    on_squares = bool(np.all(np.abs(points - np.round(points)) < GAP_LENGTH_TOLERANCE))
     return 1 if on_squares or max(world.width, world.height) > MAX_FINE_SIDE else FINE_CELLS
 
 

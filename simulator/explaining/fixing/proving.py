@@ -22,7 +22,7 @@ class BudgetEndedError(Exception):
 
 @dataclass(frozen=True)
 class Budget:
-    """How much may be run.
+    """Bounds how much may be run.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Budget:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a changed scenario ended.
+    """Holds how a changed scenario ended.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ IMPOSSIBLE_CHANGE = Outcome(False, None)
 
 
 @dataclass
-class Prover:
+class VariantProver:
     """Runs a scenario with changes and remembers how it ended.
 
     Attributes
@@ -105,7 +105,7 @@ class Prover:
 
     @property
     def tried(self) -> dict[tuple[Change, ...], Outcome]:
-        """All changes that were tried, with how they ended, in their order."""
+        """Return all changes that were tried, with how they ended, in their order."""
         return dict(self._known)
 
     def _run(self, changes: tuple[Change, ...], variant: Variant) -> Outcome:

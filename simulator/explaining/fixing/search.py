@@ -1,9 +1,9 @@
 """The search for the smallest changes with which a run works.
 
 # Strategy: single changes first, a gap as wide as it is tried at all. What works is made as small as possible. Then
-pairs are tried of changes that do not work alone. So no change that is reported contains another one that works. A width is
-bisected between one that fails and one that works, so the step below the reported one is shown to fail. What is left of
-the budget is spent on the smaller steps that bisection skipped.
+pairs are tried of changes that do not work alone. So no change that is reported contains another one that works. Widths
+are tried from what geometry allows on, further and further up, and bisected between one that fails and one that works:
+with one step less they are shown to fail. What is left of the budget is spent on the smaller steps that were skipped.
 """
 
 from collections.abc import Callable, Iterator
@@ -19,7 +19,7 @@ from simulator.explaining.fixing.candidates import (
 )
 from simulator.explaining.fixing.changes import Change, Dropped, MoreCommands, Wider
 from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
-from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, Prover
+from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
 from simulator.explaining.fixing.recorded import RecordedRun
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker
@@ -52,7 +52,7 @@ class Fix:
 
 @dataclass(frozen=True)
 class FixReport:
-    """What was found.
+    """Holds what was found.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ def find_fixes(
     -------
     What was found, and what was tried.
     """
-    prover = Prover(run.scenario, run.settings, budget, watch, make)
+    prover = VariantProver(run.scenario, run.settings, budget, watch, make)
     search, before, ended = FixSearch(prover), None, ""
     try:
         unchanged = prover.outcome(())
@@ -125,7 +125,7 @@ class FixSearch:
     prover : runs the changed scenarios.
     """
 
-    prover: Prover
+    prover: VariantProver
     _fixes: list[Changes] = field(default_factory=list)
     _ranges: dict[tuple[object, object], GapRange] = field(default_factory=dict)
 

@@ -22,7 +22,7 @@ TABLE = shapely.box(0, 0, 24, 14)
 
 
 def rooms(low: float, high: float, thickness: int = 2) -> World:
-    """Return two rooms with a wall between them that has a door from y = low to y = high; no door when they are equal."""
+    """Return two rooms with a door from y = low to y = high in the wall between them; no door when they are equal."""
     floor = [shapely.box(1, 1, 11, 13), shapely.box(11 + thickness, 1, 23, 13)]
     if high > low:
         floor.append(shapely.box(11, low, 11 + thickness, high))
