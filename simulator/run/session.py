@@ -63,6 +63,9 @@ class RobotProtocol(Protocol):
     def step(self) -> StepReportProtocol:
         """Choose a command, act and return the report; without a command when the run ends."""
 
+    def follow(self, command: Command, why: str) -> StepReportProtocol:
+        """Give a command that comes from outside, act and return the report."""
+
     @property
     def finished(self) -> bool:
         """Whether the robot has a verdict."""

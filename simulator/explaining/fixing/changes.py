@@ -50,12 +50,12 @@ class Wider:
 
     @property
     def by(self) -> float:
-        """By how many squares it is wider."""
+        """Return by how many squares it is wider."""
         return self.steps * WIDTH_STEP
 
     @property
     def width(self) -> float:
-        """How wide it is then, in squares."""
+        """Return how wide it is then, in squares."""
         return self.gap.width + self.by
 
 

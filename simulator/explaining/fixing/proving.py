@@ -22,7 +22,7 @@ class BudgetEndedError(Exception):
 
 @dataclass(frozen=True)
 class Budget:
-    """How much may be run.
+    """Bounds how much may be run.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Budget:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a changed scenario ended.
+    """Holds how a changed scenario ended.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ IMPOSSIBLE_CHANGE = Outcome(False, None)
 
 
 @dataclass
-class Prover:
+class VariantProver:
     """Runs a scenario with changes and remembers how it ended.
 
     Attributes
@@ -105,7 +105,7 @@ class Prover:
 
     @property
     def tried(self) -> dict[tuple[Change, ...], Outcome]:
-        """All changes that were tried, with how they ended, in their order."""
+        """Return all changes that were tried, with how they ended, in their order."""
         return dict(self._known)
 
     def _run(self, changes: tuple[Change, ...], variant: Variant) -> Outcome:
@@ -114,7 +114,7 @@ class Prover:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
         self._check_time()
         self.runs += 1
-        leader = Leader(variant.led[0]) if variant.led else None
+        leader = Leader(variant.led[0], self.make) if variant.led else None
         session = Session(
             variant.scenario, variant.settings, self.make if leader is None else leader.make, EpisodeLog(None)
         )

@@ -118,7 +118,7 @@ def _lines(report: FixReport, depth: Depth) -> Iterator[str]:
     if depth != Depth.SHORT:
         refuted = sum(bool(outcome.refuted) for _, outcome in failed)
         geometry = f", {refuted} of them by geometry alone" if refuted else ""
-        count = len(failed) + len(report.fixes)
+        count = len(failed) + sum(outcome.works for changes, outcome in report.tried if changes)
         yield f"{count} changes tried in {report.runs} runs, {report.commands} commands; {len(failed)} failed{geometry}"
         yield FRAME_NOTE
 

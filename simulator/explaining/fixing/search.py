@@ -1,9 +1,9 @@
 """The search for the smallest changes with which a run works.
 
-Single changes come first, a gap as wide as it is tried at all. What works is made as small as possible. Then pairs are
-tried of changes that do not work alone. So no change that is reported contains another one that works. A width is
-bisected between one that fails and one that works, so the step below the reported one is shown to fail. What is left of
-the budget is spent on the smaller steps that bisection skipped.
+Single changes come first, a gap as wide as it is tried at all. What works is made as small as possible. Then
+pairs are tried of changes that do not work alone. So no change that is reported contains another one that works. Widths
+are tried from what geometry allows on, further and further up, and bisected between one that fails and one that works:
+with one step less they are shown to fail. What is left of the budget is spent on the smaller steps that were skipped.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,8 +18,8 @@ from simulator.explaining.fixing.candidates import (
     is_out_of_commands,
 )
 from simulator.explaining.fixing.changes import Change, Dropped, MoreCommands, Wider
-from simulator.explaining.fixing.gaps import WIDTH_STEP
-from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, Prover
+from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
+from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
 from simulator.explaining.fixing.recorded import RecordedRun
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker
@@ -52,7 +52,7 @@ class Fix:
 
 @dataclass(frozen=True)
 class FixReport:
-    """What was found.
+    """Holds what was found.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ def find_fixes(
     -------
     What was found, and what was tried.
     """
-    prover = Prover(run.scenario, run.settings, budget, watch, make)
+    prover = VariantProver(run.scenario, run.settings, budget, watch, make)
     search, before, ended = FixSearch(prover), None, ""
     try:
         unchanged = prover.outcome(())
@@ -125,7 +125,7 @@ class FixSearch:
     prover : runs the changed scenarios.
     """
 
-    prover: Prover
+    prover: VariantProver
     _fixes: list[Changes] = field(default_factory=list)
     _ranges: dict[tuple[object, object], GapRange] = field(default_factory=dict)
 
@@ -158,7 +158,8 @@ class FixSearch:
             self._ranges |= {(one.gap, one.side): one for one in ranges}
             found = self._gap(ranges)
             if found is None:
-                gaps.append(ranges[0].change(ranges[0].most))
+                strongest = next((one for one in ranges if one.side == GapSide.BOTH), ranges[0])
+                gaps.append(strongest.change(strongest.most))
             else:
                 self._fixes.append(found)
         for place in candidates.led:
@@ -214,7 +215,7 @@ class FixSearch:
     def _gap(self, ranges: tuple[GapRange, ...]) -> Changes | None:
         """Return a gap made wider by as few steps as work, on the side where the fewest suffice; None when none do."""
         best: Changes | None = None
-        for number, one in enumerate(ranges):
+        for number, one in enumerate(one for one in ranges if one.alone):
             for steps in _probes(one, 0 if number else 1) if best is None else _below(one, best):
                 probed = (one.change(steps),)
                 if self._works(probed):
@@ -241,20 +242,22 @@ class FixSearch:
         return changes
 
     def _fewest(self, changes: Changes, place: int) -> Changes:
-        """Return working changes with one width bisected between no step, which fails, and the steps it has."""
+        """Return working changes with one width as small as possible: with one step less they are shown to fail.
+
+        First the steps just above what geometry allows are tried, further and further up; then the rest is bisected.
+        """
         change = changes[place]
         assert isinstance(change, Wider)
         fails, works = 0, change.steps
-        middle = self._ranges[change.gap, change.side].least - 1
+        least = self._ranges[change.gap, change.side].least
+        trials = [least + 2**k - 1 for k in range(change.steps.bit_length())] + [least - 1]
         while works - fails > 1:
-            if not fails < middle < works:
-                middle = (works + fails) // 2
-            if self._works(_with_steps(changes, place, middle)):
-                works = middle
+            steps = next((one for one in trials if fails < one < works), (works + fails) // 2)
+            if self._works(_with_steps(changes, place, steps)):
+                works = steps
                 self._fixes[-1] = _with_steps(changes, place, works)
             else:
-                fails = middle
-            middle = (works + fails) // 2
+                fails = steps
         return _with_steps(changes, place, works)
 
 
