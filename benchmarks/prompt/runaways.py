@@ -16,7 +16,7 @@ from kb.reasoning.query import QueryEngine, QueryLimitError
 from kb.reasoning.user_rules import RuleLimits, read_tested_rules
 
 GRACE_SECONDS = 0.5  # seconds beyond the limit within which everything must be stopped
-FACTS = [f"{text}." for n in range(250) for text in (f"kind(o{n},object,90)", f"offset(o{n},{n},{-n})",
+RUNAWAY_FACTS = [f"{text}." for n in range(250) for text in (f"kind(o{n},object,90)", f"offset(o{n},{n},{-n})",
          f"shape(o{n},square,{n % 100})", f"colour(o{n},r,99)")]  # fmt: skip
 
 
@@ -80,7 +80,7 @@ def took(work: Callable[[], object]) -> tuple[float, str]:
 def cases(engine: QueryEngine, seconds: float, folder: Path) -> Iterator[tuple[str, Callable[[], object]]]:
     """Yield a name and the work of each runaway."""
     for query in runaway_queries():
-        yield f"?- {query}", lambda query=query: engine.ask(FACTS, query)  # type: ignore[misc]
+        yield f"?- {query}", lambda query=query: engine.ask(RUNAWAY_FACTS, query)  # type: ignore[misc]
     for number, rules in enumerate(runaway_rules()):
         path = folder / f"{number}.lp"
         path.write_text(rules)
@@ -97,11 +97,11 @@ def main() -> int:
     seconds = parser.parse_args().seconds
     late, times = 0, []
     with tempfile.TemporaryDirectory() as folder, QueryEngine(seconds=seconds) as engine:
-        engine.ask(FACTS, "object(o1)")
+        engine.ask(RUNAWAY_FACTS, "object(o1)")
         for name, work in cases(engine, seconds, Path(folder)):
             lasted, how = took(work)
             times.append(lasted)
-            alive, answer = took(lambda: engine.ask(FACTS, "object(o1)"))
+            alive, answer = took(lambda: engine.ask(RUNAWAY_FACTS, "object(o1)"))
             bad = lasted > seconds + GRACE_SECONDS or answer != "answered" or alive > seconds
             late += bad
             if bad or lasted > seconds:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from kb.reasoning.query import QueryEngine
 
-ROOT = Path(__file__).resolve().parents[2]
+PROMPT_CHECKOUT = Path(__file__).resolve().parents[2]
 MAX_READY_SECONDS = 0.5  # what is wanted of the prompt
 MAX_QUERY_MILLISECONDS = 20.0  # what is wanted of a query
 MAX_WAIT_SECONDS = 20  # seconds after which a prompt that does not come is an error
@@ -35,7 +35,7 @@ def seconds_to_prompt(story: str, **environment: str) -> tuple[float, float]:
     """Return the wall-clock and the processor seconds that `utak repl STORY` takes at a terminal to its prompt."""
     master, slave = pty.openpty()
     begin, seen = time.monotonic(), b""
-    command = [sys.executable, str(ROOT / "utak_command.py"), "", "simulator.cli", "repl", story]
+    command = [sys.executable, str(PROMPT_CHECKOUT / "utak_command.py"), "", "simulator.cli", "repl", story]
     with subprocess.Popen(command, stdin=slave, stdout=slave, stderr=slave, env=os.environ | environment) as process:
         os.close(slave)
         try:
@@ -84,7 +84,7 @@ def query_milliseconds(repeats: int = 15) -> dict[str, tuple[float, float]]:
 
 def main() -> int:
     """Print both; exit 1 when the medians are beyond what is wanted."""
-    story = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "examples" / "go_to_square_unseen")
+    story = sys.argv[1] if len(sys.argv) > 1 else str(PROMPT_CHECKOUT / "examples" / "go_to_square_unseen")
     ready = {}
     for name, environment in (("with the extra", {}), ("with readline alone", {"UTAK_PLAIN_PROMPT": "1"})):
         wall, processor = zip(*(seconds_to_prompt(story, **environment) for _ in range(STARTS)), strict=True)

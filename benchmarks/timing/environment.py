@@ -3,8 +3,9 @@
     python -m benchmarks.timing.environment [--steps N] [--runs N] [--before CHECKOUT]
 
 Both play the same commands on examples: `random` draws from all five kinds, and `busy` grasps what is felt, pushes,
-turns and releases it. Each figure is the best of some runs. With --before, the bare table of another checkout of Utak
-plays them, too, in a process of its own, and ratios to it are printed: those of one machine at one time.
+turns and releases it. Time is that of the processor, so that other work on the machine counts little; the best of some
+runs counts. With --before, the bare table of another checkout of Utak plays them, too, in a process of its own, and
+ratios to it are printed: those of one machine at one time.
 """
 
 import argparse
@@ -136,9 +137,9 @@ def best_rate(play: Callable[[], object], count: int, runs: int) -> float:
     best = 0.0
     play()
     for _ in range(runs):
-        begin = time.perf_counter()
+        begin = time.process_time()
         play()
-        best = max(best, count / (time.perf_counter() - begin))
+        best = max(best, count / (time.process_time() - begin))
     return best
 
 

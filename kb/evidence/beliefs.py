@@ -24,7 +24,7 @@ ROBOT = "org"  # the node of the robot
 ROBOT_ALIAS = "utak"  # its name in questions
 
 
-class Prover(Protocol):
+class AnswerProver(Protocol):
     """Explains the answer of an encoding."""
 
     def __call__(self, call: SolverCall, atom: str, leaf: Callable[[str], Reason]) -> Reason:
@@ -44,7 +44,7 @@ class FactExplainer:
     record : as given.
     """
 
-    def __init__(self, record: Record, prove: Prover) -> None:
+    def __init__(self, record: Record, prove: AnswerProver) -> None:
         self.record = record
         self._prove = prove
 

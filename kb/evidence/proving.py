@@ -24,7 +24,7 @@ KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
 
 
 class EncodingProver:
-    """Explains the answers of encodings by the rules that derived them; satisfies `kb.evidence.beliefs.Prover`.
+    """Explains the answers of encodings by the rules that derived them; satisfies `kb.evidence.beliefs.AnswerProver`.
 
     Parameters
     ----------

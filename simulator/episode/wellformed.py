@@ -25,14 +25,14 @@ from simulator.scenario.settings import PATH_CHOICES
 EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
 TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
-MAX_STEP_NUMBER = 1_000_000  # the greatest --max-steps
+LAST_STEP_NUMBER = 1_000_000  # the greatest --max-steps
 RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
 FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
 
 TEXT = Characters()
 FLAG = OneOf((True, False))
 FACT = Characters(FACT_PATTERN, "a fact")
-STEP_NUMBER = Whole(0, MAX_STEP_NUMBER)
+STEP_NUMBER = Whole(0, LAST_STEP_NUMBER)
 COMMAND_NUMBER = Numeric(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE)
 PAIR = ListOf(COMMAND_NUMBER, 2, 2)  # (x, y) or (east, north) in squares
 # The keys of a straight motion, in squares of Utak's frame.
@@ -108,7 +108,7 @@ SOLVED_FORM = AnyOf(
     (
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)), ListOf(Anything()))),
         Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)))),
-        Row((TEXT, Row((STEP_NUMBER, Whole(0, MAX_STEP_NUMBER))))),
+        Row((TEXT, Row((STEP_NUMBER, Whole(0, LAST_STEP_NUMBER))))),
     ),
     "a decision, [encoding, facts, answer, about] or [encoding, [step, index]],",
 )

@@ -31,12 +31,11 @@ from simulator.importing.text_file import read_raw, text_source
 SQUARES_A_CELL = 3  # squares a cell: the robot sees an object of one cell as a square of 3 x 3; a convention
 BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them
 THING_PART = re.compile(r"[mg][0-9a-z_]+")  # an object or a goal
-PUSHWORLD_WORD = re.compile(r"[^ \t]+")
+CELL_WORD = re.compile(r"[^ \t]+")
 PART_HINT = "cells are . W A M0 G0, and several of them joined by +, such as A+G1"
 
-CellPlaces = dict[
-    str, dict[RasterCell, SourceSpan]
-]  # by part, in lower case: its cells, each with its place in the text
+# By part, in lower case: its cells, each with its place in the text.
+PuzzlePlaces = dict[str, dict[RasterCell, SourceSpan]]
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
@@ -91,15 +90,15 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     return Imported("PushWorld puzzle", drawn.file, drawn.text, *task, tuple(notes))
 
 
-def _places(source: Source) -> tuple[CellPlaces, int, int]:
+def _places(source: Source) -> tuple[PuzzlePlaces, int, int]:
     """Return the cells of each part, and the numbers of rows and columns; raise BadInputError for wrong parts."""
     lines = list(source.lines)
     while lines and not lines[-1].strip():
         lines.pop()
-    words = [list(PUSHWORLD_WORD.finditer(line)) for line in lines]
+    words = [list(CELL_WORD.finditer(line)) for line in lines]
     if not words:
         raise BadInputError([source.problem(source.start(), "the puzzle is empty")])
-    places: CellPlaces = defaultdict(dict)
+    places: PuzzlePlaces = defaultdict(dict)
     problems: list[Problem] = []
     for number, (line, row) in enumerate(zip(lines, words, strict=True), 1):
         if len(row) != len(words[0]) or not row:
@@ -121,7 +120,7 @@ def _places(source: Source) -> tuple[CellPlaces, int, int]:
     return places, len(words), len(words[0])
 
 
-def _problems(source: Source, places: CellPlaces) -> "list[Problem]":
+def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
     """Return what makes a puzzle none, or none that TABLETOP can show; [] for nothing."""
     problems = []
     robot = sorted(places.get("a", {}).values())

@@ -5,6 +5,7 @@ This is the only module that uses pillow.
 
 import io
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -19,6 +20,7 @@ from simulator.terminal.streams import escape_controls
 PANEL_PIXELS = 420  # the width or height of each of the two pictures, whichever is greater
 GAP_PIXELS = 12  # between and around the two pictures
 TEXT_PIXELS = 14  # the height of a line of text
+MAX_CAPTION_CHARACTERS = 400  # of a text, of which a line shows as many as fit
 TEXT_LINES = 3  # below the pictures
 STEP_MILLISECONDS = 700  # how long a step is shown
 END_MILLISECONDS = 3000  # how long the last one is shown
@@ -185,8 +187,8 @@ def _dot(on: ImageDraw.ImageDraw, at: tuple[float, float], colour: int) -> None:
 
 def _fitting(text: str, font: Any, width: int) -> str:
     """Return a text without control characters, cut to a width in pixels."""
-    clean = escape_controls(text, lines=False)[:400]
-    cut = clean
-    while cut and font.getlength(cut + ("..." if cut != clean else "")) > width:
-        cut = cut[:-1]
-    return cut if cut == clean else cut + "..."
+    clean = escape_controls(text, lines=False)[:MAX_CAPTION_CHARACTERS]
+    if font.getlength(clean) <= width:
+        return clean
+    fits = bisect_right(range(len(clean)), width, key=lambda size: font.getlength(clean[:size] + "..."))
+    return clean[: max(fits - 1, 0)] + "..."

@@ -32,7 +32,7 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
     while True:
         line, facts = story.line, [_clean(fact) for fact in story.line["belief"]["facts"]]
         head = f"step {line['step']}: {describe(line['action'])}: {_clean(line['why'])}"
-        yield "\n".join([head, story.picture().rstrip("\n"), *_changes(before, facts), "", ""])
+        yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *_changes(before, facts), "", ""])
         before = facts
         if not story.advance():
             break

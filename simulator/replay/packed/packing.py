@@ -18,14 +18,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.events import episode_events
 from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
 from simulator.replay.packed.delta import GONE, difference
+from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
 from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
 
-STEPS_PER_BLOCK = 500  # a compromise: longer blocks pack better, shorter ones are read faster; benchmarks/replay.py
+STEPS_PER_BLOCK = (
+    500  # a compromise: longer blocks pack better, shorter ones are read faster; benchmarks/episodes/replay.py
+)
 # Bytes of a packed episode of up to STEPS_PER_BLOCK steps, and for each step more, that may be exceeded only when no
 # detail of decisions is left to leave out. With the player, 500 steps have 150 KB and 5,000 steps 1.5 MB; a convention.
 PACKED_BYTES = 110_000

@@ -1,21 +1,22 @@
 // The two maps: the table as it is, and what the robot believes of it.
 
 const RETINA_REACH = 16; // squares: the retina covers 32 x 32 squares about the robot's own square
-const OUTSIDE = 4; // squares of the belief beyond the table that are shown at most
+const MIN_OUTSIDE = 4, OUTSIDE_SHARE = 0.25; // how far beyond the table is shown: squares, or a share of its greater side
 const LABEL_SIZE = 11; // pixels
 
 // The area that both maps show, in squares of the picture: the table, and what is believed a little beyond it.
 function areaOf(episode, places) {
   const [width, height] = episode.header.world.table;
   let [west, north, east, south] = [0, 0, width, height];
+  const outside = Math.max(MIN_OUTSIDE, OUTSIDE_SHARE * Math.max(width, height));
   if (episode.bounds) {
     const [w, s, e, n] = episode.bounds.map((value) => value / 100);
     for (const corner of [[w, s], [w, n], [e, s], [e, n]]) {
       const [x, y] = places.robot(corner);
-      west = Math.max(Math.min(west, x), -OUTSIDE);
-      north = Math.max(Math.min(north, y), -OUTSIDE);
-      east = Math.min(Math.max(east, x), width + OUTSIDE);
-      south = Math.min(Math.max(south, y), height + OUTSIDE);
+      west = Math.max(Math.min(west, x), -outside);
+      north = Math.max(Math.min(north, y), -outside);
+      east = Math.min(Math.max(east, x), width + outside);
+      south = Math.min(Math.max(south, y), height + outside);
     }
   }
   return { west, north, width: east - west, height: south - north };
@@ -116,7 +117,7 @@ function drawBelief(at) {
     if (!["floor", "verge"].includes(name)) group.append(label(at, edges.map((edge) => edge.from), place, nameOf(said, name)));
   }
   if (isPoint(at.line.belief.place)) {
-    const [x, y] = place(at.line.belief.place), size = 6 * at.unit;
+    const [x, y] = place(at.line.belief.place), size = 8 * at.unit;
     group.append(svg("path", { class: "place", d: `M${x} ${y - size}L${x + size} ${y}L${x} ${y + size}L${x - size} ${y}Z` }, svg("title", {}, "where the robot believes it is")));
   }
   return group;

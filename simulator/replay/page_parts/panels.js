@@ -127,7 +127,11 @@ function decision(at, number, entry) {
   const [name] = entry, again = entry.length === 2 && Array.isArray(entry[1]) ? entry[1] : null;
   const whole = again && again[0] < at.step ? (at.episode.line(again[0]).belief.solved || [])[again[1]] || entry : entry;
   const [, facts, answer, about, left] = whole.length > 2 ? whole : [name, [], [], []];
-  const told = Array.isArray(answer) ? (answer.length ? answer.slice(0, 3).map(shown).join(", ") + (answer.length > 3 ? ", …" : "") : "nothing") : "no answer";
+  const named = (atom) => {
+    const number = /\((\d{1,9})\)$/.exec(atom), text = number && Array.isArray(about) ? about[Number(number[1])] : undefined;
+    return shown(atom) + (typeof text === "string" ? ` (${shown(text)})` : "");
+  };
+  const told = Array.isArray(answer) ? (answer.length ? answer.slice(0, 3).map(named).join(", ") + (answer.length > 3 ? ", …" : "") : "nothing") : "no answer";
   const summary = html("span", {}, html("b", {}, shown(name)), again ? ` (as at step ${shown(again[0])})` : "", `: ${told}`);
   return folded(summary, () => {
     const inside = [];

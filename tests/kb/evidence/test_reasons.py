@@ -17,7 +17,7 @@ from simulator.explaining.questions import Questions, questions_of_episode
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 RUNS = [("go_next_room_askew", "0"), ("push_l_tight_door", "0"), ("push_square_next_room", "0.05")]
-STRIDE = 7  # every seventh fact of a step is explained here; benchmarks.explanations explains all
+STRIDE = 7  # every seventh fact of a step is explained here; benchmarks.episodes.explanations explains all
 
 
 @pytest.fixture(scope="module", params=RUNS, ids=lambda run: f"{run[0]}-{run[1]}")

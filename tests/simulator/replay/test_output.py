@@ -1,14 +1,14 @@
 """Pages, moving pictures and text on the command line."""
 
 import hashlib
-import io
 import os
 import re
 import subprocess
 import sys
-import zlib
 from base64 import b64encode
+from contextlib import redirect_stderr, suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from replay_episodes import HOSTILE, ROOT, hostile
@@ -17,6 +17,9 @@ from simulator.cli.main import main
 from simulator.episode.episode import Episode, encode
 from simulator.replay.page import replay_page
 from simulator.replay.transcript import transcript
+from simulator.replay.watching import TableWatch
+from simulator.scenario.scenario import read_any_world as read_world
+from simulator.terminal.streams import GuardedStream
 
 
 def write(folder: Path, episode: Episode) -> str:
@@ -141,33 +144,35 @@ def test_moving_pictures_without_pillow_say_what_is_missing(carried: tuple[Path,
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo terminals are of Unix")
-@pytest.mark.parametrize(("rows", "in_place"), [(60, True), (10, False)])
-def test_watch_draws_in_place_where_the_table_has_room(tmp_path: Path, rows: int, in_place: bool) -> None:
+@pytest.mark.parametrize(("rows", "columns", "in_place"), [(60, 100, True), (10, 100, False), (60, 30, False)])
+def test_watch_draws_in_place_where_the_table_has_room(
+    monkeypatch: pytest.MonkeyPatch, rows: int, columns: int, in_place: bool
+) -> None:
     import fcntl
     import pty
     import struct
     import termios
 
     ours, terminal = pty.openpty()
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, 100, 0, 0))
-    command = [sys.executable, "-m", "simulator.cli", "run", str(ROOT / "examples" / "go_to_square"), "--watch"]
-    environment = {**os.environ, "TERM": "xterm"}
-    process = subprocess.Popen(command, stderr=terminal, stdout=subprocess.DEVNULL, cwd=ROOT, env=environment)
-    os.close(terminal)
-    seen = io.BytesIO()
-    while True:
-        try:
-            part = os.read(ours, 65536)
-        except OSError:
-            break
-        if not part:
-            break
-        seen.write(part)
+    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    monkeypatch.setenv("TERM", "xterm")
+    watch = TableWatch()
+    table = SimpleNamespace(world=read_world(ROOT / "examples" / "go_to_square"), polygons={}, utak=(5.5, 5.5))
+    with os.fdopen(terminal, "w") as stream, redirect_stderr(GuardedStream(stream, "the terminal", False)):
+        for number in (0, 1, 1, 2):
+            line = {"step": number, "action": None, "why": "because " * 20 + "\x1b[2J"}
+            watch.tell(SimpleNamespace(line=line, table=table))
+    parts = []
+    with suppress(OSError):  # the end of what a terminal that was closed has
+        while part := os.read(ours, 4096):
+            parts.append(part)
     os.close(ours)
-    assert process.wait(60) == 0
-    pictures, erased = seen.getvalue().count(b"the true table"), seen.getvalue().count(b"F\x1b[J")
-    assert pictures == 5
-    assert erased == (pictures - 1 if in_place else 0)
+    seen = b"".join(parts).decode()
+    height = table.world.height + 2
+    assert seen.count("the true table") == 3
+    assert seen.count(f"\x1b[{height}F\x1b[J") == (2 if in_place else 0)
+    assert "\x1b[2J" not in seen
+    assert not in_place or max(map(len, seen.splitlines())) < columns + 8
 
 
 def test_every_part_of_the_page_is_in_the_package() -> None:
@@ -176,4 +181,4 @@ def test_every_part_of_the_page_is_in_the_package() -> None:
 
     parts = files("simulator.replay") / "page_parts"
     assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "inflate.js"}
-    assert zlib.crc32((parts / "page.html").read_bytes())
+    assert all(part.read_text(encoding="utf-8") for part in parts.iterdir())

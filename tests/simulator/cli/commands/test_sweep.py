@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.killing import descendants_of, still_there
+from benchmarks.episodes.killing import descendants_of, still_there
 from simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[4]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.killing import descendants_of, still_there
+from benchmarks.episodes.killing import descendants_of, still_there
 from simulator.sweep.executors.in_process import run_in_this_process
 from simulator.sweep.executors.processes import run_in_processes
 from simulator.sweep.executors.task_process import TaskProcess

@@ -1,7 +1,7 @@
 """Explanations of recorded episodes, confirmed node by node by checks that share no code with what makes them.
 
     python -m benchmarks.unchanged write FOLDER --count 100
-    python -m benchmarks.explanations FOLDER [--stride N] [--jobs J]
+    python -m benchmarks.episodes.explanations FOLDER [--stride N] [--jobs J]
 
 Every command, every verdict, every N-th fact of every step (a different one in each step) and all 160 cells of every
 impression are explained. Reported are how many trees and nodes were confirmed, what is wrong with the others, and how
@@ -80,7 +80,7 @@ def confirmed(job: tuple[Path, int]) -> Findings:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Execute the command line; return 1 when something is wrong."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.explanations", description=(__doc__ or "").split("\n")[0]
+        prog="python -m benchmarks.episodes.explanations", description=(__doc__ or "").split("\n")[0]
     )
     parser.add_argument("folder", type=Path, help="a folder of episodes")
     parser.add_argument("--stride", type=int, default=7, help="explain each N-th fact of a step (default %(default)s)")

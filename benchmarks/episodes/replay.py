@@ -1,6 +1,6 @@
 """The size of replay pages, and how fast a browser plays them.
 
-    python -m benchmarks.replay [EP.jsonl ...] [--steps 500,5000] [--noise 0.05]
+    python -m benchmarks.episodes.replay [EP.jsonl ...] [--steps 500,5000] [--noise 0.05]
 
 For each episode, and for long ones that are put together from runs of one example with noise, one line: the bytes of
 the episode and of its page, the seconds to make the page, and in headless Chromium the milliseconds until the first
@@ -23,7 +23,7 @@ from simulator.cli.main import main as utak
 from simulator.episode.episode import Episode, EpisodeLine, encode, read_episode
 from simulator.replay.page import replay_page
 
-EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "push_l_tight_door"  # with noise it takes many steps
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "push_l_tight_door"  # with noise it takes many steps
 RUNS = 3  # of the example, with different seeds, of which long episodes are made
 SEEKS = 100  # steps that are looked at in random order
 HEAD = f"{'episode':<32} steps   episode      page a step     s  first  seek worst"
@@ -31,7 +31,9 @@ HEAD = f"{'episode':<32} steps   episode      page a step     s  first  seek wor
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.replay", description="Size and speed of replay pages.")
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.episodes.replay", description="Size and speed of replay pages."
+    )
     parser.add_argument("episodes", nargs="*", type=Path, help="episodes to measure")
     parser.add_argument("--steps", default="500,5000", help="lengths of made episodes (default %(default)s)")
     parser.add_argument(

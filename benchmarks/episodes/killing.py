@@ -1,6 +1,7 @@
-"""Kills `utak run` and `utak sweep` at random moments, and checks what is left: python -m benchmarks.killing.
+"""Kills `utak run` and `utak sweep` at random moments, and checks what is left: python -m benchmarks.episodes.killing.
 
-    python -m benchmarks.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER] [--keep FOLDER]
+    python -m benchmarks.episodes.killing [--count 200] [--seed N] [--what run,sweep,worker] [--scenario FOLDER]
+        [--keep FOLDER]
 
 `run` and `sweep` kill the command itself; `worker` kills one of the worker processes of a sweep. Each time:
 
@@ -33,7 +34,7 @@ from simulator.sweep.results import complete_result_lines
 from simulator.terminal import exits
 from utak_command import isolated_command
 
-SCENARIO_FOLDER = Path(__file__).resolve().parent.parent / "examples" / "go_next_room"
+SCENARIO_FOLDER = Path(__file__).resolve().parents[2] / "examples" / "go_next_room"
 RUN_OPTIONS = ("--noise", "0.05", "--seed", "3")
 SWEEP_OPTIONS = ("--noise", "0,0.05", "--seeds", "0:3", "--jobs", "2")
 LATEST_MOMENT = 1.1  # times the duration of a command that is not killed: the last moments are after its end
@@ -227,7 +228,7 @@ def campaign(kind: str, count: int, seed: int, scenario: Path, folder: Path) -> 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Kill commands of each kind; return 0 when nothing was wrong, else 1."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.killing", description="Kill runs and sweeps.")
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.episodes.killing", description="Kill runs and sweeps.")
     parser.add_argument("--count", type=int, default=200, help="kills of each kind (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="of the moments (%(default)s)")
     parser.add_argument("--what", default="run,sweep,worker", help="kinds, with commas between (%(default)s)")

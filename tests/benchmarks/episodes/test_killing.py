@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import killing
+from benchmarks.episodes import killing
 
 
 def test_a_difference_after_a_kill_is_a_fault() -> None:
