@@ -1,4 +1,4 @@
-"""Changes that would have made failing scenarios work, found, and confirmed from their files.
+"""FixSet that would have made failing scenarios work, found, and confirmed from their files.
 
 __main__  the command line: `python -m benchmarks.fixes FOLDER...`
 """

@@ -63,9 +63,6 @@ class RobotProtocol(Protocol):
     def step(self) -> StepReportProtocol:
         """Choose a command, act and return the report; without a command when the run ends."""
 
-    def follow(self, command: Command, why: str) -> StepReportProtocol:
-        """Give a command that comes from outside, act and return the report."""
-
     @property
     def finished(self) -> bool:
         """Whether the robot has a verdict."""
@@ -73,6 +70,14 @@ class RobotProtocol(Protocol):
     @property
     def verdict(self) -> VerdictProtocol:
         """The verdict at the end."""
+
+
+@runtime_checkable
+class FollowingRobotProtocol(Protocol):
+    """A robot that takes commands from outside."""
+
+    def follow(self, command: Command, why: str) -> StepReportProtocol:
+        """Give a command that comes from outside, act and return the report."""
 
 
 @runtime_checkable

@@ -11,7 +11,14 @@ from geometry.motion.se2 import direction
 from geometry.raster.rasterize import squares
 from kb.body import Body, Command, Move
 from kb.task.task import Task
-from simulator.run.session import RobotMaker, RobotProtocol, Session, StepReportProtocol, VerdictProtocol
+from simulator.run.session import (
+    FollowingRobotProtocol,
+    RobotMaker,
+    RobotProtocol,
+    Session,
+    StepReportProtocol,
+    VerdictProtocol,
+)
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
 from simulator.world.world import World
@@ -35,7 +42,9 @@ class LedRobot:
     """
 
     def __init__(self, robot: RobotProtocol) -> None:
-        self._robot = robot
+        if not isinstance(robot, FollowingRobotProtocol):
+            raise TypeError("this robot takes no commands from outside")
+        self._robot, self._follow = robot, robot.follow
         self.given: Command | None = None
         self.led = False
 
@@ -43,16 +52,12 @@ class LedRobot:
         """Take the first impression and return the report on it."""
         return self._robot.wake()
 
-    def follow(self, command: Command, why: str) -> StepReportProtocol:
-        """Give a command from outside at once and return the report."""
-        return self._robot.follow(command, why)
-
     def step(self) -> StepReportProtocol:
         """Give the command from outside, or the decided one, and return the report."""
         if self.given is None:
             return self._robot.step()
         command, self.given = self.given, None
-        return self._robot.follow(command, LEADING_REASON)
+        return self._follow(command, LEADING_REASON)
 
     @property
     def finished(self) -> bool:
