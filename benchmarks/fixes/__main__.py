@@ -1,4 +1,4 @@
-"""FixSet that would have made failing scenarios work: what `utak explain --fix` finds, and whether it holds.
+"""WorldChanges that would have made failing scenarios work: what `utak explain --fix` finds, and whether it holds.
 
     python -m benchmarks.fixes FOLDER... [--runs N] [--seconds S] [--jsonl FILE]
 

@@ -101,7 +101,7 @@ class MoreCommands:
     max_steps: int
 
 
-Fix = Away | Wider | Dropped | Led | MoreCommands
+WorldChange = Away | Wider | Dropped | Led | MoreCommands
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Variant:
     led: tuple[XY, ...] = ()
 
 
-def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[Fix]) -> Variant | None:
+def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[WorldChange]) -> Variant | None:
     """Return a scenario with all of some changes; None when they cannot be made.
 
     They cannot when a gap cannot be widened so, when no goal is left, or when expect.lp wants something of a thing that

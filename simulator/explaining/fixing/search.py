@@ -17,7 +17,7 @@ from simulator.explaining.fixing.candidates import (
     carried_things,
     is_out_of_commands,
 )
-from simulator.explaining.fixing.changes import Dropped, Fix, MoreCommands, Wider
+from simulator.explaining.fixing.changes import Dropped, MoreCommands, Wider, WorldChange
 from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
 from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
 from simulator.explaining.fixing.recorded import RecordedRun
@@ -29,12 +29,12 @@ MIN_MORE_COMMANDS = 200  # commands; at least so many are added then: the defaul
 SECOND_PROBE_STEPS = round(
     1.0 / WIDTH_STEP
 )  # steps above what geometry allows: one square, as coarse as the robot sees
-FixSet = tuple[Fix, ...]
+WorldChanges = tuple[WorldChange, ...]
 
 
 @dataclass(frozen=True)
 class Fix:
-    """FixSet with which the run works.
+    """WorldChanges with which the run works.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Fix:
     is_least : whether it was shown to fail with any smaller number of steps of a width, not only with one less.
     """
 
-    changes: FixSet
+    changes: WorldChanges
     outcome: Outcome
     is_smallest: bool
     is_least: bool
@@ -67,7 +67,7 @@ class FixReport:
     run: RecordedRun
     before: Result | None
     fixes: tuple[Fix, ...]
-    tried: tuple[tuple[FixSet, Outcome], ...]
+    tried: tuple[tuple[WorldChanges, Outcome], ...]
     runs: int
     commands: int
     ended: str
@@ -81,7 +81,7 @@ class FixReport:
 def find_fixes(
     run: RecordedRun,
     budget: Budget,
-    watch: Callable[[int, FixSet, Outcome], None] = lambda number, changes, outcome: None,
+    watch: Callable[[int, WorldChanges, Outcome], None] = lambda number, changes, outcome: None,
     make: RobotMaker = make_robot,
 ) -> FixReport:
     """Return the smallest changes with which a run would have worked.
@@ -126,7 +126,7 @@ class FixSearch:
     """
 
     prover: VariantProver
-    _fixes: list[FixSet] = field(default_factory=list)
+    _fixes: list[WorldChanges] = field(default_factory=list)
     _ranges: dict[tuple[object, object], GapRange] = field(default_factory=dict)
 
     def more_commands(self, before: Result) -> None:
@@ -144,16 +144,16 @@ class FixSearch:
                 self.prover.follows(enough, outcome)
                 self._fixes.append(enough)
 
-    def singles(self, candidates: Candidates) -> list[Fix]:
+    def singles(self, candidates: Candidates) -> list[WorldChange]:
         """Try every change alone, keep those that work, and return those of the others of which pairs are tried."""
-        left: list[Fix] = []
-        plain: tuple[Fix, ...] = (*candidates.dropped, *candidates.away)
+        left: list[WorldChange] = []
+        plain: tuple[WorldChange, ...] = (*candidates.dropped, *candidates.away)
         for change in plain:
             if self._works((change,)):
                 self._fixes.append((change,))
             elif self.prover.variant((change,)) is not None:
                 left.append(change)
-        gaps: list[Fix] = []
+        gaps: list[WorldChange] = []
         for ranges in candidates.ranges:
             self._ranges |= {(one.gap, one.side): one for one in ranges}
             found = self._gap(ranges)
@@ -167,7 +167,7 @@ class FixSearch:
                 self._fixes.append((place,))
         return [*gaps, *sorted(left, key=lambda change: isinstance(change, Dropped))]
 
-    def pairs(self, left: list[Fix]) -> None:
+    def pairs(self, left: list[WorldChange]) -> None:
         """Try pairs of changes that do not work alone, and make those that work as small as possible."""
         for pair in combinations(left, 2):
             if self._works(pair):
@@ -203,18 +203,18 @@ class FixSearch:
             fixes.append(Fix(changes, outcome, smallest, least))
         return tuple(fixes)
 
-    def _works(self, changes: FixSet) -> bool:
+    def _works(self, changes: WorldChanges) -> bool:
         """Return whether changes work."""
         return self.prover.outcome(changes).works
 
-    def _is_known(self, changes: FixSet, works: bool) -> bool:
+    def _is_known(self, changes: WorldChanges, works: bool) -> bool:
         """Return whether changes are known to work, or to fail."""
         outcome = self.prover.tried.get(changes)
         return outcome is not None and outcome.works == works
 
-    def _gap(self, ranges: tuple[GapRange, ...]) -> FixSet | None:
+    def _gap(self, ranges: tuple[GapRange, ...]) -> WorldChanges | None:
         """Return a gap made wider by as few steps as work, on the side where the fewest suffice; None when none do."""
-        best: FixSet | None = None
+        best: WorldChanges | None = None
         for number, one in enumerate(one for one in ranges if one.alone):
             for steps in _probes(one, 0 if number else 1) if best is None else _below(one, best):
                 probed = (one.change(steps),)
@@ -225,10 +225,10 @@ class FixSearch:
                     break
         return best
 
-    def _shrunk(self, changes: FixSet) -> FixSet:
+    def _shrunk(self, changes: WorldChanges) -> WorldChanges:
         """Return working changes with each width as small as possible beside the others, and without needless parts."""
         first = True
-        before: FixSet = ()
+        before: WorldChanges = ()
         while changes != before:
             before = changes
             for place, change in enumerate(changes):
@@ -241,7 +241,7 @@ class FixSearch:
                 return self._shrunk(part)
         return changes
 
-    def _fewest(self, changes: FixSet, place: int) -> FixSet:
+    def _fewest(self, changes: WorldChanges, place: int) -> WorldChanges:
         """Return working changes with one width as small as possible: with one step less they are shown to fail.
 
         First the steps just above what geometry allows are tried, further and further up; then the rest is bisected.
@@ -268,14 +268,14 @@ def _probes(one: GapRange, others: int) -> Iterator[int]:
         yield one.least + SECOND_PROBE_STEPS
 
 
-def _below(one: GapRange, best: FixSet) -> Iterator[int]:
+def _below(one: GapRange, best: WorldChanges) -> Iterator[int]:
     """Yield the number of steps that would be better than a gap that works on another side, if it can be made."""
     (change,) = best
     if isinstance(change, Wider) and 1 <= change.steps - 1 <= one.most:
         yield change.steps - 1
 
 
-def _with_steps(changes: FixSet, place: int, steps: int) -> FixSet:
+def _with_steps(changes: WorldChanges, place: int, steps: int) -> WorldChanges:
     """Return changes with another number of steps of the width at an index; without that change for no steps."""
     change = changes[place]
     assert isinstance(change, Wider)

@@ -13,7 +13,15 @@ import shapely
 from kb.body import Body, Command, Grasp, Impression, Push
 from kb.task.task import Task
 from simulator.episode.episode import Episode
-from simulator.explaining.fixing.changes import Away, Dropped, Fix, MoreCommands, Wider, variant_of, without_goals
+from simulator.explaining.fixing.changes import (
+    Away,
+    Dropped,
+    MoreCommands,
+    Wider,
+    WorldChange,
+    variant_of,
+    without_goals,
+)
 from simulator.explaining.fixing.gaps import Gap, GapSide, passages_of
 from simulator.explaining.fixing.proving import Budget
 from simulator.explaining.fixing.recorded import RecordedRun, facts_of, task_from_texts
@@ -93,7 +101,7 @@ def found_in(scenario: Scenario, runs: int = 400, max_steps: int = 50) -> FixRep
     return find_fixes(run, Budget(runs), make=Machine)
 
 
-def works(scenario: Scenario, changes: tuple[Fix, ...]) -> bool:
+def works(scenario: Scenario, changes: tuple[WorldChange, ...]) -> bool:
     """Return whether t is in the east after the pushes: by the physics alone, without the code under test."""
     variant = variant_of(scenario, Settings(), changes)
     if variant is None:
@@ -119,7 +127,7 @@ def minimal_by_brute_force(scenario: Scenario, names: list[str], gaps: list[Gap]
         if 0 < len(changes) <= 2 and works(scenario, changes):
             working.append(frozenset(changes))
 
-    def is_smaller(one: frozenset[Fix], other: frozenset[Fix]) -> bool:
+    def is_smaller(one: frozenset[WorldChange], other: frozenset[WorldChange]) -> bool:
         return one != other and all(
             any(
                 part == whole
@@ -168,11 +176,11 @@ def test_what_is_found_is_minimal_and_a_smallest_is_found(world: World, names: l
     assert found <= expected
     assert all(fix.is_smallest and fix.is_least for fix in report.fixes)
 
-    def kinds(changes: frozenset[Fix]) -> frozenset[Any]:
+    def kinds(changes: frozenset[WorldChange]) -> frozenset[Any]:
         """Return which things and gaps are changed, whatever the side and the width."""
         return frozenset(change.gap if isinstance(change, Wider) else change for change in changes)
 
-    def width(changes: frozenset[Fix]) -> float:
+    def width(changes: frozenset[WorldChange]) -> float:
         """Return by how much gaps are wider, in all."""
         return sum(change.by for change in changes if isinstance(change, Wider))
 
