@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb.evidence.reason import Reason
-    from simulator.explaining.fixing.changes import Change
+    from simulator.explaining.fixing.changes import WorldChange
     from simulator.explaining.fixing.proving import Budget, Outcome
     from simulator.explaining.fixing.recorded import RecordedRun
     from simulator.explaining.fixing.search import FixReport
@@ -149,11 +149,13 @@ def _write_fix(report: "FixReport", folder: str, number: int | None) -> int:
     return exits.SUCCESS
 
 
-def _progress_printer(run: "RecordedRun", budget: "Budget") -> "Callable[[int, tuple[Change, ...], Outcome], None]":
+def _progress_printer(
+    run: "RecordedRun", budget: "Budget"
+) -> "Callable[[int, tuple[WorldChange, ...], Outcome], None]":
     """Return the function that prints one line after each run, on a terminal only."""
     from simulator.explaining.fixing.report import changes_in_words, outcome_in_words
 
-    def tell(number: int, changes: "tuple[Change, ...]", outcome: "Outcome") -> None:
+    def tell(number: int, changes: "tuple[WorldChange, ...]", outcome: "Outcome") -> None:
         what = changes_in_words(changes, run.scenario.world) if changes else "unchanged"
         line = f"run {number} of at most {budget.runs}: {what}: {outcome_in_words(outcome)}"
         print(escape_controls(line, lines=False), file=sys.stderr)
