@@ -66,6 +66,8 @@ def _change(dialogue: Dialogue, story: LiveStory, kind: str, text: str) -> RunCo
         dialogue.printer.say(f"... and {len(changed) - MAX_DIFFERENCES_SHOWN} more")
     if kind != "goal" and story.next_action != action:
         plan(dialogue, "")
+    elif kind != "goal" and not changed:
+        dialogue.printer.tell(f"nothing that is believed or done next changes at step {story.at}")
     return after
 
 
