@@ -32,7 +32,7 @@ function startPlayer(episode) {
     showField();
     panel("step-panel", () => stepPanel(at));
     panel("plan-panel", () => planPanel(at));
-    panel("world-panel", () => worldPanel(at));
+    if (byId("world").open) panel("world-panel", () => worldPanel(at));
     panel("changes-panel", () => changesPanel(at));
     panel("reasons-panel", () => reasonsPanel(at));
     if (byId("facts").open) panel("facts-panel", () => factsPanel(at, byId("word").value));
@@ -168,6 +168,7 @@ function startPlayer(episode) {
   on("help-close", "click", toggleHelp);
   on("field", "input", showField);
   on("facts", "toggle", again);
+  on("world", "toggle", again);
   on("word", "input", again);
   for (const [id, name] of [["marks-shown", "marks"], ["digits", "digits"], ["inner", "inner"]]) {
     on(id, "change", () => { options[name] = byId(id).checked; again(); });
