@@ -3,14 +3,16 @@
     python -m benchmarks.episodes.replay [EP.jsonl ...] [--steps 500,5000] [--noise 0.05]
 
 For each episode, and for long ones that are put together from runs of one example with noise, one line: the bytes of
-the episode and of its page, the seconds to make the page, and in headless Chromium the milliseconds until the first
-picture and of a seek (median and worst of some steps in random order).
+the episode and of its page, the processor's seconds to make it, and in headless Chromium the processor's milliseconds
+until the first picture (the best of three) and of a seek (median and worst of some steps in random order).
 """
 
 import argparse
 import contextlib
 import io
+import math
 import random
+import statistics
 import sys
 import tempfile
 import time
@@ -55,37 +57,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def measured(name: str, episode: Episode, folder: Path) -> str:
     """Return the line of one episode; `folder` is for the page."""
-    before = time.perf_counter()
+    before = time.process_time()
     page = replay_page(episode)
-    seconds = time.perf_counter() - before
+    seconds = time.process_time() - before
     path = folder / "page.html"
     path.write_text(page, encoding="utf-8")
     size, steps = len(page.encode()), len(episode.steps)
     raw = sum(len(encode(line)) for line in (episode.header, *episode.steps))
-    first, seeks = timed(path, steps) if CHROMIUM else (float("nan"), [float("nan")])
-    middle = sorted(seeks)[len(seeks) // 2]
+    first, middle, worst = timed(path, steps) if CHROMIUM else (math.nan, math.nan, math.nan)
     row = f"{name[:32]:<32} {steps:>5} {raw:>9} {size:>9} {size / steps:>6.0f} {seconds:>5.1f}"
-    return f"{row} {first:>6.0f} {middle:>5.1f} {max(seeks):>5.1f}"
+    return f"{row} {first:>6.0f} {middle:>5.1f} {worst:>5.1f}"
 
 
-def timed(page: Path, steps: int) -> tuple[float, list[float]]:
-    """Return the milliseconds until the first picture of a page, the best of three, and those of some seeks."""
+def timed(page: Path, steps: int) -> tuple[float, float, float]:
+    """Return the processor's milliseconds for the first picture of a page, and of a seek: median and worst."""
     chance = random.Random(0)
-    order = [chance.randrange(steps) for _ in range(SEEKS)]
+    first, seeks = [], []
     with Browser() as browser:
-        first = []
         for _ in range(3):
             browser.open(page)
-            first.append(float(browser.run("performance.getEntriesByType('navigation')[0].domInteractive")))
-        seeks = browser.run(
-            f"""{order}.map((step) => {{
-                const before = performance.now();
-                utak.player.show(step);
-                document.body.getBoundingClientRect();
-                return performance.now() - before;
-            }})"""
-        )
-    return min(first), list(seeks)
+            first.append(browser.busy())
+        for _ in range(SEEKS):
+            before = browser.busy()
+            browser.run(f"utak.player.show({chance.randrange(steps)}); document.body.getBoundingClientRect(); 0")
+            seeks.append(browser.busy() - before)
+    return min(first), statistics.median(seeks), max(seeks)
 
 
 def long_episode(steps: int, noise: str, folder: Path) -> Episode:

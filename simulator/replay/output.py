@@ -1,11 +1,14 @@
 """Replays as files: reading an episode that can be shown, and writing its page or its moving picture."""
 
 from pathlib import Path
+from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from simulator.episode.episode import Episode, read_episode
 from simulator.episode.output_files import keep_first, open_for_writing, write_whole
 from simulator.replay.page import is_page, replay_page
+
+MAX_NESTING = 100  # levels of lists and objects within each other; ours have about ten
 
 
 def read_replayable(path: Path | str) -> Episode:
@@ -16,7 +19,22 @@ def read_replayable(path: Path | str) -> Episode:
     episode = read_episode(path)
     if not episode.steps:
         raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), "the episode ends before its first step")])
+    for number, line in enumerate((episode.header, *episode.steps), 1):
+        if not _is_shallow(line):
+            what = f"values are nested more than {MAX_NESTING} deep: no viewer can show this episode"
+            raise BadInputError([Problem(str(path), SourceSpan(number, 1, 1), what)])
     return episode
+
+
+def _is_shallow(value: Any) -> bool:
+    """Return whether lists and objects in a JSON value are nested at most MAX_NESTING deep."""
+    level = [value]
+    for _ in range(MAX_NESTING + 1):
+        inner = (part.values() if isinstance(part, dict) else part for part in level if isinstance(part, dict | list))
+        level = [part for parts in inner for part in parts if isinstance(part, dict | list)]
+        if not level:
+            return True
+    return False
 
 
 def write_page(path: Path | str, episode: Episode, force: bool = False) -> None:

@@ -74,23 +74,27 @@ def patched(old: Any, how: Any) -> Any:
 
 def _equal(old: Any, new: Any) -> bool:
     """Return whether two JSON values are the same; true and 1 are not."""
-    return old == new and (json.dumps(old) == json.dumps(new) if isinstance(new, dict | list | bool) else True)
+    if type(old) is not type(new) or old != new:
+        return False
+    if isinstance(old, list):
+        return all(map(_equal, old, new))
+    return not isinstance(old, dict) or all(_equal(old[key], new[key]) for key in new)
 
 
 def _edits(old: list[Any], new: list[Any]) -> list[Any]:
     """Return the edits that lead from one list to another one; both have items, and they differ."""
-    before, after = ([json.dumps(item) for item in items] for items in (old, new))
     head, shorter = 0, min(len(old), len(new))
-    while head < shorter and before[head] == after[head]:
+    while head < shorter and _equal(old[head], new[head]):
         head += 1
     tail = 0
-    while tail < shorter - head and before[-1 - tail] == after[-1 - tail]:
+    while tail < shorter - head and _equal(old[-1 - tail], new[-1 - tail]):
         tail += 1
-    before, after = before[head : len(old) - tail], after[head : len(new) - tail]
+    before, after = old[head : len(old) - tail], new[head : len(new) - tail]
     if len(before) * len(after) > MAX_MATCHED_PAIRS:
         steps = [("replace", 0, len(before), 0, len(after))]
     else:
-        steps = list(difflib.SequenceMatcher(None, before, after, autojunk=False).get_opcodes())
+        texts, others = ([json.dumps(item) for item in items] for items in (before, after))
+        steps = list(difflib.SequenceMatcher(None, texts, others, autojunk=False).get_opcodes())
     edits: list[Any] = [head] if head else []
     for step, start, end, first, last in steps:
         if step == "equal":

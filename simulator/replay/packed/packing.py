@@ -4,7 +4,7 @@ A packed episode is a list of texts, each deflated JSON in base 85: an index, th
 
 - `header`, `result`: those of the episode;
 - `columns`: `action`, `motion`, `utak`, `place` and `seen_from` of all steps (`simulator.replay.packed.tracks`);
-- `events`: the steps of each kind of event; `bounds`: the least and greatest coordinates of all outlines;
+- `events`: the steps of each kind of event; `bounds`: the least and greatest coordinates of floor and things;
 - `steps`, `block`: how many steps the episode and a block have; `detail`: what is kept of decisions.
 
 A block is a list with one column for every key of its lines, `[path, differences]`, each difference from the value of
@@ -105,11 +105,12 @@ def slim(value: Any) -> Any:
 def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
     """Return the least east and north, and the greatest, of all rectangles, in hundredths of squares, robot frame.
 
-    Returns None when there are none. Facts of other forms count for nothing.
+    That of the verge, which reaches as far as the retina, does not count, nor do facts of other forms. Returns None
+    when there are none.
     """
     found: set[str] = set()
     for line in lines:
-        found.update(fact for fact in line["belief"]["facts"] if fact.startswith("rect("))
+        found.update(fact for fact in line["belief"]["facts"] if fact.startswith("rect(") and fact[5:11] != "verge,")
     boxes = []
     for fact in sorted(found):
         parts = fact[len("rect(") : -len(").")].split(",")[1:]

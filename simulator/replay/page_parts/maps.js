@@ -1,22 +1,23 @@
 // The two maps: the table as it is, and what the robot believes of it.
 
 const RETINA_REACH = 16; // squares: the retina covers 32 x 32 squares about the robot's own square
-const MIN_OUTSIDE = 4, OUTSIDE_SHARE = 0.25; // how far beyond the table is shown: squares, or a share of its greater side
+const MARGIN = 2; // squares about what is believed to be floor or a thing
+const OUTSIDE_SHARE = 0.25; // of the table's greater side: how far beyond the table is shown at most
 const LABEL_SIZE = 11; // pixels
 
 // The area that both maps show, in squares of the picture: the table, and what is believed a little beyond it.
 function areaOf(episode, places) {
   const [width, height] = episode.header.world.table;
   let [west, north, east, south] = [0, 0, width, height];
-  const outside = Math.max(MIN_OUTSIDE, OUTSIDE_SHARE * Math.max(width, height));
+  const outside = OUTSIDE_SHARE * Math.max(width, height);
   if (episode.bounds) {
     const [w, s, e, n] = episode.bounds.map((value) => value / 100);
     for (const corner of [[w, s], [w, n], [e, s], [e, n]]) {
       const [x, y] = places.robot(corner);
-      west = Math.max(Math.min(west, x), -outside);
-      north = Math.max(Math.min(north, y), -outside);
-      east = Math.min(Math.max(east, x), width + outside);
-      south = Math.min(Math.max(south, y), height + outside);
+      west = Math.max(Math.min(west, x - MARGIN), -outside);
+      north = Math.max(Math.min(north, y - MARGIN), -outside);
+      east = Math.min(Math.max(east, x + MARGIN), width + outside);
+      south = Math.min(Math.max(south, y + MARGIN), height + outside);
     }
   }
   return { west, north, width: east - west, height: south - north };

@@ -20,28 +20,37 @@ function startPlayer(episode) {
   function show(step) {
     state.step = Math.min(Math.max(step, 0), last);
     const line = episode.line(state.step), said = byPredicate(line.belief.facts);
-    const at = { episode, step: state.step, line, said, outlines: outlinesOf(said), places, area, layers: state.layers, unit: unit() };
-    panel("table-map", () => [mapOf(at, "truth")]);
-    panel("belief-map", () => [mapOf(at, "belief")]);
-    panel("retina-states", () => {
-      const found = drawRetinas(retina, line, options);
-      fields = found.fields;
-      byId("retina-difference").hidden = byId("retina-predicted").hidden = !found.recorded;
-      return [found.recorded ? found.states : "This episode does not record what was predicted for each field."];
-    });
-    showField();
+    const at = { episode, step: state.step, line, said, outlines: outlinesOf(said), places, area, layers: state.layers };
+    state.at = at;
+    draw();
     panel("step-panel", () => stepPanel(at));
     panel("plan-panel", () => planPanel(at));
-    panel("world-panel", () => worldPanel(at));
     panel("changes-panel", () => changesPanel(at));
     panel("reasons-panel", () => reasonsPanel(at));
-    if (byId("facts").open) panel("facts-panel", () => factsPanel(at, byId("word").value));
-    state.at = at;
+    list();
     byId("slider").value = state.step;
     byId("slider").setAttribute("aria-valuetext", `step ${state.step} of ${last}, ${actionInWords(line.action)}`);
     byId("step").textContent = `${state.step} / ${last}`;
     byId("back").disabled = byId("first").disabled = state.step === 0;
     byId("forward").disabled = byId("last").disabled = state.step === last;
+  }
+  // Draws the maps and the retina. What was unfolded among the texts stays so.
+  function draw() {
+    const at = { ...state.at, unit: unit() };
+    panel("table-map", () => [mapOf(at, "truth")]);
+    panel("belief-map", () => [mapOf(at, "belief")]);
+    panel("retina-states", () => {
+      const found = drawRetinas(retina, at.line, options);
+      fields = found.fields;
+      byId("retina-difference").hidden = byId("retina-predicted").hidden = !found.recorded;
+      return [found.recorded ? found.states : "This episode does not record what was predicted for each field."];
+    });
+    showField();
+  }
+  // Fills the long lists, as far as they are open.
+  function list() {
+    if (byId("world").open) panel("world-panel", () => worldPanel(state.at));
+    if (byId("facts").open) panel("facts-panel", () => factsPanel(state.at, byId("word").value));
   }
   function panel(id, fill) {
     let parts;
@@ -123,12 +132,11 @@ function startPlayer(episode) {
     if (state.timer) { pause(); play(); }
   }
 
-  const again = () => show(state.step);
   function setView(view) {
     state.view = view;
     document.body.dataset.view = view;
     byId(`view-${view}`).checked = true;
-    again();
+    draw();
   }
   function toggleHelp() {
     const help = byId("help");
@@ -167,14 +175,15 @@ function startPlayer(episode) {
   on("help-button", "click", toggleHelp);
   on("help-close", "click", toggleHelp);
   on("field", "input", showField);
-  on("facts", "toggle", again);
-  on("word", "input", again);
+  on("facts", "toggle", list);
+  on("world", "toggle", list);
+  on("word", "input", list);
   for (const [id, name] of [["marks-shown", "marks"], ["digits", "digits"], ["inner", "inner"]]) {
-    on(id, "change", () => { options[name] = byId(id).checked; again(); });
+    on(id, "change", () => { options[name] = byId(id).checked; draw(); });
   }
   window.addEventListener("hashchange", readAddress);
   window.addEventListener("popstate", readAddress);
-  window.addEventListener("resize", again);
+  window.addEventListener("resize", draw);
   window.addEventListener("beforeprint", () => { byId("changes").open = byId("plan").open = true; });
 
   byId("slider").max = last;
@@ -183,7 +192,7 @@ function startPlayer(episode) {
   byId("views").append(...choices("radio", "view", VIEWS, (name) => name === state.view, setView));
   byId("layers").append(...choices("checkbox", "layer", LAYERS, (name) => state.layers.has(name), (name) => {
     if (!state.layers.delete(name)) state.layers.add(name);
-    again();
+    draw();
   }));
   document.body.dataset.view = state.view;
   drawEvents(episode, last);

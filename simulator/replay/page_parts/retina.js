@@ -73,7 +73,9 @@ function fillRetina({ picture, parts, name }, values, summary, { marks, digits, 
   picture.setAttribute("viewBox", inner ? INNER_FIELDS : ALL_FIELDS);
   picture.setAttribute("aria-label", `${name}: ${summary}`);
   values.forEach(([least, most, status, text], field) => {
-    const part = parts[field];
+    const part = parts[field], key = [least, most, status, text, marks, digits].join();
+    if (part.key === key) return; // as it is drawn already
+    part.key = key;
     part.least.style.fillOpacity = least === null ? 0 : least / 7;
     part.most.style.fillOpacity = most === least ? 0 : (most - least) / (7 - least); // over the least level
     part.frame.setAttribute("class", marks && status ? `field ${status}` : "field");

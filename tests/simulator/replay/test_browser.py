@@ -186,19 +186,17 @@ def test_a_field_of_the_retina_is_explained(browser: Browser, page: Path, carrie
 
 
 def test_speed(browser: Browser, page: Path) -> None:
-    """The best of several times is meant: a machine may do other things besides."""
-    times = []
+    """The time of the processor is meant, and the best of three: benchmarks/replay.py measures long episodes."""
+    first, seeks = [], []
     for _ in range(3):
         browser.open(page)
-        times.append(browser.run("performance.getEntriesByType('navigation')[0].domInteractive"))
-    assert min(times) < MAX_FIRST_PICTURE_MILLISECONDS
-    seek = """(step) => {
-        const before = performance.now();
-        utak.player.show(step);
-        document.body.getBoundingClientRect();
-        return performance.now() - before;
-    }"""
-    assert min(browser.run(f"[7, 2, 9, 4, 8, 3].map({seek})")) < MAX_SEEK_MILLISECONDS
+        first.append(browser.busy())
+        before = browser.busy()
+        show = "(step) => { utak.player.show(step); document.body.getBoundingClientRect(); }"
+        browser.run(f"[7, 2, 9, 4, 8, 3, 11, 1, 6, 5].forEach({show})")
+        seeks.append((browser.busy() - before) / 10)
+    assert min(first) < MAX_FIRST_PICTURE_MILLISECONDS
+    assert min(seeks) < MAX_SEEK_MILLISECONDS
 
 
 @pytest.mark.parametrize("level", [0, 1, 9])

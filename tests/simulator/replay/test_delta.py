@@ -7,10 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.replay.packed.delta import SAME, difference, patched
+from simulator.replay.packed.packing import slim
 
 SCALARS = st.none() | st.booleans() | st.integers(-3, 3) | st.floats(-2, 2) | st.text("ab0", max_size=3)
 VALUES = st.recursive(
-    SCALARS, lambda inner: st.lists(inner, max_size=6) | st.dictionaries(st.sampled_from("abc"), inner), max_leaves=20
+    SCALARS.map(slim),
+    lambda inner: st.lists(inner, max_size=6) | st.dictionaries(st.sampled_from("abc"), inner),
+    max_leaves=20,
 )
 
 

@@ -1,6 +1,7 @@
 """Pages, moving pictures and text on the command line."""
 
 import hashlib
+import json
 import os
 import re
 import subprocess
@@ -75,13 +76,18 @@ def test_no_text_of_an_episode_stands_in_the_page_as_it_is(carried: tuple[Path, 
     page.encode("utf-8")
 
 
-def test_damaged_episodes_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_damaged_episodes_are_refused(
+    carried: tuple[Path, Episode], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "no.jsonl"
     for text in ("", "{}\n", '{"utak":"episode","version":1}\n', "\x00\xff"):
         path.write_text(text)
         for form in (["--html", str(tmp_path / "x.html")], ["--text"], []):
             assert main(["replay", str(path), *form]) == 65
     assert main(["replay", str(tmp_path / "absent")]) == 66
+    deep = Episode(carried[1].header, ({**carried[1].steps[0], "odd": json.loads("[" * 300 + "]" * 300)},), None)
+    assert main(["replay", write(tmp_path, deep), "--html", str(tmp_path / "x.html")]) == 65
+    assert "nested more than" in capsys.readouterr().err
     assert not (tmp_path / "x.html").exists()
     assert "Traceback" not in capsys.readouterr().err
 
