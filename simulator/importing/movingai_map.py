@@ -13,7 +13,7 @@ from simulator.importing.raster import CellWorld, RasterCell, RasterError, roomy
 from simulator.importing.text_file import read_raw, text_source
 
 DEFAULT_GOAL = "at(utak, corner(northeast))."  # the goal of a format that has none
-MAX_MAP_FILE_BYTES = 70_000_000  # bytes; derived: twice the text of the largest table with fourfold cells; a convention
+MAX_MAP_FILE_BYTES = 20_000_000  # bytes; derived: the largest table of cells of one square has 16.8 million
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:

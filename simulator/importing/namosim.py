@@ -35,6 +35,7 @@ SHAPE_TAGS = ("path", "rect", "circle", "ellipse", "polygon", "polyline")
 SKIPPED_TAGS = ("defs", "metadata", "namo_config", "clipPath", "mask", "symbol", "pattern", "marker")  # not drawn
 CURVE_TOLERANCE = 0.02  # squares between a curve and its chords; a convention
 MAX_CUT_AREA = 0.05  # square squares by which a wall may reach into an obstacle; more is an error; a convention
+MAX_OBSTACLES = 500  # obstacles of a file: each is compared with each; a convention
 MAX_CELL_UNITS = 1e6  # user units of a cell; a convention
 WKT_DECIMALS = 12  # decimals of coordinates: rounding makes no overlap of `MAX_TOUCHING_AREA`
 MARKER_COLOUR = "z"  # the colour of the square that marks a goal
@@ -165,6 +166,8 @@ class _Reader:
     def _things(self, shapes: list[_Shape], verge: Any, table: Any) -> tuple[list[tuple[str, str, Any]], Any]:
         """Return name, colour and outline of each obstacle, and the verge without what it covers of them."""
         things: list[tuple[str, str, Any]] = []
+        if len(shapes) > MAX_OBSTACLES:
+            raise self._wrong(shapes[MAX_OBSTACLES].element, "", f"a file has at most {MAX_OBSTACLES} obstacles here")
         letters = COLOUR_LETTERS.replace(MARKER_COLOUR, "")
         for number, shape in enumerate(shapes):
             polygon = self._polygon(shape)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from kb.language.diagnostics import BadInputError, SourceSpan
 from kb.language.source_text import Source
 
-MAX_IMAGE_PIXELS = 1 << 26  # pixels of an image that is read: 8192 x 8192; a convention
+MAX_IMAGE_PIXELS = 1 << 25  # pixels of an image that is read: 8192 x 4096; a convention
 MAX_PGM_VALUE = 65535  # by the format
 GAP = re.compile(r"(?:[ \t\r\n\v\f]|#[^\r\n]*)*")  # blanks and comments
 TOKEN = re.compile(r"[^ \t\r\n\v\f#]+")

@@ -11,6 +11,7 @@ All cells of one part are one thing. `G` id is the goal of `M` id: the western a
 import re
 from collections import defaultdict
 from fractions import Fraction
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,8 @@ from simulator.importing.text_file import read_raw, text_source
 
 SQUARES_A_CELL = 3  # squares a cell: the robot sees an object of one cell as a square of 3 x 3; a convention
 BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them
+MAX_PUZZLE_CELLS = 65_536  # cells of a puzzle; a convention
+MAX_PUZZLE_OBJECTS = 500  # objects of a puzzle; a convention
 THING_PART = re.compile(r"[mg][0-9a-z_]+")  # an object or a goal
 CELL_WORD = re.compile(r"[^ \t]+")
 PART_HINT = "cells are . W A M0 G0, and several of them joined by +, such as A+G1"
@@ -95,9 +98,11 @@ def _places(source: Source) -> tuple[PuzzlePlaces, int, int]:
     lines = list(source.lines)
     while lines and not lines[-1].strip():
         lines.pop()
-    words = [list(CELL_WORD.finditer(line)) for line in lines]
+    words = [list(islice(CELL_WORD.finditer(line), MAX_PUZZLE_CELLS + 1)) for line in lines]
     if not words:
         raise BadInputError([source.problem(source.start(), "the puzzle is empty")])
+    if len(words) > MAX_PUZZLE_CELLS or sum(map(len, words)) > MAX_PUZZLE_CELLS:
+        raise BadInputError([source.problem(source.start(), f"a puzzle has at most {MAX_PUZZLE_CELLS} cells here")])
     places: PuzzlePlaces = defaultdict(dict)
     problems: list[Problem] = []
     for number, (line, row) in enumerate(zip(lines, words, strict=True), 1):
@@ -132,6 +137,9 @@ def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
     for span in sorted(places.get("aw", {}).values())[:1]:
         what = "a wall for the agent alone (AW): in TABLETOP a wall stops objects, too"
         problems.append(source.problem(span, what, "write W where it shall stop everything, or . for floor"))
+    if sum(part[0] == "m" for part in places) > MAX_PUZZLE_OBJECTS:
+        what = f"a puzzle has at most {MAX_PUZZLE_OBJECTS} objects here"
+        return [*problems, source.problem(source.start(), what)]
     taken: dict[RasterCell, str] = {}
     for part, cells in sorted(places.items()):
         if part[0] == "g":

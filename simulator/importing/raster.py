@@ -20,6 +20,7 @@ from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
 from simulator.world.world import VERGE_COLOUR
 
 RasterCell = tuple[int, int]  # (column, row), row 0 in the south
+MAX_OUTLINE_CORNERS = 60_000  # corners of a verge that is stated as an outline: seconds of work; a convention
 
 
 class RasterError(ValueError):
@@ -84,7 +85,8 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
 
     Raises
     ------
-    RasterError : the table would be larger than `MAX_TABLE_SIDE`.
+    RasterError : the table would be larger than `MAX_TABLE_SIDE`, or is too large for a picture and has walls of more
+        than `MAX_OUTLINE_CORNERS` corners.
     """
     check_size(world.walls.shape, Fraction(scale), border)
     walls = np.pad(np.kron(world.walls, np.ones((scale, scale), bool)), border, constant_values=True)
@@ -94,6 +96,10 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
     names = _names(world.objects, colours)
     outlines = tuple(_outline(cells, scale, border) for cells in world.objects)
     if max(walls.shape) > MAX_PICTURE_SIDE:
+        corners = count_corners(walls)
+        if corners > MAX_OUTLINE_CORNERS:
+            what = f"walls with {corners} corners, more than {MAX_OUTLINE_CORNERS}"
+            raise RasterError(f"{what}: a table of more than {MAX_PICTURE_SIDE} squares a side needs simpler ones")
         return WorldText("world.lp", _as_facts(walls, names, colours, outlines, utak), names, colours, outlines, utak)
     letters = np.where(walls, VERGE_COLOUR, FLOOR_MARK)
     for cells, colour in zip(world.objects, colours, strict=True):
@@ -236,6 +242,15 @@ def _as_facts(
         for name, colour, outline in zip(names, colours, outlines, strict=True)
     ]
     return "\n".join([*facts, f'utak("POINT ({utak[0]:g} {utak[1]:g})", 0).', ""])
+
+
+def count_corners(mask: Bools) -> int:
+    """Return the number of corners of the boundary of the True squares. mask : (rows, columns) bool."""
+    framed = np.pad(mask, 1)
+    a, b, c, d = framed[:-1, :-1], framed[:-1, 1:], framed[1:, :-1], framed[1:, 1:]
+    odd = (a ^ b ^ c ^ d).sum()  # one or three of the four squares about a point
+    crossing = ((a == d) & (b == c) & (a != b)).sum()  # two that meet at the point alone: a corner of both
+    return int(odd + 2 * crossing)
 
 
 def outline_of_mask(mask: Bools) -> Any:

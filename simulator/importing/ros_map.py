@@ -104,12 +104,14 @@ def occupancy_of(image: GreyImage, head: MapHead) -> Occupancy:
     -------
     The pixels that are occupied, and those that are free.
     """
-    values = image.values.astype(np.float64)
+    known = np.arange(image.greatest + 1)  # each value that a pixel may have
     if head.mode == "raw":
-        share = values / MAX_RAW_OCCUPANCY
-        return Occupancy((share > head.occupied_thresh) & (share <= 1), share < head.free_thresh)
-    share = values / image.greatest if head.negate else (image.greatest - values) / image.greatest
-    return Occupancy(share > head.occupied_thresh, share < head.free_thresh)
+        share = known / MAX_RAW_OCCUPANCY
+        occupied = (share > head.occupied_thresh) & (share <= 1)
+    else:
+        share = (known if head.negate else image.greatest - known) / image.greatest
+        occupied = share > head.occupied_thresh
+    return Occupancy(occupied[image.values], (share < head.free_thresh)[image.values])
 
 
 def _without_margin(walls: Bools) -> tuple[Bools, tuple[float, float]]:

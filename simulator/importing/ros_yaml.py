@@ -20,6 +20,7 @@ DECIMAL = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 FLAGS = {"true": 1.0, "false": 0.0, "yes": 1.0, "no": 0.0}  # words that some writers put for 1 and 0
 KNOWN_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 MODES = ("trinary", "scale", "raw")
+MAX_LIST_ITEMS = 16  # values of a list; no key of a map has more than 3
 MAX_METRES = 1e6  # metres of the origin, in absolute value; a convention
 
 
@@ -118,6 +119,9 @@ def _values(source: Source) -> dict[str, _Value]:
         item = ITEM_LINE.match(re.sub(r"[ \t]#.*", "", text))
         if item and listed is not None:
             value = found[listed]
+            if len(value.items) >= MAX_LIST_ITEMS:
+                what = f"a list of more than {MAX_LIST_ITEMS} values"
+                raise BadInputError([source.problem(SourceSpan(number, 1, len(text)), what)])
             found[listed] = _Value(value.span, None, (*value.items, item[1]))
             continue
         span = SourceSpan(number, len(text) - len(bare) + 1, len(text))

@@ -33,6 +33,8 @@ TITLE = re.compile(r"[ \t]*[A-Za-z][\w ]*:")  # the begin of a line about the le
 COMMENT_MARKS = (";", "::", "%", "'", '"')  # the begins of lines that are none
 MAX_RUN_DIGITS = 4  # digits of a number in a run; derived: no row has more cells than `MAX_TABLE_SIDE`
 MAX_GROUP_DEPTH = 8  # brackets within brackets; a convention
+MAX_LEVEL_CELLS = 16_384  # cells of a level: 128 x 128; a convention
+MAX_LEVEL_BOXES = 256  # boxes, and storages, of a level: each is paired with each; a convention
 NO_WAY_CELLS = 100_000  # the distance of a box to a storage that no way leads to, in cells; above every true one
 
 
@@ -72,20 +74,24 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     """
     source = text_source(path, read_raw(path, MAX_FILE_BYTES, "a file of Sokoban levels", options.untrusted))
     levels, wanted = 0, None
-    for level in _levels(source):
+    for lines in _levels(source):
         levels += 1
-        wanted = level if levels == options.level else wanted
+        wanted = lines if levels == options.level else wanted
     if wanted is None:
         what = f"there is no level {options.level}: the file has {levels}" if levels else "no Sokoban level is in it"
         hint = "" if levels else "a level is drawn with # wall, @ robot, $ box, . storage"
         raise BadInputError([source.problem(source.start(), what, hint)])
     notes = [f"This is level {options.level} of {levels}; --level N imports another."] if levels > 1 else []
     scale = int(options.scale or Fraction(SQUARES_A_BOX))
-    return _scenario(source, wanted, scale, notes, f"Sokoban level {options.level}")
+    return _scenario(source, _level_of(source, wanted), scale, notes, f"Sokoban level {options.level}")
 
 
 def _scenario(source: Source, level: Level, scale: int, notes: list[str], title: str) -> Imported:
     """Return the scenario of a level. scale : squares a cell. notes : those so far. title : what it is."""
+    cells = len(level.rows) * max(len(row) for row in level.rows)
+    if cells > MAX_LEVEL_CELLS:
+        what = f"a level has at most {MAX_LEVEL_CELLS} cells here, this one {cells}"
+        raise BadInputError([source.problem(level.first, what)])
     marks = _cells(level)
     robot, boxes, storages = (
         sorted(cell for cell, mark in marks.items() if mark in kind) for kind in ("@+", "$*", ".*+")
@@ -113,20 +119,25 @@ def _scenario(source: Source, level: Level, scale: int, notes: list[str], title:
     return Imported(title, drawn.file, drawn.text, *task_of_objects(goals, drawn.utak), tuple(notes))
 
 
-def _levels(source: Source) -> Iterator[Level]:
-    """Yield the levels of a file in order; raise BadInputError at the first row that is none."""
-    rows: list[tuple[tuple[str, SourceSpan], ...]] = []
+def _levels(source: Source) -> Iterator[list[int]]:
+    """Yield the numbers of the lines of each level of a file, in order."""
+    rows: list[int] = []
     for number, line in enumerate([*source.lines, ""], 1):
         if _is_row(line, bool(rows)):
-            rows += _decoded(source, number, line)
+            rows.append(number)
         elif rows:
-            yield Level(_place(rows), tuple(rows))
+            yield rows
             rows = []
 
 
-def _place(rows: Sequence[Sequence[tuple[str, SourceSpan]]]) -> SourceSpan:
-    """Return the place of the first character of a level."""
-    return next(span for row in rows for _, span in row)
+def _level_of(source: Source, lines: Sequence[int]) -> Level:
+    """Return the level that some lines draw; raise BadInputError at the first that is no row."""
+    if len(lines) > MAX_LEVEL_CELLS:
+        what = f"a level has at most {MAX_LEVEL_CELLS} cells here, this one {len(lines)} rows"
+        raise BadInputError([source.problem(SourceSpan(lines[0], 1, 1), what)])
+    rows = [row for number in lines for row in _decoded(source, number, source.lines[number - 1])]
+    first = next((span for row in rows for _, span in row), SourceSpan(lines[0], 1, 1))
+    return Level(first, tuple(rows))
 
 
 def _is_row(line: str, within: bool) -> bool:
@@ -214,6 +225,8 @@ def _check(source: Source, level: Level, *found: Sequence[RasterCell]) -> None:
     for cells, what in ((robot, "robot (@)"), (boxes, "box ($)"), (storages, "storage (.)")):
         if not cells:
             problems.append(source.problem(level.first, f"the level has no {what}"))
+    if max(len(boxes), len(storages)) > MAX_LEVEL_BOXES:
+        problems.append(source.problem(level.first, f"a level has at most {MAX_LEVEL_BOXES} boxes and storages here"))
     if problems:
         raise BadInputError(problems)
 
@@ -227,11 +240,13 @@ def _walls(marks: Mapping[RasterCell, str], robot: RasterCell) -> Bools:
     columns, rows = (1 + max(cell[axis] for cell in marks) for axis in (0, 1))
     walls = np.zeros((rows, columns), bool)
     outside: set[RasterCell] = set()
+    seen: set[RasterCell] = set()
     for cell, mark in sorted(marks.items()):
         if mark == "#":
             walls[cell[1], cell[0]] = True
-        elif cell not in outside and (cell[0] in (0, columns - 1) or cell[1] in (0, rows - 1)):
+        elif cell not in seen and (cell[0] in (0, columns - 1) or cell[1] in (0, rows - 1)):
             part = _floor_from(cell, marks)
+            seen |= part.keys()
             if all(marks[other] in " -_" for other in part):
                 outside |= part.keys()
     for i, j in outside:

@@ -15,6 +15,7 @@ SEPARATOR = re.compile(r"[ \t\r\n\f]*,?[ \t\r\n\f]*")
 BLANKS = re.compile(r"[ \t\r\n\f]*")
 MAX_CHORDS = 256  # chords for one curve; a convention
 MAX_PATH_POINTS = 100_000  # points of one path; a convention
+MAX_PATH_PARTS = 200  # closed parts of one path; a convention
 MAX_UNITS = 1e9  # user units of a coordinate, in absolute value; a convention
 ARGUMENT_COUNTS = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2, "a": 7, "z": 0}
 TRANSFORM = re.compile(r"[ \t\r\n\f,]*([A-Za-z]+)[ \t\r\n\f]*\(([^()]*)\)")
@@ -67,8 +68,8 @@ class Transform(NamedTuple):
 
 def parse_transform(text: str) -> Transform:
     """Return the map that a `transform` attribute describes; raise SvgError when it describes none."""
-    whole, at = Transform(), 0
-    while at < len(text.rstrip()):
+    whole, at, end = Transform(), 0, len(text.rstrip())
+    while at < end:
         part = TRANSFORM.match(text, at)
         if part is None:
             raise SvgError(at, "this is no transform")
@@ -134,8 +135,8 @@ def parse_path(text: str, tolerance: float) -> list[SvgRing]:
             raise SvgError(at, f"a command of a path was expected, not {text[at]!r}")
         numbers, at = _numbers(text, at, letter)
         pen.draw(letter, numbers)
-        if len(pen.rings[-1]) > MAX_PATH_POINTS:
-            raise SvgError(begin, f"a path of more than {MAX_PATH_POINTS} points")
+        if pen.points > MAX_PATH_POINTS or len(pen.rings) > MAX_PATH_PARTS:
+            raise SvgError(begin, f"a path of more than {MAX_PATH_POINTS} points, or {MAX_PATH_PARTS} parts")
         letter = {"m": "l", "M": "L"}.get(letter, letter)
         at = (SEPARATOR if letter not in "zZ" else BLANKS).match(text, at).end()  # type: ignore[union-attr]
     return [ring for ring in map(_open_ring, pen.rings) if len(ring) >= 3]
@@ -178,10 +179,12 @@ class _Pen:
     Attributes
     ----------
     rings : the parts of the path so far.
+    points : how many points they have.
     """
 
     def __init__(self, tolerance: float) -> None:
         self.rings: list[SvgRing] = [[]]
+        self.points = 0
         self._tolerance = tolerance
         self._here: SvgPoint = (0.0, 0.0)
         self._begin: SvgPoint = (0.0, 0.0)
@@ -228,6 +231,7 @@ class _Pen:
         if not self.rings[-1]:
             self.rings[-1].append(self._here)
         self.rings[-1] += points
+        self.points += len(points)
         self._here, self._handle = points[-1], None
 
 

@@ -67,7 +67,10 @@ def add(parts: Any) -> None:
         "--goal", metavar="FACT", help="another goal than that of the file, such as 'in(utak, room(next)).'"
     )
     part.add_argument(
-        "--start", type=_point, metavar="X,Y", help="where the robot wakes: cells of a .map, metres of a ROS map"
+        "--start",
+        type=_point,
+        metavar="X,Y",
+        help="where the robot wakes: cells of a .map, metres of a ROS map (--start=-1,2 with a minus)",
     )
     part.add_argument(
         "--origin", choices=("bottom", "top"), help="the edge of a .map from which --start counts y (default bottom)"
