@@ -19,7 +19,7 @@ KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
     "comparison": ReasonKind.COMPUTED,
     "aggregate": ReasonKind.COMPUTED,
     "each": ReasonKind.COMPUTED,
-    "stated": ReasonKind.COMPUTED,
+    "assumed": ReasonKind.INPUT,
 }
 
 
