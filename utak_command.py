@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 # The folder of this file. Importing pathlib would take a third of the time to start.
 PROJECT_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
-# The packages that are imported from that folder only.
-OUR_PACKAGES = frozenset({"geometry", "kb", "planner", "simulator", "benchmarks"})
+# The packages that are imported from that folder only, and this module, which isolated processes import, too.
+OUR_PACKAGES = frozenset({"geometry", "kb", "planner", "simulator", "utak", "benchmarks", "utak_command"})
 # The packages of others on which ours depend.
 DEPENDENCIES = ("clingo", "numpy", "shapely", "networkx", "numba")
 

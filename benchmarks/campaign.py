@@ -10,18 +10,12 @@ The table goes to stdout, progress to stderr. docs/results/worlds.md explains th
 
 import argparse
 import json
-import multiprocessing
-import os
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack
-from functools import partial
-from io import TextIOWrapper
+from contextlib import ExitStack, closing
 from itertools import product
 from pathlib import Path
-from typing import TextIO
 
 from shapely import Polygon
 
@@ -29,10 +23,11 @@ from benchmarks.harness.beliefs import beliefs
 from benchmarks.harness.drawing import drawing
 from benchmarks.harness.judging import judge_path
 from benchmarks.harness.tally import faults, narrowness, table, verdicts
-from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial
+from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial_of_outcome, trial_task
 from benchmarks.worlds.makers import add_kinds, scenario, seeds
-from simulator.episode.output_files import is_json_lines, open_for_writing
 from simulator.run.session import Session
+from simulator.sweep.executors.processes import run_in_processes
+from simulator.sweep.results import ResultsProtocol, RowForm, open_results
 
 TrialRunner = Callable[..., CampaignTrial]
 
@@ -63,8 +58,10 @@ def main(arguments: Sequence[str] | None = None, runner: TrialRunner = run_trial
         else:
             numbers = seeds(given.seed, given.count, given.unable)
             worlds = _unclean(given.again) if given.again else list(product(given.task, numbers))
-            output = stack.enter_context(_results(given.output)) if given.output else None
-            trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs, runner), len(worlds), output))
+            results = open_results(given.output, RowForm(None, ("task", "seed"), worlds))
+            stack.callback(results.finish)
+            trials = list(_reported(_run_all(worlds, conditions, folder, given.jobs, runner), results, len(worlds)))
+            trials.sort(key=lambda trial: worlds.index((trial.task, trial.seed)))
     print(table(trials), verdicts(trials), narrowness(trials), faults(trials), sep="\n", end="")
     return 0 if all(trial.clean for trial in trials) else 1
 
@@ -90,13 +87,6 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _results(path: Path) -> TextIO:
-    """Return the path of a file for results; refuse one that holds anything else, so that it is not overwritten."""
-    stream = open_for_writing(path, is_json_lines, "file of results")
-    stream.truncate()
-    return TextIOWrapper(stream, encoding="ascii")
-
-
 def _numbers(text: str) -> list[int]:
     return [int(part) for part in text.split(",")]
 
@@ -115,25 +105,20 @@ def _warm_up(folder: Path, runner: TrialRunner) -> None:
 def _run_all(
     worlds: list[tuple[int, int]], conditions: Conditions, folder: Path, jobs: int, runner: TrialRunner
 ) -> Iterator[CampaignTrial]:
-    run = partial(_one, conditions=conditions, folder=folder, runner=runner)
+    """Yield the trials as they end: in order in this process, or in any order from several worker processes."""
     if jobs <= 1:
-        yield from map(run, worlds)
+        yield from (runner(*world, conditions, folder) for world in worlds)
         return
-    os.environ["PYTHONSAFEPATH"] = "1"  # the pool's processes get this one's path, and no other folder on it
-    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
-        yield from pool.map(run, worlds)
+    tasks = [trial_task(*world, conditions, folder) for world in worlds]
+    with closing(run_in_processes(tasks, jobs)) as ended:
+        for index, outcome in ended:
+            yield trial_of_outcome(*worlds[index], conditions, outcome)
 
 
-def _one(world: tuple[int, int], conditions: Conditions, folder: Path, runner: TrialRunner) -> CampaignTrial:
-    return runner(*world, conditions, folder)
-
-
-def _reported(trials: Iterable[CampaignTrial], count: int, output: TextIO | None) -> Iterator[CampaignTrial]:
-    """Yield the trials as they come; report each on stderr and write it to the output."""
+def _reported(trials: Iterable[CampaignTrial], results: ResultsProtocol, count: int) -> Iterator[CampaignTrial]:
+    """Yield the trials as they come; report each on stderr and add it to the results."""
     for number, trial in enumerate(trials, 1):
-        if output is not None:
-            output.write(json.dumps(trial.row()) + "\n")
-            output.flush()
+        results.append(trial.row())
         mark = "" if trial.clean else "  <--"
         said = trial.crash or trial.verdict
         print(f"{number}/{count} {trial.task}:{trial.seed} {trial.steps} commands, {said}{mark}", file=sys.stderr)

@@ -1,37 +1,46 @@
 """Malformed texts: each must be accepted or refused with file:line:col, without a traceback or a hang.
 
-    python -m benchmarks.malformed [N] [--seed S] [--what scenarios|queries|rules|maps]
+    python -m benchmarks.malformed [N] [--seed S] [--what KIND] [--processes M]
 
 The program changes N (default 10,000) good texts in their bytes, words, numbers, lines or files, one at a time, and
-reads them: scenarios, of which those that are accepted are also simulated for a moment; queries; files of rules, which
-are tried out; or Moving AI maps. It prints a table, and exits with 1 when anything else happened than acceptance or a
-proper refusal.
+reads them. KIND is one of
+
+    scenarios  read as `utak check` does; those that are accepted are also simulated for a moment (default)
+    episodes   read step by step, as `utak query`, `utak repl` and pictures of the table read them
+    imports    files of other formats, imported
+    queries    asked
+    rules      files of rules, tried out
+    maps       Moving AI maps
+    commands   episodes given to replay, explain, query --dump-asp and plan, as far as there are these commands
+    all        of ten, four scenarios, three episodes, and one each of imports, commands and queries
+
+Of all N, M (default 0) are given to commands in processes of their own besides. The program prints a table, and exits
+with 1 when anything else happened than acceptance or a proper refusal.
 """
 
 import argparse
 import os
 import random
-import re
 import shutil
-import signal
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
 
+from benchmarks.malformations.commands import in_processes, in_this_process
+from benchmarks.malformations.episodes import episodes
+from benchmarks.malformations.imports import imports
+from benchmarks.malformations.mutate import spoil
+from benchmarks.malformations.outcomes import HANG_SECONDS, came_out
 from geometry.io.movingai import MapError, parse_map
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.reasoning.query import QueryEngine, QueryLimitError
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.reasoning.query import QueryEngine
 from kb.reasoning.solver import KB_ENCODINGS, solve
 from kb.reasoning.user_rules import read_tested_rules
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.world.physics import Tabletop
-
-HANG_SECONDS = 20.0  # seconds until a file counts as hung
-REFUSAL = re.compile(r"\A[^\n]*:\d+:\d+-\d+: error: [^\n]+")
 
 GOOD_WORLD = """\
 % A room with two things.
@@ -70,93 +79,7 @@ odd_one(R) :- region(R, _, C), C \\ 2 = 1. odd_one(x).
 """
 MAP = "type octile\nheight 4\nwidth 5\nmap\n@@@@@\n@..T@\n@.SW@\n@@@@@\n"
 PICTURE = "bbbbbbbb\nb..gg..b\nb.....cb\nb.U..ccb\nb......b\nbbbbbbbb\n"
-STRAY_WORDS = (
-    "2147483648", "-2147483648", "65536*65536", "X*X", "C+1", "not ", "-object(o1)", "#count{X : object(X)}", "1..",
-    "#sum{C,X : shape(X,_,C)}", "banana", "_", "choose(1)", "#true", "@f(1)", "&diff{a}", "|", "**", "#inf", "{", "}",
-    '"', "'", "(", ")", "((", "))", ".", "..", ",", ";", ":-", "%", "%*", "*%", "#include", '#include "/etc/passwd".',
-    "#script (python)", "#const n=1.", "@f()", "X", "_", "-", "--1", "99999999999999999999", "-2147483649", "1e999",
-    "nan", "inf", "1.5", "0x10", "\\", "\x00", "\x1b[31m", "\r", "\t", "\ufeff", "\u201c", "\u201d", "\u00a0",
-    "gr\u00f6\u00dfe", "\U0001f916", "\u202e", "POLYGON", "POLYGON EMPTY", "POINT Z (1 2 3)",
-    "MULTIPOLYGON (((0 0, 1 0, 1 1, 0 0)))",
-    "GEOMETRYCOLLECTION (" * 300, "object(utak).", "object(start, next).", "utak", "verge", "square", "table(0, 0).",
-    "table(4096, 4096).", "f(" * 70 + "x" + ")" * 70, "p" * 5000, "{a;b}.", "not a.", "1 2 3", "<xml/>", "asp 1 0 0\n",
-)  # fmt: skip
-
-
-def spoil(draw: random.Random, text: str) -> bytes:
-    """Return a text after one to four mutations, as bytes."""
-    raw = text.encode()
-    for _ in range(draw.choice([1, 1, 1, 2, 4])):
-        raw = draw.choice(MUTATIONS)(draw, raw)
-    return raw
-
-
-def _byte(draw: random.Random, raw: bytes) -> bytes:
-    at = draw.randrange(len(raw) + 1)
-    return raw[:at] + bytes([draw.randrange(256)]) + raw[at + draw.randrange(2) :]
-
-
-def _cut(draw: random.Random, raw: bytes) -> bytes:
-    start, end = sorted(draw.randrange(len(raw) + 1) for _ in range(2))
-    return draw.choice([raw[:start], raw[end:], raw[:start] + raw[end:]])
-
-
-def _repeat(draw: random.Random, raw: bytes) -> bytes:
-    start, end = sorted(draw.randrange(len(raw) + 1) for _ in range(2))
-    return raw[:end] + raw[start:end] * draw.choice([1, 1, 2, 50]) + raw[end:]
-
-
-def _insert(draw: random.Random, raw: bytes) -> bytes:
-    at = draw.randrange(len(raw) + 1)
-    return raw[:at] + draw.choice(STRAY_WORDS).encode() + raw[at:]
-
-
-def _replace_word(draw: random.Random, raw: bytes) -> bytes:
-    words = list(re.finditer(rb"\w+|[^\w\s]", raw))
-    if not words:
-        return raw
-    word = draw.choice(words)
-    other = draw.choice([draw.choice(STRAY_WORDS).encode(), draw.choice(words).group(), b""])
-    return raw[: word.start()] + other + raw[word.end() :]
-
-
-def _replace_number(draw: random.Random, raw: bytes) -> bytes:
-    numbers = list(re.finditer(rb"-?\d+(\.\d+)?", raw))
-    if not numbers:
-        return raw
-    number = draw.choice(numbers)
-    other = draw.choice(
-        ["0", "-1", "1e-12", "1e12", "4.0000000001", str(draw.uniform(-5, 20)), str(draw.randrange(20))]
-    )
-    return raw[: number.start()] + other.encode() + raw[number.end() :]
-
-
-def _swap_letters(draw: random.Random, raw: bytes) -> bytes:
-    at = draw.randrange(max(1, len(raw) - 1))
-    return raw[:at] + raw[at : at + 2][::-1] + raw[at + 2 :]
-
-
-def _lines(draw: random.Random, raw: bytes) -> bytes:
-    lines = raw.splitlines(keepends=True) or [b""]
-    line = draw.choice(lines)
-    if draw.random() < 0.5:
-        lines.remove(line)
-    else:
-        lines.insert(draw.randrange(len(lines) + 1), line)
-    return b"".join(lines)
-
-
-def _encoding(draw: random.Random, raw: bytes) -> bytes:
-    text = raw.decode("latin-1")
-    return draw.choice(
-        [text.encode("utf-16"), text.encode("utf-16-be"), text.encode("utf-8-sig"), raw.replace(b"\n", b"\r\n")]
-    )
-
-
-MUTATIONS: tuple[Callable[[random.Random, bytes], bytes], ...] = (
-    _byte, _cut, _repeat, _insert, _insert, _replace_word, _replace_word, _replace_number, _replace_number,
-    _swap_letters, _lines, _encoding,
-)  # fmt: skip
+SHARES_OF_TEN = {"scenarios": 4, "episodes": 3, "imports": 1, "commands": 1, "queries": 1}  # of `--what all`
 
 
 def write_malformed(folder: Path, draw: random.Random) -> None:
@@ -192,14 +115,6 @@ def _no_file(path: Path, draw: random.Random) -> None:
         os.truncate(path, 5_000_000_000)
 
 
-class _HungError(Exception):
-    """Reading a scenario took too long."""
-
-
-def _hung(number: int, frame: FrameType | None) -> None:
-    raise _HungError
-
-
 def outcome(folder: Path, read: Callable[[Path], Scenario] = read_scenario, seconds: float = HANG_SECONDS) -> str:
     """Return the outcome of reading a scenario, as `came_out` does.
 
@@ -208,37 +123,26 @@ def outcome(folder: Path, read: Callable[[Path], Scenario] = read_scenario, seco
     return came_out(lambda: _simulated(read(folder)), seconds)
 
 
+def _warm_up(keep: Path) -> None:
+    """Simulate a good scenario, so that no malformed one waits for the compilation of geometry's kernels."""
+    folder = keep / "good"
+    folder.mkdir()
+    for name, text in GOOD.items():
+        (folder / name).write_text(text)
+    _simulated(read_scenario(folder))
+    shutil.rmtree(folder)
+
+
 def _simulated(scenario: Scenario) -> None:
     table = Tabletop(scenario.world)
     table.look()
     table.move(3.0, -40.0)
 
 
-def came_out(read: Callable[[], object], seconds: float = HANG_SECONDS) -> str:
-    """Return `accepted`, `refused`, `given up`, `cannot open`, or a fault that begins with an exclamation mark."""
-    signal.signal(signal.SIGALRM, _hung)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        read()
-    except BadInputError as bad:
-        faulty = [str(p) for p in bad.problems if not REFUSAL.match(str(p)) or "ended the process" in p.what]
-        return f"! a refusal without place: {faulty[0]}" if faulty or not bad.problems else "refused"
-    except CannotOpenError:
-        return "cannot open"
-    except QueryLimitError as limit:
-        return f"! {limit}" if "ended the process" in str(limit) else "given up"
-    except _HungError:
-        return "! hung"
-    except Exception as error:
-        return f"! {type(error).__name__}: {error}"
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-    return "accepted"
-
-
 def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
     """Count the outcomes of `count` malformed scenarios; faulty ones are kept in `keep`."""
     outcomes: Counter[str] = Counter()
+    _warm_up(keep)
     for number in range(count):
         folder = keep / f"{seed}-{number}"
         write_malformed(folder, random.Random(f"{seed}-{number}"))
@@ -254,7 +158,7 @@ def campaign(count: int, seed: int, keep: Path) -> Counter[str]:
 def queries(count: int, seed: int) -> Counter[str]:
     """Count the outcomes of `count` malformed queries."""
     outcomes: Counter[str] = Counter()
-    with QueryEngine(seconds=5.0) as engine:
+    with QueryEngine(seconds=2.0) as engine:
         for number in range(count):
             draw = random.Random(f"{seed}-{number}")
             text = spoil(draw, draw.choice(GOOD_QUERIES)).decode("utf-8", errors="surrogateescape")
@@ -304,24 +208,51 @@ def _count(outcomes: Counter[str], result: str, text: str) -> None:
         print(f"{result}: {text!r}", file=sys.stderr)
 
 
+def kinds(count: int, seed: int, keep: Path) -> dict[str, Callable[[], Counter[str]]]:
+    """Return for each kind the function that counts the outcomes of `count` malformed texts.
+
+    count, seed : how many, and the seed. keep : a folder for files that are faulty.
+    """
+    return {
+        "scenarios": lambda: campaign(count, seed, keep),
+        "episodes": lambda: episodes(count, seed, keep),
+        "imports": lambda: imports(count, seed, keep),
+        "commands": lambda: in_this_process(count, seed, keep),
+        "queries": lambda: queries(count, seed),
+        "rules": lambda: rules(count, seed, keep),
+        "maps": lambda: maps(count, seed),
+    }
+
+
 def main() -> int:
     """Run the campaign that the command line asks for."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.malformed", description=__doc__)
+    what = (__doc__ or "").partition("\n")[0]
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.malformed", description=what)
     parser.add_argument("count", type=int, nargs="?", default=10_000)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--what", choices=("scenarios", "queries", "rules", "maps"), default="scenarios")
+    parser.add_argument("--what", choices=(*kinds(0, 0, Path()), "all"), default="scenarios")
+    parser.add_argument("--processes", type=int, default=0)
     options = parser.parse_args()
     start, keep = time.monotonic(), Path(tempfile.mkdtemp(prefix="malformed-"))
-    outcomes = {
-        "scenarios": lambda: campaign(options.count, options.seed, keep),
-        "queries": lambda: queries(options.count, options.seed),
-        "rules": lambda: rules(options.count, options.seed, keep),
-        "maps": lambda: maps(options.count, options.seed),
-    }[options.what]()
-    for result, number in outcomes.most_common():
-        print(f"{number:8d}  {result}")
+    shares = SHARES_OF_TEN if options.what == "all" else {options.what: 10}
+    faults = 0
+    for kind, share in shares.items():
+        faults += _table(kind, kinds(options.count * share // 10, options.seed, keep)[kind]())
+    if options.processes:
+        outcomes = in_processes(
+            options.processes, options.seed, keep, lambda folder, draw: write_malformed(folder, draw)
+        )
+        faults += _table("in processes of their own", outcomes)
     print(f"{time.monotonic() - start:8.1f}  seconds")
-    return 1 if any(result.startswith("!") for result in outcomes) else 0
+    return 1 if faults else 0
+
+
+def _table(kind: str, outcomes: Counter[str]) -> int:
+    """Print the outcomes of one kind and return how many are faults."""
+    print(f"{kind}:")
+    for result, number in outcomes.most_common():
+        print(f"{number:8d}  {result}", flush=True)
+    return sum(number for result, number in outcomes.items() if result.startswith("!"))
 
 
 if __name__ == "__main__":

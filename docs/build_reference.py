@@ -18,7 +18,7 @@ from types import ModuleType
 
 ROOT = Path(__file__).resolve().parent.parent
 REFERENCE = ROOT / "docs" / "reference"
-PACKAGES = ("geometry", "kb", "planner", "simulator", "benchmarks")
+PACKAGES = ("geometry", "kb", "planner", "simulator", "utak", "benchmarks")
 MADE = "Made from the code by `python docs/build_reference.py`; do not edit.\n"
 # What a program that uses the geometry alone calls, by module, in reading order.
 GEOMETRY = {
@@ -34,6 +34,19 @@ GEOMETRY = {
     "geometry.raster.rasterize": ["squares"],
     "geometry.shapes.fit": ["fit_shapes", "Fit"],
     "geometry.io.movingai": ["parse_map", "read_map", "read_trips"],
+}
+# What a program that uses Utak from Python calls, in reading order.
+PYTHON = {
+    "utak.scenario": ["Scenario"],
+    "utak.run": ["Run", "Plan"],
+    "utak.episode": ["Episode", "Step"],
+    "utak.beliefs": ["World", "Answer"],
+    "utak.explaining": ["ReasonTree"],
+    "utak.mind": ["Mind", "Verdict"],
+    "kb.body": ["Impression", "Move", "Push", "Turn", "Grasp", "Release"],
+    "utak.errors": ["RunNotRepeatedError"],
+    "utak.gym.environment": ["TabletopEnv"],
+    "utak.gym.vector": ["TabletopVectorEnv"],
 }
 
 
@@ -70,13 +83,12 @@ def cell(text: str) -> str:
 
 def commands_page() -> str:
     """Return the page with every command of `utak` and its options."""
-    from simulator.cli.parsing import COMMANDS, EXIT_CODES, build_parser
+    from simulator.cli.parsing import EXIT_CODES, build_parser
 
     parts = next(action for action in build_parser()._actions if isinstance(action, argparse._SubParsersAction))
     helps = {choice.dest: choice.help for choice in parts._choices_actions}
     lines = ["# Commands", "", MADE, EXIT_CODES[0].upper() + EXIT_CODES[1:] + "."]
-    for command in COMMANDS:
-        name = command.__name__.rpartition(".")[2]
+    for name in parts.choices:
         lines += ["", f"## utak {name}", "", f"{str(helps[name])[0].upper()}{str(helps[name])[1:]}.", ""]
         lines += ["| argument | what |", "|---|---|"]
         lines += [f"| `{form(action)}` | {cell(wording(action))} |" for action in parts.choices[name]._actions]
@@ -109,6 +121,21 @@ def geometry_page() -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
+def python_page() -> str:
+    """Return the page with signatures and docstrings of the face for Python."""
+    lines = ["# Python: all public calls", "", MADE]
+    lines += [
+        "All names but those of `utak.gym` are imported from `utak` itself. [The tutorial](../python.md) shows",
+        "",
+    ]
+    lines[-2] += " how they go together."
+    for module, names in PYTHON.items():
+        lines += [f"## {module}", ""]
+        for name in names:
+            lines += described(name, getattr(importlib.import_module(module), name), 3)
+    return "\n".join(lines).rstrip() + "\n"
+
+
 def described(name: str, thing: object, level: int) -> Iterator[str]:
     """Yield the lines for a class with its public members, or for a function."""
     yield f"{'#' * level} {name}"
@@ -117,10 +144,16 @@ def described(name: str, thing: object, level: int) -> Iterator[str]:
         yield from ["```python", signature(name, thing), "```", ""]
     yield from ["```text", inspect.cleandoc(inspect.getdoc(thing) or ""), "```", ""]
     if inspect.isclass(thing):
+        made = vars(thing).get("__init__")
+        if inspect.isfunction(made) and made.__doc__ and "Parameters\n" in inspect.cleandoc(made.__doc__):
+            yield from ["```python", signature(name, made), "```", ""]
+            yield from ["```text", inspect.cleandoc(made.__doc__), "```", ""]
         for member, value in vars(thing).items():
             inner = getattr(value, "func", None) or getattr(value, "fget", None) or value
+            inner = value.__func__ if isinstance(value, staticmethod) else inner
             if not member.startswith("_") and inspect.isfunction(inner) and inner.__doc__:
-                yield from ["```python", signature(f"{name}.{member}", inner, inner is value), "```", ""]
+                called = inner is value or isinstance(value, staticmethod)
+                yield from ["```python", signature(f"{name}.{member}", inner, called), "```", ""]
                 yield from ["```text", inspect.cleandoc(inner.__doc__), "```", ""]
 
 
@@ -151,6 +184,7 @@ def pages() -> Mapping[str, str]:
         "modules.md": modules_page(),
         "commands.md": commands_page(),
         "geometry.md": geometry_page(),
+        "python.md": python_page(),
         "vocabulary.md": str(vocabulary().page()),
     }
 

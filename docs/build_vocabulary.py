@@ -93,17 +93,20 @@ def section(path: Path) -> str:
 
 
 def files_section() -> str:
-    """Return the part about the declared vocabulary of the four kinds of fact files."""
+    """Return the part about the declared vocabulary of the kinds of fact files."""
     sys.path.insert(0, str(ROOT))
     from kb.language.vocabulary import EXPECTATION_VOCABULARY, GOAL_VOCABULARY, START_VOCABULARY, WORLD_VOCABULARY
+    from simulator.scenario.trialfile import TRIAL_VOCABULARY
 
     parts: Mapping[str, Mapping[str, Sequence[object]]] = {
         "world.lp": WORLD_VOCABULARY,
         "start.lp": START_VOCABULARY,
         "goal.lp": GOAL_VOCABULARY,
         "expect.lp": EXPECTATION_VOCABULARY,
+        "trial.lp": TRIAL_VOCABULARY,
     }
-    lines = ["## Fact files", "", "What may stand in the files of a scenario (kb/language/vocabulary.py).", ""]
+    where = "kb/language/vocabulary.py, simulator/scenario/trialfile.py"
+    lines = ["## Fact files", "", f"What may stand in the files of a scenario ({where}).", ""]
     for name, vocabulary in parts.items():
         forms = [_form(predicate, slots) for predicate, slots in vocabulary.items()]
         lines.append(f"- **{name}**: " + ", ".join(f"`{form}`" for form in forms))
@@ -119,6 +122,7 @@ def questions_section() -> str:
         Openness.NEVER: "nothing: it is known completely",
         Openness.UNSEEN: "things not seen yet",
         Openness.UNTOLD: "things not seen yet, and things of which it says nothing",
+        Openness.UNBOUND: "parameters of the task of which it says nothing",
     }
     lines = ["## What may hold besides what is believed", ""]
     lines += ["Questions are answered by this table (kb/language/vocabulary.py; docs/files.md says how).", ""]

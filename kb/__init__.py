@@ -12,6 +12,9 @@ world         the world model, rooms, doors and corners; the same as facts
 task          the task, and the binding of its parameters to objects
 language      fact files: reading, checking, vocabulary
 reasoning     clingo, queries, rules of users
+tracing       logic programs made to say how their answers come about
+explanation   proofs of answers, and what would change them
+evidence      why facts, cells, commands and verdicts are as they are, down to cells of impressions
 three_valued  queries whose answer may be `don't know`
 asp           the encodings, one concern a file
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
 from kb.localisation.field_account import Accommodation
-from kb.reasoning.decisions import SolverCall, record_decisions
 from kb.task.task import Task
+from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.facts import Places, belief
 from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict
@@ -104,6 +104,7 @@ class Robot:
         self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
         self._has_restarted = False
         self._journal = Journal()
+        self._decided: list[SolverCall] = []  # what was decided between two steps, for the record of the next one
 
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
@@ -149,6 +150,29 @@ class Robot:
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
             raise ValueError("the run is finished")
+        return self.follow(command, why)
+
+    def follow(self, command: Command, why: str) -> StepReport:
+        """Give a command, perceive, and decide anew (steps 10 to 13).
+
+        The command may be another one than was decided: then the robot is led. A task that had ended goes on.
+
+        Parameters
+        ----------
+        command : the command, in the robot's own frame.
+        why : its reason, in words.
+
+        Returns
+        -------
+        StepReport
+            The command, and what is believed after it.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
         with record_decisions() as decisions:
@@ -160,11 +184,63 @@ class Robot:
             if self._must_restart:
                 accommodated = self._restart(impression) or accommodated
         self._test()
-        return self._report(command, impression, accommodated, why, decisions)
+        earlier, self._decided = self._decided, []
+        return self._report(command, impression, accommodated, why, [*earlier, *decisions])
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Take other rules, and perhaps another task, for all that comes after the next impression.
+
+        The command that is decided already is still given. What is believed stays, and is interpreted by the new rules
+        with the next impression. With another task the robot decides afresh; parameters of the same name keep their
+        binding until the next reconciliation.
+
+        Parameters
+        ----------
+        kb_files : paths of the user's own encodings, all of them.
+        task : the new task; None to keep the old one.
+        """
+        rules = tuple(Path(file) for file in kb_files)
+        self.knowledge.rules = self.decider.rules = rules
+        if task is not None:
+            kept = {name: node for name, node in self.decider.bound.items() if name in task.parameters}
+            self.decider = Decider(task, self.options.paths, rules, self.options.pull, bound=kept)
 
     def _decide(self) -> None:
         """Set `decision` to the next command, or the verdict, for what is believed now."""
         self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
+
+    def redirect(self, task: Task, options: Options) -> None:
+        """Go on with another task or other options, from all that is known; decide anew where they ask for it.
+
+        What was decided and tried for the task so far is forgotten when the task, the path-finder, the user's encodings
+        or the leave to pull are others. A held object is released first then. Where things of the task began is where
+        they are believed now. What was concluded before with the user's encodings and is remembered, such as the shape
+        of a thing in hand, stays.
+
+        Parameters
+        ----------
+        task : the goals from now on, and what is said of their parameters.
+        options : how the robot works from now on. The limit of commands counts those already given, too.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        before, self.options = self.options, options
+        decider = self.decider
+        kept = (before.paths, before.kb_files, before.pull) == (options.paths, options.kb_files, options.pull)
+        if not kept or task != decider.task:
+            rules = tuple(Path(file) for file in options.kb_files)
+            self.knowledge.rules = rules
+            self.decider = Decider(task, options.paths, rules, options.pull)
+            with record_decisions() as self._decided:
+                self._decide()
+            held = self.model.held
+            if held is not None and self.decision.command is not None:
+                self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")
+        self.finished = False
+        self._test()
 
     def _restart(self, impression: Impression) -> Accommodation | None:
         """Forget all beliefs and begin anew from an impression; a held object is released first.
@@ -215,7 +291,9 @@ class Robot:
         decisions : the answers of encodings since the step before.
         """
         places = Places(self.decider.rooms, self.decider.corners)
-        believed = belief(self.model, places, accommodated, self.decider.bound)
+        task = self.decider.task
+        objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from geometry.kernels.arrays import XY
 from kb.localisation.state import TrackerState
-from kb.reasoning.decisions import SolverCall
+from kb.tracing.decisions import SolverCall
 
 JOURNAL_DIGITS = 6  # decimals of a square with which places are written, like `place` in an episode's line
 ROUTES_ENCODING = "routes"  # the encoding whose candidates are routes
@@ -38,14 +38,14 @@ class Journal:
             solved: for each decision [encoding, facts, answer, about], or [encoding, [step, index]] where `solved` of
             that step holds the same at that index. map_from: the number of the first impression on which the map rests.
             seen_from: the places [east, north] where all impressions were received as believed now, in squares, robot
-            frame; only when they are not those of the step before and the newest one. routes: the routes that were
-            weighed last for the next command, as points [east, north] with whether one was chosen; only when there are
-            any.
+            frame; only when they are not those of the step before with the believed place of the robot after them.
+            routes: the routes that were weighed last for the next command, as points [east, north] with whether one was
+            chosen; only when there are any.
         """
         places = tuple(_rounded(place) for place in (*memory.been, *(seen.place for seen in memory.observations)))
         found: dict[str, Any] = {"solved": [self._solved(n, call) for n, call in enumerate(decisions)]}
         found["map_from"] = len(memory.been)
-        if places[:-1] != self._places:
+        if places != (*self._places, _rounded(memory.frame.place_to_utak(*memory.place))):
             found["seen_from"] = [list(place) for place in places]
         routes = [call for call in decisions if call.encoding == ROUTES_ENCODING and call.answer]
         if routes:

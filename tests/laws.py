@@ -14,7 +14,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-HOUSE = ("geometry", "kb", "planner", "simulator")
+HOUSE = ("geometry", "kb", "planner", "simulator", "utak")
 MEASURED = (*HOUSE, "benchmarks")
 PATCHED_PACKAGES = (*MEASURED, "utak_command")  # in which tests patch nothing
 MAY_IMPORT = {
@@ -22,17 +22,38 @@ MAY_IMPORT = {
     "kb": {"geometry"},
     "planner": {"geometry", "kb"},
     "simulator": {"geometry", "kb", "planner"},
+    "utak": {"geometry", "kb", "planner", "simulator"},  # the face for Python, imported by nobody
 }
 MAY_USE = {
     "geometry": {"numba", "numpy", "shapely", "networkx"},
     "kb": {"clingo", "numpy", "shapely"},
     "planner": {"numpy", "shapely"},
-    "simulator": {"numpy", "shapely", "PIL"},
+    "simulator": {"numpy", "shapely"},
+    "utak": {"numpy", "shapely"},
 }
 PURE_WORLD = "simulator/world"  # the simulated world: besides itself it may import geometry alone
-PILLOW_IN = "simulator/replay/gif.py"  # an optional library
+# Libraries of extras, each met in one place alone and imported when it is used.
+OPTIONAL_IN = {
+    "PIL": "simulator/replay/gif.py",
+    "distributed": "simulator/sweep/executors/cluster.py",
+    "gymnasium": "utak/gym",
+    "prompt_toolkit": "simulator/repl",
+    "rich": "simulator/repl",
+}
 NUMBA_IN = "geometry/kernels/jit.py"
-CLINGO_IN = ("kb/reasoning", "kb/three_valued")
+CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
+# What stands in fronts besides a docstring: public names are what users of Python import.
+FRONTS_WITH_CODE: dict[str, tuple[type[ast.stmt], ...]] = {
+    "geometry/__init__.py": (ast.ImportFrom, ast.Assign),  # public names
+    "utak/__init__.py": (
+        ast.ImportFrom,
+        ast.Assign,
+        ast.If,
+        ast.FunctionDef,
+    ),  # public names, loaded when they are used
+    "utak/gym/__init__.py": (ast.ImportFrom,),  # importing it makes the environment known to Gymnasium
+}
+FACE = "utak"  # its classes bear the names of what they show: utak.Scenario stands for a scenario
 MAX_MODULES = 12  # in a folder: what a reader keeps in mind at once
 MAX_LINES = 400  # of a module, its docstrings left out
 PERSON_PER_THOUSAND = 1.0  # "he", "his", "him" in 1,000 words of comments and docstrings
@@ -93,18 +114,19 @@ def relative_imports(root: Path) -> Iterator[str]:
 
 
 def others_used(root: Path) -> Iterator[str]:
-    """Packages use only the libraries they may; numba and pillow are met in one module each, clingo in two rooms."""
+    """Packages use only the libraries that they may; optional ones and numba are met in one place each."""
     for path in modules(root):
         name = short(path, root)
         for library in {module.split(".")[0] for module, _ in imports(path)}:
             if library in {*HOUSE, "utak_command"} | set(sys.stdlib_module_names):
                 continue
-            if library not in MAY_USE[name.split("/")[0]]:
+            if library in OPTIONAL_IN:
+                if not name.startswith(OPTIONAL_IN[library]):
+                    yield f"{name} uses {library}, which {OPTIONAL_IN[library]} alone may"
+            elif library not in MAY_USE[name.split("/")[0]]:
                 yield f"{name} uses {library}"
             if library == "numba" and name != NUMBA_IN:
                 yield f"{name} uses numba, which {NUMBA_IN} alone may"
-            if library == "PIL" and name != PILLOW_IN:
-                yield f"{name} uses PIL, which {PILLOW_IN} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 
@@ -169,15 +191,16 @@ def public_values(path: Path) -> Iterator[str]:
 
 
 def names_with_two_meanings(root: Path) -> Iterator[str]:
-    """No two public classes, constants or type aliases bear one name."""
-    places: dict[str, list[str]] = defaultdict(list)
-    for path in modules(root, MEASURED):
-        for name in public_values(path):
-            if len(name) > 1:  # a type variable stands for nothing of the project's
-                places[name].append(short(path, root))
-    for name, where in sorted(places.items()):
-        if len(where) > 1:
-            yield f"{name} stands in {', '.join(where)}"
+    """No two public classes, constants or type aliases bear one name; the face is a house of its own."""
+    for packages in (tuple(package for package in MEASURED if package != FACE), (FACE,)):
+        places: dict[str, list[str]] = defaultdict(list)
+        for path in modules(root, packages):
+            for name in public_values(path):
+                if len(name) > 1:  # a type variable stands for nothing of the project's
+                    places[name].append(short(path, root))
+        for name, where in sorted(places.items()):
+            if len(where) > 1:
+                yield f"{name} stands in {', '.join(where)}"
 
 
 def vague_constants(root: Path) -> Iterator[str]:
@@ -236,11 +259,10 @@ def shapeless_modules(root: Path) -> Iterator[str]:
 
 
 def code_in_fronts(root: Path) -> Iterator[str]:
-    """An `__init__.py` holds a docstring alone; that of geometry also its public names."""
+    """An `__init__.py` holds a docstring alone; those in FRONTS_WITH_CODE also what is said there."""
     for path in modules(root):
         if path.name == "__init__.py":
-            public = short(path, root) == "geometry/__init__.py"
-            allowed = (ast.Expr, ast.ImportFrom, ast.Assign) if public else (ast.Expr,)
+            allowed = (ast.Expr, *FRONTS_WITH_CODE.get(short(path, root), ()))
             if not all(isinstance(node, allowed) for node in tree_of(path).body):
                 yield f"{short(path, root)} has code"
 
@@ -275,7 +297,7 @@ def is_frozen(node: ast.ClassDef) -> bool:
 
 def thunks(root: Path) -> Iterator[str]:
     """A frozen value holds values, not functions that are still to be called."""
-    for path in modules(root, ("kb", "planner", "simulator")):
+    for path in modules(root, ("kb", "planner", "simulator", "utak")):
         aliases = {
             target.id
             for node in tree_of(path).body

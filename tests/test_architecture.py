@@ -105,6 +105,23 @@ def test_the_law_fires_when_it_is_broken(law: Law, tmp_path: Path) -> None:
     assert named in "\n".join(found)
 
 
+@pytest.mark.parametrize(
+    ("name", "program"),
+    [
+        ("utak/run.py", "import gymnasium\n"),
+        ("simulator/play.py", "def f():\n    from gymnasium import Env\n"),
+        ("simulator/face.py", "def f():\n    import utak\n"),
+        ("utak/gym/__init__.py", "def f():\n    pass\n"),
+    ],
+)
+def test_the_face_for_python_keeps_to_itself(name: str, program: str, tmp_path: Path) -> None:
+    (tmp_path / name).parent.mkdir(parents=True)
+    (tmp_path / name).write_text(program)
+    found = [*laws.others_used(tmp_path), *laws.package_imports(tmp_path), *laws.code_in_fronts(tmp_path)]
+    assert len(found) == 1
+    assert found[0].startswith(name)
+
+
 def planted_tests(root: Path, program: str) -> list[str]:
     """Return what patches globals in a small house whose only test is a program."""
     for name in ("kb/a.py", "kb/task/room.py", "benchmarks/run.py", "utak_command.py", "tests/test_a.py"):
@@ -126,9 +143,11 @@ def test_seams_may_be_given_other_parts(program: str, tmp_path: Path) -> None:
 
 def test_the_laws_look_at_a_house_that_is_there() -> None:
     for package in laws.MEASURED:
-        assert len(list(laws.modules(ROOT, (package,)))) > 30, package
+        assert len(list(laws.modules(ROOT, (package,)))) > (10 if package == laws.FACE else 30), package
     assert (ROOT / laws.PURE_WORLD).is_dir()
     assert (ROOT / laws.NUMBA_IN).exists()
+    assert all((ROOT / place).exists() for place in laws.OPTIONAL_IN.values())
+    assert all((ROOT / front).exists() for front in laws.FRONTS_WITH_CODE)
     assert all((ROOT / room).is_dir() for room in laws.CLINGO_IN)
 
 
@@ -150,6 +169,15 @@ def test_whatever_is_imported_waits_for_neither_numba_nor_networkx() -> None:
     )
     assert run(program, *names) == "[]"
     assert run("import networkx\n" + program) == "['networkx']"  # the program sees what is loaded
+
+
+def test_nobody_imports_the_face_for_python_and_it_starts_light() -> None:
+    loaded = ast.literal_eval(run("import utak; print(sorted(sys.modules))"))
+    assert {"utak"} == {name for name in loaded if name.split(".")[0] in laws.HOUSE}
+    assert not {"numpy", "shapely", "clingo", "numba", "networkx", "typing", "gymnasium"} & set(loaded)
+    names = ("simulator.cli.main", "simulator.run.session", "planner.cycle", "kb.knowledge", "geometry")
+    program = "import importlib\nfor name in sys.argv[2:]: importlib.import_module(name)\nprint('utak' in sys.modules)"
+    assert run(program, *names) == "False"
 
 
 def test_the_command_line_starts_light() -> None:

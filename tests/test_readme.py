@@ -25,7 +25,20 @@ def test_there_are_two_commands_each_one_line() -> None:
 
 def test_every_command_named_exists() -> None:
     named = set(re.findall(r"^\$ utak (\w+)", README, re.MULTILINE)) | set(re.findall(r"`utak (\w+)", README))
-    assert {"run", "new", "show", "test", "check", "query", "repl", "routes", "warm"} <= named
+    assert {
+        "run",
+        "new",
+        "show",
+        "test",
+        "check",
+        "query",
+        "repl",
+        "explain",
+        "replay",
+        "sweep",
+        "routes",
+        "warm",
+    } <= named
     for command in sorted(named):
         assert main([command, "--help"]) == 0, command
 

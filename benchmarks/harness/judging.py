@@ -19,7 +19,8 @@ def judge_path() -> Path | None:
 
 
 @cache
-def _judge(path: Path) -> ModuleType:
+def judge_module(path: Path) -> ModuleType:
+    """Return the judge at a path as a module."""
     spec = importlib.util.spec_from_file_location("utak_judge", path)
     if spec is None or spec.loader is None:
         raise ImportError(f"cannot load the judge from {path}")
@@ -36,7 +37,7 @@ def findings(folder: Path, episode: Path) -> list[str] | None:
     said = io.StringIO()
     with contextlib.redirect_stdout(said):
         try:
-            code = _judge(path).main(str(folder), str(episode))
+            code = judge_module(path).main(str(folder), str(episode))
         except (OSError, KeyError, ValueError, RuntimeError, SystemExit) as error:
             return [f"the judge cannot read the episode: {type(error).__name__}: {error}"]
     return said.getvalue().splitlines() if code else []

@@ -14,7 +14,7 @@ from benchmarks.worlds.placing import digital
 from benchmarks.worlds.scenes import RandomScenario
 from kb.body import Body, Impression
 from kb.knowledge import Knowledge
-from kb.localisation.hypotheses.explanation import Accommodation
+from kb.localisation.field_account import Accommodation
 from kb.localisation.hypotheses.frames import FrameHypothesis
 from kb.mapping.occupancy import FREE, OCCUPIED
 from kb.perception.frame import Frame, turned

@@ -28,8 +28,11 @@ from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
+from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 LOOPS = (4,)  # tasks whose shortest way is a loop
+# A trial ends itself after its seconds, unless compiled code does not return. Then its process is ended; a convention.
+PROCESS_LIMIT_FACTOR, PROCESS_START_SECONDS = 2, 60
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,39 @@ class CampaignTrial:
         """Return the trial as a JSON object."""
         row = asdict(self) | {"score": self.score and self.score._asdict(), "clean": self.clean}
         return {name: None if isinstance(v, float) and not math.isfinite(v) else v for name, v in row.items()}
+
+
+def trial_of(row: dict[str, Any]) -> CampaignTrial:
+    """Return the trial of which `CampaignTrial.row` made a row, also after the row has been JSON text."""
+    values = {name: value for name, value in row.items() if name != "clean"}
+    for name in ("walked", "shortest"):
+        values[name] = math.nan if values[name] is None else values[name]
+    values["cycles"] = [Seconds(*cycle) for cycle in values["cycles"]]
+    if values["score"] is not None:
+        values["score"] = Score(**{**values["score"], "mistaken": tuple(values["score"]["mistaken"])})
+    values["narrow"] = None if values["narrow"] is None else Narrowness(*values["narrow"])
+    return CampaignTrial(**values)
+
+
+def trial_task(task: int, seed: int, conditions: Conditions, folder: Path) -> WorkerTask:
+    """Return a trial as a task of a worker process; the limit of its process is beyond that of the trial itself."""
+    argument = {"task": task, "seed": seed, "conditions": asdict(conditions), "folder": str(folder)}
+    seconds = PROCESS_LIMIT_FACTOR * conditions.seconds + PROCESS_START_SECONDS if conditions.seconds else None
+    return WorkerTask("benchmarks.harness.trial:trial_row", argument, seconds)
+
+
+def trial_row(argument: dict[str, Any]) -> dict[str, Any]:
+    """Run a trial in a worker process and return its row; the argument is that of `trial_task`."""
+    conditions = Conditions(**argument["conditions"])
+    return run_trial(argument["task"], argument["seed"], conditions, Path(argument["folder"])).row()
+
+
+def trial_of_outcome(task: int, seed: int, conditions: Conditions, outcome: TaskOutcome) -> CampaignTrial:
+    """Return the trial of a task that has ended; a worker process that died is a crash."""
+    if outcome.failure:
+        possible = scenario(task, seed, conditions.kind).possible
+        return CampaignTrial(task, seed, possible, crash=outcome.reason)
+    return trial_of(outcome.value)
 
 
 class _TooLongError(Exception):

@@ -27,6 +27,7 @@ from geometry.motion.time_of_impact import (
     Surface,
     first_push_contact,
     first_turn_contact,
+    is_push_clear,
     push_fractions,
     turn_fractions,
 )
@@ -76,9 +77,8 @@ class ContactBody:
     """
 
     def __init__(self, shape: Any = None, points: Iterable[tuple[float, float]] = ()) -> None:
-        self._set_parts(
-            with_normals(boundary_edges(shape)), np.array([tuple(p) for p in points], dtype=float).reshape(-1, 2)
-        )
+        edges = NO_EDGES if shape is None else with_normals(boundary_edges(shape))
+        self._set_parts(edges, np.array([tuple(p) for p in points], dtype=float).reshape(-1, 2))
 
     def _set_parts(self, edges: Floats, points: Floats) -> None:
         """Set `edges` (n, 7), `points` (n, 2) and `runs` of this body; squares, table frame.
@@ -103,26 +103,58 @@ class ContactBody:
         return moved
 
 
+class ObstaclePart(NamedTuple):
+    """One obstacle, prepared to be put together with others.
+
+    Attributes
+    ----------
+    polygon : shapely Polygon or MultiPolygon, squares, table frame.
+    edges : (n, 7) its edges as rows x0, y0, x1, y1, outward unit normal x and y, length.
+    skin : (n, 7) the same edges drawn inward by SKIN_DEPTH, row for row.
+    """
+
+    polygon: Any
+    edges: Floats
+    skin: Floats
+
+
+def obstacle_part(polygon: Any) -> ObstaclePart:
+    """Return a polygon prepared as an obstacle.
+
+    Parameters
+    ----------
+    polygon : shapely Polygon or MultiPolygon, holes allowed, squares, table frame.
+
+    Returns
+    -------
+    ObstaclePart : its edges and their inward copies, (n, 7) each; squares, table frame.
+    """
+    edges = with_normals(boundary_edges(polygon))
+    return ObstaclePart(polygon, edges, _offset_inward(edges, SKIN_DEPTH))
+
+
 class Obstacles:
     """Standing polygons, prepared once for many motions among them.
 
     Parameters
     ----------
-    polygons : shapely Polygons or MultiPolygons, holes allowed, squares, table frame. They may touch or overlap each
-        other. A Contact names an obstacle by its index in this sequence.
+    polygons : shapely Polygons or MultiPolygons, holes allowed, squares, table frame; or parts made of such by
+        `obstacle_part`, which spares their preparation. They may touch or overlap each other. A Contact names an
+        obstacle by its index in this sequence.
 
     Attributes
     ----------
-    polygons : the same, as a tuple.
+    polygons : the same, as a tuple of polygons.
     surface : their edges and skins, each obstacle by itself; what a shape meets.
     """
 
     def __init__(self, polygons: Sequence[Any]) -> None:
-        self.polygons = tuple(polygons)
-        rings = [boundary_edges(polygon) for polygon in polygons]
-        edges = with_normals(np.concatenate([np.empty((0, 4)), *rings]))
-        owner = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
-        self.surface = Surface(edges, _offset_inward(edges, SKIN_DEPTH), _chunks(edges), edges, owner)
+        parts = [one if isinstance(one, ObstaclePart) else obstacle_part(one) for one in polygons]
+        self.polygons = tuple(part.polygon for part in parts)
+        edges = np.concatenate([NO_EDGES, *(part.edges for part in parts)])
+        skin = np.concatenate([NO_EDGES, *(part.skin for part in parts)])
+        owner = np.repeat(np.arange(len(parts)), [len(part.edges) for part in parts])
+        self.surface = Surface(edges, skin, _chunks(edges), edges, owner)
 
     @cached_property
     def point_surface(self) -> Surface:
@@ -166,6 +198,8 @@ class Obstacles:
             raise ValueError(f"a motion must be finite, not {motion}")
         contact = NO_CONTACT
         for corners, edges, as_one in body.runs:
+            if as_one and self._spares_union(corners, motion, x, y):
+                continue
             surface = self.point_surface if as_one else self.surface
             if isinstance(motion, Translate):
                 hit = first_push_contact.call_unchecked(corners, edges, surface, x, y)
@@ -175,6 +209,24 @@ class Obstacles:
             if owner >= 0 and fraction < contact.fraction:
                 contact = Contact(fraction, (at_x, at_y), owner, (nx, ny))
         return contact
+
+    def _spares_union(self, points: Floats, motion: Motion, x: float, y: float) -> bool:
+        """Return whether points surely meet nothing in a motion, so that `point_surface` need not be computed for them.
+
+        False when it was computed already. A push of points that stay away from all true edges meets no skin, not that
+        of the union either. A point at the pivot of a turn stays where it is.
+
+        Parameters
+        ----------
+        points : (n, 2) x, y before the motion, squares, table frame.
+        motion : Translate or Rotate.
+        x, y : the displacement of a translation, or the pivot of a rotation.
+        """
+        if "point_surface" in self.__dict__:
+            return False
+        if isinstance(motion, Translate):
+            return is_push_clear.call_unchecked(points, self.surface.edges, x, y)
+        return bool((points == (x, y)).all())
 
     def pushes(self, body: ContactBody, vectors: Floats) -> Floats:
         """Return the fractions travelled, 0 to 1, of many translations of one body from where it stands.
@@ -284,10 +336,13 @@ def with_normals(edges: Floats) -> Floats:
 
     The interior lies on the left of an edge, so its outward normal points to the right. Edges must not be of length 0.
     """
+    rows = np.empty((len(edges), 7))
+    rows[:, :4] = edges[:, :4]
     along = edges[:, 2:4] - edges[:, :2]
-    length = np.hypot(along[:, 0], along[:, 1])
-    unit = along / length[:, None]
-    return np.ascontiguousarray(np.column_stack([edges[:, :4], unit[:, 1], -unit[:, 0], length]))
+    rows[:, 6] = np.hypot(along[:, 0], along[:, 1])
+    rows[:, 4] = along[:, 1] / rows[:, 6]
+    rows[:, 5] = -(along[:, 0] / rows[:, 6])
+    return rows
 
 
 def _offset_inward(edges: Floats, depth: float) -> Floats:

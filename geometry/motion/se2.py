@@ -160,7 +160,10 @@ def turned(points: Floats, degrees: float) -> Floats:
     """
     cosine, sine = direction(degrees)
     x, y = points[:, 0], points[:, 1]
-    return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
+    rotated = np.empty((len(points), 2))
+    rotated[:, 0] = cosine * x - sine * y
+    rotated[:, 1] = sine * x + cosine * y
+    return rotated
 
 
 def direction(degrees: float) -> tuple[float, float]:

@@ -46,6 +46,7 @@ NO_IMPACT = 1e9  # a time or angle later than the end of any motion
 EDGE_END_TOLERANCE = 1e-9  # squares: an edge reaches this far beyond its ends, so that nothing slips between two edges
 ENTRY_DEPTH_TOLERANCE = 1e-11  # squares: a point at most this deep behind an edge meets it at once; bounds rounding
 BROAD_PHASE_MARGIN = 1e-6  # squares: by how much the boxes of the broad phase are enlarged; bounds skin and rounding
+MAX_SKIN_OFFSET = 1e-6  # squares from an edge to its skin, at most: mitred corners are 45 skin depths away, 4.5e-7
 MIN_APPROACH = 1e-12  # squares: a component of motion towards an edge below this is taken for rounding
 COSINE_TOLERANCE = 1e-9  # squares squared: by how much the cosine test must be surpassed; bounds rounding
 FULL_TURN = 2 * math.pi  # radians
@@ -201,6 +202,44 @@ def first_push_skin_hit(
                     if time < best:
                         best, kind, at, edge = time, 2, i, j
     return best, kind, at, edge
+
+
+@bare
+def is_push_clear(points: Floats, edges: Floats, dx: float, dy: float) -> bool:
+    """Return whether all points, pushed by (dx, dy), keep further than MAX_SKIN_OFFSET from all edges.
+
+    Parameters
+    ----------
+    points : (n, 2) x, y before the push; squares, in the frame of the edges.
+    edges : (m, 7) true edges.
+    dx, dy : the push, squares.
+    """
+    near2 = MAX_SKIN_OFFSET**2
+    length2 = max(dx * dx + dy * dy, near2)
+    for i in range(len(points)):
+        x, y = points[i, 0], points[i, 1]
+        low_x, high_x = x + min(dx, 0.0) - MAX_SKIN_OFFSET, x + max(dx, 0.0) + MAX_SKIN_OFFSET
+        low_y, high_y = y + min(dy, 0.0) - MAX_SKIN_OFFSET, y + max(dy, 0.0) + MAX_SKIN_OFFSET
+        for j in range(len(edges)):
+            if max(edges[j, 0], edges[j, 2]) < low_x or min(edges[j, 0], edges[j, 2]) > high_x:
+                continue
+            if max(edges[j, 1], edges[j, 3]) < low_y or min(edges[j, 1], edges[j, 3]) > high_y:
+                continue
+            x0, y0, x1, y1 = edges[j, 0] - x, edges[j, 1] - y, edges[j, 2] - x, edges[j, 3] - y
+            before = edges[j, 4] * x0 + edges[j, 5] * y0
+            after = before - edges[j, 4] * dx - edges[j, 5] * dy
+            if (x0 * dy > y0 * dx) != (x1 * dy > y1 * dx) and (before > 0.0) != (after > 0.0):
+                return False  # the two segments cross; else an end of one of them is nearest to the other
+            first = min(max((x0 * dx + y0 * dy) / length2, 0.0), 1.0)
+            last = min(max((x1 * dx + y1 * dy) / length2, 0.0), 1.0)
+            if (
+                (x0 - first * dx) ** 2 + (y0 - first * dy) ** 2 <= near2
+                or (x1 - last * dx) ** 2 + (y1 - last * dy) ** 2 <= near2
+                or squared_distance_to_edge(x, y, edges, j) <= near2
+                or squared_distance_to_edge(x + dx, y + dy, edges, j) <= near2
+            ):
+                return False
+    return True
 
 
 @bare

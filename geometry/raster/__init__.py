@@ -13,6 +13,7 @@ Modules in reading order:
     exact_clearance       whether a disc moved within one square stays clear of walls
     geodesic              length of the shortest 8-connected path from a start to every square
     line_of_sight         squares that a straight move of a unit square leads to
+    surroundings          marked squares around a square, counted by groups
     winding               shortest paths that wind about a point a given number of times
 
 Public names: the functions that those modules define; each is imported from its module.

@@ -63,7 +63,7 @@ def squares_after(shape: Any, motions: Sequence[Motion], width: int, height: int
     (height, width) bool, row 0 in the south: the union of `squares` of the shape after each motion. All False without a
     motion; what lies off the table is left out.
     """
-    edges, covered = _boundary_edges(shape), np.zeros((height, width), np.bool_)
+    edges, covered = outline_edges(shape), np.zeros((height, width), np.bool_)
     if not len(edges) or not len(motions):
         return covered
     moved = np.array([motion.points(edges.reshape(-1, 2)) for motion in motions])
@@ -92,7 +92,24 @@ def covered_areas(shape: Any, width: int, height: int) -> Floats:
     -------
     (height, width) float64, row 0 in the south; exact but for rounding (about 1e-12).
     """
-    return _covered_areas(_boundary_edges(shape), width, height)
+    return _covered_areas(outline_edges(shape), width, height)
+
+
+def window_of(edges: Floats) -> tuple[int, int, npt.NDArray[np.bool_]]:
+    """Return the squares that a shape with some edges covers, within its containing rectangle.
+
+    As `squares`, for a shape that moves often.
+
+    Parameters
+    ----------
+    edges : (n, 4) rows x0, y0, x1, y1 of closed rings, the interior on their left, in squares, table frame, as
+        `outline_edges` returns them; in any order. n at least 1.
+
+    Returns
+    -------
+    Column and row of the south-west square of the rectangle, and (rows, columns) bool, row 0 in the south.
+    """
+    return _window_of(edges)
 
 
 def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
@@ -109,7 +126,7 @@ def _covered_areas(edges: Floats, width: int, height: int) -> Floats:
     return np.cumsum(sums[0] + sums[1], axis=1)[:, :width]
 
 
-def _boundary_edges(shape: Any) -> Floats:
+def outline_edges(shape: Any) -> Floats:
     """Return all boundary edges of a shape, the interior on their left: (n, 4) float64, rows x0, y0, x1, y1.
 
     They are in the unit and frame of the shape, a shapely geometry; (0, 4) when it has no polygon.
@@ -160,6 +177,44 @@ def _accumulate(edges: Floats, sums: Floats) -> None:
                     column = max(column, 0)
                     sums[0, row, column] += (cy - dy) * share
                     sums[1, row, column + 1] += (cy - dy) * (1.0 - share)
+
+
+@compiled
+def _covered_squares(edges: Floats, width: int, height: int) -> npt.NDArray[np.bool_]:
+    """Return the squares of which the shape with some edges covers more than MIN_COVERED_AREA.
+
+    (height, width) bool, row 0 in the south; equal to `_covered_areas(...) > MIN_COVERED_AREA` to the last digit.
+
+    Parameters
+    ----------
+    edges : (n, 4) rows x0, y0, x1, y1 of closed rings, in squares from the south-west corner of square [0, 0].
+    width, height : numbers of columns and rows.
+    """
+    sums = np.zeros((2, height, width + 2))
+    _accumulate(edges, sums)
+    covered = np.empty((height, width), np.bool_)
+    for row in range(height):
+        area = 0.0
+        for column in range(width):
+            area += sums[0, row, column] + sums[1, row, column]
+            covered[row, column] = area > MIN_COVERED_AREA
+    return covered
+
+
+@compiled
+def _window_of(edges: Floats) -> tuple[int, int, npt.NDArray[np.bool_]]:
+    """Return what `window_of` does, for (n, 4) edges in squares, table frame; n at least 1."""
+    x0, y0 = edges[0, 0], edges[0, 1]
+    x1, y1 = x0, y0
+    for n in range(len(edges)):
+        x0, y0 = min(x0, edges[n, 0]), min(y0, edges[n, 1])
+        x1, y1 = max(x1, edges[n, 0]), max(y1, edges[n, 1])
+    west, south = math.floor(x0), math.floor(y0)
+    moved = np.empty((len(edges), 4))
+    for n in range(len(edges)):
+        moved[n, 0], moved[n, 1] = edges[n, 0] - west, edges[n, 1] - south
+        moved[n, 2], moved[n, 3] = edges[n, 2] - west, edges[n, 3] - south
+    return west, south, _covered_squares(moved, math.ceil(x1) - west, math.ceil(y1) - south)
 
 
 @compiled

@@ -7,6 +7,8 @@ from typing import NamedTuple
 from kb.language.diagnostics import SourceSpan, did_you_mean
 from kb.language.terms import Number, Symbol, Term, Text
 
+DECIMAL_FORM = re.compile(r"[-+]?(?:[0-9]{1,19}(?:\.[0-9]{0,19})?|\.[0-9]{1,19})")  # a decimal number without exponent
+
 
 class Complaint(NamedTuple):
     """The reason why a term does not fit its argument.
@@ -61,6 +63,33 @@ def integer_argument(name: str, low: int, high: int) -> ArgumentType:
         return None
 
     return ArgumentType(name, check, (low, high))
+
+
+def decimal_argument(name: str, low: float, high: float) -> ArgumentType:
+    """Return the type of numbers from `low` to `high`, both included: integers, or quoted decimals such as "0.5".
+
+    It holds the name and a check that returns the complaint about a term (None when the term fits), with a hint.
+
+    name : what the argument is called in messages, with its article, such as `a distance`.
+    """
+
+    def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it is a number in the range."""
+        written = str(term.value) if isinstance(term, Number | Text) else ""
+        if not DECIMAL_FORM.fullmatch(written):
+            hint = 'a whole number, or a quoted decimal such as "0.5"'
+            return Complaint(term.span, f"{name} must be a number, not {abbreviated(term)}", hint)
+        if not low <= float(written) <= high:
+            return Complaint(term.span, f"{name} must be from {low:g} to {high:g}, not {abbreviated(term)}")
+        return None
+
+    return ArgumentType(name, check)
+
+
+def decimal_value(term: Term) -> float:
+    """Return the number that a term states, an integer or a quoted decimal that `decimal_argument` accepted."""
+    assert isinstance(term, Number | Text)
+    return float(term.value)
 
 
 def word_argument(name: str, known: Iterable[str]) -> ArgumentType:

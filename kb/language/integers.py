@@ -4,11 +4,11 @@ clingo's integers have 32 bits, and it wraps greater ones without a message. So 
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from kb.language.diagnostics import Problem, SourceSpan
 from kb.language.source_text import Source
-from kb.language.tokens import tokenize
+from kb.language.tokens import Token, tokenize
 
 MIN_INT32, MAX_INT32 = -(2**31), 2**31 - 1  # the range of clingo's integers
 INTEGER_BASES = {"0x": 16, "0o": 8, "0b": 2}  # by the prefix of a literal of gringo's language
@@ -18,7 +18,7 @@ TOKENS_BEFORE_A_TERM = frozenset("(,;=<>+*/\\&?^|{:[@") | {"<=", ">=", "!=", "..
 MAX_DIGITS_CONVERTED = 40  # a literal with more digits is beyond 32 bits in every base; its value is not computed
 
 
-def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
+def integers_beyond_32_bits(source: Source, tokens: Iterable[Token] | None = None) -> Iterator[Problem]:
     """Yield a problem for each integer of a program's text that does not fit in 32 bits.
 
     Integers in strings and comments are ignored. 2147483648 is accepted only after a minus sign that negates it.
@@ -26,6 +26,7 @@ def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
     Parameters
     ----------
     source : the text of a logic program or a query.
+    tokens : its tokens, where the caller has them; None to read them from the text.
 
     Yields
     ------
@@ -33,7 +34,7 @@ def integers_beyond_32_bits(source: Source) -> Iterator[Problem]:
     and a hint.
     """
     ahead, before = "(", "("
-    for token in tokenize(source, []):
+    for token in tokenize(source, []) if tokens is None else tokens:
         if token.kind == "number":
             line = source.lines[token.span.line - 1]
             match = INTEGER_LITERAL.match(line, token.span.start - 1)

@@ -31,7 +31,8 @@ class Token(NamedTuple):
 
     Attributes
     ----------
-    kind : `name`, `variable`, `number`, `string`, `directive`, `mark`, `open` (a string that is not closed) or `end`.
+    kind : `name`, `variable`, `number`, `string`, `directive`, `mark`, `comment`, `open` (a string that is not closed)
+        or `end`.
     text : the characters as they stand in the source.
     span : the place in the source, one line with columns from 1.
     """
@@ -48,13 +49,14 @@ class Token(NamedTuple):
         return self.text if len(self.text) <= 40 else f"{self.text[:37]}..."
 
 
-def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
+def tokenize(source: Source, problems: list[Problem], comments: bool = False) -> Iterator[Token]:
     """Yield the tokens of a text, without blanks and comments; the last one has the kind `end` and the text ''.
 
     A token holds its kind, its characters, and its place: one line, columns from 1.
 
     source : the text.
     problems : changed: the problem of each comment or string that is not closed is appended as soon as it is reached.
+    comments : whether comments that end with their line are yielded, too, with the kind `comment`.
     """
     text, at, line, begin = source.text, 0, 1, 0
     while at < len(text):
@@ -70,7 +72,7 @@ def tokenize(source: Source, problems: list[Problem]) -> Iterator[Token]:
         elif kind == "open":
             problems.append(source.problem(span, "this string is not closed on its line", 'close it with "'))
             yield Token(kind, match.group(), span)
-        elif kind not in ("space", "comment"):
+        elif kind != "space" and (kind != "comment" or comments):
             yield Token(kind, match.group(), span)
         breaks = text.count("\n", at, end)
         if breaks:

@@ -10,6 +10,7 @@ from kb.language.arguments import (
     ArgumentType,
     Complaint,
     abbreviated,
+    decimal_argument,
     integer_argument,
     pattern_argument,
     wkt_argument,
@@ -42,18 +43,6 @@ WORLD_VOCABULARY: Vocabulary = {
     "utak": (wkt_argument("Utak's place", "POINT"), DEGREES_ARGUMENT),
 }
 
-WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
-# The predicates of expect.lp.
-EXPECTATION_VOCABULARY: Vocabulary = {
-    "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
-    "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, integer_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
-    "visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
-    "circles": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
-    "unmoved": (NAME_ARGUMENT,),
-    "within": (integer_argument("a number of steps", 0, 1_000_000),),
-    "fails": (),
-}
-
 
 def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType:
     """Return the type of a name or of `name(argument)`, such as corner(northeast).
@@ -81,7 +70,7 @@ def _compound(name: str, argument: ArgumentType, otherwise: str) -> ArgumentType
     return ArgumentType(f"{name} or name", check)
 
 
-def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
+def fact_argument(name: str, vocabulary: Vocabulary) -> ArgumentType:
     """Return the type of an argument that is a whole fact of a vocabulary, such as G in first(G).
 
     The type holds the name and a check: it returns the first complaint about the fact, or None when it is valid.
@@ -98,6 +87,33 @@ def _fact_of(name: str, vocabulary: Vocabulary) -> ArgumentType:
     return ArgumentType(name, check)
 
 
+WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
+VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")  # the ends of a run (docs/files.md)
+MAX_WEIGHT_POINTS = 1_000_000  # points of one expectation; a convention
+# What expect.lp expects of a run.
+EXPECTATIONS: Vocabulary = {
+    "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, decimal_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
+    "visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "avoids": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "circles": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
+    "unmoved": (NAME_ARGUMENT,),
+    "pose": (
+        NAME_ARGUMENT,
+        wkt_argument("a place", "POINT"),
+        decimal_argument("an angle in degrees", -36000, 36000),
+        decimal_argument("a tolerance in squares", 0, MAX_TABLE_SIDE),
+    ),
+    "within": (integer_argument("a number of steps", 0, 1_000_000),),
+    "verdict": (word_argument("verdict", VERDICT_WORDS),),
+    "fails": (),
+}
+# The predicates of expect.lp.
+EXPECTATION_VOCABULARY: Vocabulary = {
+    **EXPECTATIONS,
+    "weight": (fact_argument("what is weighed", EXPECTATIONS), integer_argument("a weight", 0, MAX_WEIGHT_POINTS)),
+}
+
 # The claims about objects in start.lp.
 CLAIMS: Vocabulary = {
     "shape": (NAME_ARGUMENT, word_argument("shape", SHAPE_CLASSES)),
@@ -109,7 +125,7 @@ START_VOCABULARY: Vocabulary = {
     "door": (NAME_ARGUMENT,),
     "room": (NAME_ARGUMENT,),
     **CLAIMS,
-    "confidence": (_fact_of("what is claimed", CLAIMS), integer_argument("a confidence", 0, 100)),
+    "confidence": (fact_argument("what is claimed", CLAIMS), integer_argument("a confidence", 0, 100)),
 }
 # The conditions that goals state.
 GOAL_CONDITIONS: Vocabulary = {
@@ -125,8 +141,8 @@ GOAL_CONDITIONS: Vocabulary = {
 # The predicates of goal.lp.
 GOAL_VOCABULARY: Vocabulary = {
     **GOAL_CONDITIONS,
-    "first": (_fact_of("a goal", GOAL_CONDITIONS),),
-    "then": (_fact_of("a goal", GOAL_CONDITIONS),),
+    "first": (fact_argument("a goal", GOAL_CONDITIONS),),
+    "then": (fact_argument("a goal", GOAL_CONDITIONS),),
 }
 
 
@@ -139,6 +155,8 @@ class Openness(StrEnum):
     """It may hold for things not seen yet, as long as a part of the table is unseen."""
     UNTOLD = "untold"
     """As UNSEEN; and it may hold for known things of which no fact of this predicate is believed."""
+    UNBOUND = "unbound"
+    """It may hold for the parameters of the task of which no fact of this predicate is believed, and for no others."""
 
 
 class BeliefPredicate(NamedTuple):
@@ -163,6 +181,9 @@ class BeliefPredicate(NamedTuple):
 
 # A node of the world model.
 THING_ARGUMENT = pattern_argument("thing", "org|floor|verge|o[0-9]+", "o1, floor, verge, or org, which is Utak")
+# An object of the world model.
+OBJECT_ARGUMENT = pattern_argument("object", "o[0-9]+", "o1")
+TASK_PARAMETER_ARGUMENT = ArgumentType("parameter of the task", NAME_ARGUMENT.check)  # a name that start.lp introduces
 ROOM_ARGUMENT = pattern_argument("room", "r[0-9]+", "r1")  # a room of the world model
 DOOR_ARGUMENT = pattern_argument("door", "d[0-9]+", "d1")  # a door of the world model
 JUNCTION_ARGUMENT = pattern_argument("junction", "j[0-9]+", "j1")  # a junction or an end of the pathgraph
@@ -212,6 +233,9 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("door", 1): BeliefPredicate((DOOR_ARGUMENT,), Openness.UNSEEN),
     ("connects", 3): BeliefPredicate((DOOR_ARGUMENT, ROOM_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("width", 2): BeliefPredicate((DOOR_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN),
+    ("threshold", 5): BeliefPredicate(
+        (DOOR_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
+    ),
     ("in", 2): BeliefPredicate((THING_ARGUMENT, ROOM_ARGUMENT), Openness.UNSEEN),
     ("corner", 3): BeliefPredicate(
         (word_argument("corner", CORNER_NAMES), LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.NEVER
@@ -224,6 +248,8 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
         (LINK_ARGUMENT, JUNCTION_ARGUMENT, JUNCTION_ARGUMENT, LENGTH_ARGUMENT, LENGTH_ARGUMENT), Openness.UNSEEN
     ),
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
+    ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
+    ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, OBJECT_ARGUMENT), Openness.UNBOUND),
 }
 
 

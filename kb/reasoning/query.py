@@ -10,6 +10,7 @@ of kb.language.vocabulary; docs/files.md describes the rules.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
+from typing import Any
 
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.integers import integers_beyond_32_bits
@@ -22,6 +23,7 @@ from kb.reasoning.worker import Worker
 
 MAX_QUERY_SECONDS = 5.0  # seconds of wall-clock time for one query, by default; a convention
 MAX_QUERY_CHARACTERS = 10_000  # characters of a query; a convention
+MAX_QUERIES_PER_WORKER = 20_000  # queries after which a new process answers, 0.1 s once; a convention
 MAX_ANSWER_ROWS = 10_000  # rows of an answer, by default; a convention
 QUERY_PREDICATES = tuple(
     BELIEF_PREDICATES
@@ -43,12 +45,15 @@ class QueryAnswer:
     rows : the values of the variables in each binding with which the query certainly holds, in the order of
         `variables`: integers or terms as text. Sorted; empty unless kind is "bindings".
     more : whether there are more rows than `rows` holds.
+    types : for each variable the name of the type of the argument in which it stands, such as `a confidence`; '' for
+        none.
     """
 
     kind: str
     variables: tuple[str, ...] = ()
     rows: tuple[tuple[int | str, ...], ...] = ()
     more: bool = False
+    types: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Return a table of the rows under the names of the variables, or the kind of the answer in words.
@@ -78,12 +83,14 @@ class QueryEngine:
 
     def __init__(self, seconds: float = MAX_QUERY_SECONDS, rules: Sequence[str] = ()) -> None:
         self.seconds = seconds
+        self._files: tuple[str, ...] = ()
         self._rules: Sequence[Statement] = ()
-        if rules:
-            from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
-
-            self._rules = read_rules(rules).query_rules
         self._worker = Worker()
+        self._facts: tuple[str, ...] | None = None  # the facts of the last query
+        self._entries: list[list[int | str]] = []  # the same as the worker takes them
+        self._number = 0  # of these facts; the worker holds the facts of one number
+        self._asked = 0  # queries since the worker was started
+        self.use_rules(rules)
 
     def __enter__(self) -> "QueryEngine":
         """Return the engine itself."""
@@ -93,8 +100,34 @@ class QueryEngine:
         """End the separate process; an exception is not suppressed."""
         self.close()
 
+    @property
+    def process_id(self) -> int | None:
+        """The number of the separate process; None while none runs."""
+        return self._worker.process_id
+
+    def use_rules(self, rules: Sequence[str]) -> None:
+        """Use the rules of these files, and no others, in all further queries.
+
+        Parameters
+        ----------
+        rules : the paths of the files; () for none.
+
+        Raises
+        ------
+        BadInputError : the rules have errors. The former rules are kept.
+        CannotOpenError : a file cannot be read. The former rules are kept.
+        """
+        files = tuple(map(str, rules))
+        if files == self._files:
+            return
+        from kb.reasoning.user_rules import read_rules  # imported only when there are users' rules: it takes time
+
+        self._rules = read_rules(files).query_rules if files else ()
+        self._files, self._facts = files, None
+
     def close(self) -> None:
         """End the separate process, if it runs; the next query starts another one."""
+        self._asked = 0
         self._worker.close()
 
     def ask(self, facts: Sequence[str], query: str, max_rows: int = MAX_ANSWER_ROWS) -> QueryAnswer:
@@ -103,14 +136,14 @@ class QueryEngine:
         Parameters
         ----------
         facts : the world model, such as `kind(o1,object,95).`, one fact a text, with full stops.
-        query : the body of a rule on one line; `?-` before it and a full stop after it are ignored.
+        query : the body of a rule; `?-` before it and a full stop after it are ignored.
         max_rows : the greatest number of rows of the answer; further rows are left out.
 
         Returns
         -------
         The answer: its kind ("yes", "no", "don't know", or "bindings" for rows), the names of the query's variables in
         the order in which they appear, the sorted rows of values (integers, or terms as text) for which the query
-        certainly holds, and whether rows were left out.
+        certainly holds, whether rows were left out, and the types of the variables.
 
         Raises
         ------
@@ -119,21 +152,51 @@ class QueryEngine:
         """
         text = query.strip().removeprefix("?-").strip().removesuffix(".").strip()
         _check_query(text)
-        world = parse_facts(source_from_bytes("belief", "\n".join(facts).encode("utf-8")))
-        request = {
-            "facts": [_request_entry(fact) for fact in world],
-            "query": text,
-            "rules": [one.written for one in self._rules],
-            "max_rows": max_rows,
-        }
-        found = self._worker.exchange(request, self.seconds)
+        found = self._exchange(facts, {"query": text, "max_rows": max_rows})
         if "limit" in found:
             raise QueryLimitError(f"the query was given up: {found['limit']}")
         if "rule" in found:
             raise BadInputError([self._rules[found["rule"]].problem(found["error"], hint=found["hint"])])
         if "error" in found:
             raise _query_error(text, found["error"], found["at"], found["hint"])
-        return QueryAnswer(found["answer"], tuple(found["variables"]), tuple(map(tuple, found["rows"])), found["more"])
+        return QueryAnswer(
+            found["answer"],
+            tuple(found["variables"]),
+            tuple(map(tuple, found["rows"])),
+            found["more"],
+            tuple(found["types"]),
+        )
+
+    def _exchange(self, facts: Sequence[str], request: dict[str, Any]) -> dict[str, Any]:
+        """Return the worker's response to a query over facts; the facts are sent only when it does not hold them.
+
+        The worker is ended after MAX_QUERIES_PER_WORKER queries: clingo never forgets a name, so it would grow. Raises
+        BadInputError for facts with syntax errors.
+
+        request : the query and the greatest number of rows.
+        """
+        if self._asked >= MAX_QUERIES_PER_WORKER:
+            self.close()
+        if self._facts != (asked := tuple(facts)):
+            self._facts, self._entries = asked, request_entries(facts)
+            self._number += 1
+        self._asked += 1
+        request = request | {"number": self._number}
+        found = self._worker.exchange(request, self.seconds)
+        if "unknown" in found:
+            whole = request | {"facts": self._entries, "rules": [one.written for one in self._rules]}
+            found = self._worker.exchange(whole, self.seconds)
+        return found
+
+
+def request_entries(facts: Sequence[str]) -> list[list[int | str]]:
+    """Return the facts of a world model as the worker takes them; BadInputError when a text is no fact.
+
+    facts : one fact a text, with or without full stops.
+    """
+    text = "\n".join(fact if fact.rstrip().endswith(".") else f"{fact}." for fact in facts)
+    world = parse_facts(source_from_bytes("belief", text.encode("utf-8")))
+    return [_request_entry(fact) for fact in world]
 
 
 def _request_entry(fact: Fact) -> list[int | str]:
@@ -141,20 +204,22 @@ def _request_entry(fact: Fact) -> list[int | str]:
     return [fact.name, *(term.value if isinstance(term, Number) else str(term) for term in fact.args)]
 
 
-def _query_error(text: str, what: str, at: int = 0, hint: str = "") -> BadInputError:
-    """Return the error with the message `what` at a character of the query, from 1; at the whole query for 0.
+def _query_error(text: str, what: str, at: Sequence[int] = (1, 0), hint: str = "") -> BadInputError:
+    """Return the error with the message `what` at a line and column of the query, from 1; at a whole line for column 0.
 
-    The error is returned, not raised; it carries one problem, in a file named "query", line 1.
+    The error is returned, not raised; it carries one problem, in a file named "query".
 
     text : the query. hint : a remedy, or '' for none.
     """
-    line = text.split("\n")[0]
-    span = SourceSpan(1, at, at) if 1 <= at <= len(line) else SourceSpan(1, 1, max(1, len(line)))
+    lines = text.split("\n")
+    number, column = at if at[0] <= len(lines) else (len(lines), 0)  # beyond the end: something is missing at the end
+    line = lines[number - 1]
+    span = SourceSpan(number, column, column) if 1 <= column <= len(line) else SourceSpan(number, 1, max(1, len(line)))
     return BadInputError([Problem("query", span, what, line, hint)])
 
 
 def _check_query(text: str) -> None:
-    """Raise BadInputError when a text cannot be a query: empty, too long, of several lines, with too great integers.
+    """Raise BadInputError when a text cannot be a query: empty, too long, with comments or with too great integers.
 
     Its syntax is checked by the worker.
     """
@@ -162,8 +227,8 @@ def _check_query(text: str) -> None:
         raise _query_error(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
     if len(text) > MAX_QUERY_CHARACTERS:
         raise _query_error(text[:100], f"a query has at most {MAX_QUERY_CHARACTERS} characters")
-    if "\n" in text or "%" in text:
-        raise _query_error(text, "a query is one line without comments")
+    if "%" in text:
+        raise _query_error(text, "a query has no comments")
     problems = list(integers_beyond_32_bits(source_from_bytes("query", text.encode("utf-8", errors="surrogateescape"))))
     if problems:
         raise BadInputError(problems)

@@ -7,6 +7,7 @@ variables.
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -15,22 +16,25 @@ from clingo.ast import AST, ASTType, parse_string
 
 from kb.language import operating_system
 from kb.language.diagnostics import did_you_mean
-from kb.language.vocabulary import BELIEF_PREDICATES
+from kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from kb.reasoning.rule_solver import Response, read_rule_text, solve_with_rules
 from kb.three_valued.aliases import rename_utak_to_org
 from kb.three_valued.clauses import Clause, ClauseError, global_variables, translate_rule
 from kb.three_valued.derivation import derive
 from kb.three_valued.evaluation import find_bindings
 from kb.three_valued.join_order import unsafe_variable_error
-from kb.three_valued.known_words import check_body, names_in_facts
+from kb.three_valued.known_words import ConstantNames, check_body, names_in_facts, types_of_variables
 from kb.three_valued.open_world import Beliefs, FactRow
+from kb.three_valued.provenance import certain_instances
 from kb.three_valued.term_values import Bindings
 from kb.three_valued.uncertain_values import Value
+from kb.tracing.requests import respond
 
 MAX_MEMORY_BYTES = 1_500_000_000  # bytes of address space; a convention
 # Seconds of processor time for one request; a convention, well above every limit at which the parent ends the process.
 MAX_PROCESSOR_SECONDS = 60
 QUERY_HEAD = "q__ :- "  # put before a query, to make it a rule
+NO_PLACE_IN_QUERY = (1, 0)  # line and column of an error that concerns the whole query
 
 
 class RuleError(Exception):
@@ -52,57 +56,101 @@ class QueryError(Exception):
     Attributes
     ----------
     what : the reason.
-    at : the character of the query, from 1; 0 when unknown.
+    at : line and column in the query, from 1; (1, 0) when unknown.
     """
 
-    def __init__(self, what: str, at: int = 0) -> None:
+    def __init__(self, what: str, at: tuple[int, int] = NO_PLACE_IN_QUERY) -> None:
         self.what, self.at = what, at
         super().__init__(what)
+
+
+@dataclass(frozen=True)
+class BelievedFacts:
+    """Facts and users' rules, ready for any number of queries.
+
+    Attributes
+    ----------
+    beliefs : the facts, and the atoms that the rules derive from them.
+    known : the predicates (name, number of arguments) of which queries can be made.
+    names : the constants in the facts as text, by the name of the argument type.
+    """
+
+    beliefs: Beliefs
+    known: frozenset[Signature]
+    names: ConstantNames
+
+
+def believed_facts(facts: Iterable[Sequence[int | str]], rules: Sequence[str] = ()) -> BelievedFacts:
+    """Return facts together with what users' rules derive from them.
+
+    Parameters
+    ----------
+    facts : of each fact its name and its arguments, integers or terms as text.
+    rules : users' rules, each with one atom as its head, one on a line.
+
+    Returns
+    -------
+    The value that `answer_over` takes.
+
+    Raises
+    ------
+    RuleError : a rule cannot be evaluated.
+    """
+    beliefs = Beliefs(_facts(facts))
+    signatures = beliefs.signatures()
+    defining = _clauses_of_rules(rules)
+    defined = {clause.head.signature for clause in defining if clause.head is not None}
+    try:
+        derive(defining, beliefs)
+    except ClauseError as error:
+        raise RuleError(error) from None
+    return BelievedFacts(beliefs, frozenset({*BELIEF_PREDICATES, *signatures, *defined}), names_in_facts(signatures))
 
 
 def answer_query(
     facts: Iterable[Sequence[int | str]], query: str, rules: Sequence[str] = (), max_rows: int | None = None
 ) -> Response:
-    """Return the answer to a query over facts.
+    """Return the answer to a query over facts; the parameters are those of `believed_facts` and `answer_over`.
+
+    Raises ClauseError, QueryError and RuleError as these do.
+    """
+    return answer_over(believed_facts(facts, rules), query, max_rows)
+
+
+def answer_over(believed: BelievedFacts, query: str, max_rows: int | None = None) -> Response:
+    """Return the answer to a query over facts and the atoms that rules derive from them.
 
     Parameters
     ----------
-    facts : of each fact its name and its arguments, integers or terms as text.
+    believed : the facts.
     query : the body of a rule, without a full stop.
-    rules : users' rules, each with one atom as its head, one on a line. Queries can use the predicates that they
-        define.
     max_rows : the greatest number of rows that are kept; None for all.
 
     Returns
     -------
     A dictionary of JSON values: "answer" ("bindings", "yes", "no" or "don't know"), "variables" (names, in the order in
-    which they appear), "rows" (values for which the query certainly holds, integers or terms as text, sorted; [] unless
-    the answer is "bindings") and "more" (whether rows were left out).
+    which they appear), "types" (for each variable the name of the type of the argument in which it stands; '' for
+    none), "rows" (values for which the query certainly holds, integers or terms as text, sorted; [] unless the answer
+    is "bindings") and "more" (whether rows were left out).
 
     Raises
     ------
     ClauseError : the query uses an unknown predicate, constant or construct.
     QueryError : the text is not one query.
-    RuleError : a rule cannot be evaluated.
     """
+    beliefs = believed.beliefs
+    beliefs.join_orders.clear()  # of former queries
     clauses = [rename_utak_to_org(clause) for clause in translate_rule(_query_as_rule(query))]
-    beliefs = Beliefs(_facts(facts))
-    names = names_in_facts(beliefs.signatures())
-    defining = _clauses_of_rules(rules)
-    defined = {clause.head.signature for clause in defining if clause.head is not None}
     for clause in clauses:
-        check_body(clause.body, {*BELIEF_PREDICATES, *beliefs.signatures(), *defined}, names)
-    try:
-        derive(defining, beliefs)
-    except ClauseError as error:
-        raise RuleError(error) from None
+        check_body(clause.body, believed.known, believed.names)
     variables = list(dict.fromkeys(name for clause in clauses for name in global_variables(clause.body)))
     rows: dict[FactRow, None] = {}
     for clause in clauses:
         rows |= dict.fromkeys(
             _row(found, variables, clause) for found in find_bindings(clause.body, {}, beliefs, False)
         )
-    found = {"variables": variables, "rows": [], "more": False}
+    types = {name: slot.name for clause in clauses for name, slot in types_of_variables(clause.body)}
+    found = {"variables": variables, "types": [types.get(name, "") for name in variables], "rows": [], "more": False}
     if rows:
         sorted_rows = sorted(([_json_value(value) for value in row] for row in rows), key=_sort_key)
         return (
@@ -112,6 +160,19 @@ def answer_query(
         )
     possible = any(True for clause in clauses for _ in find_bindings(clause.body, {}, beliefs, True))
     return found | {"answer": "don't know" if possible else "no"}
+
+
+def justify_rules(facts: Iterable[Sequence[int | str]], rules: Sequence[str]) -> Response:
+    """Return the instances of users' rules that certainly hold over facts, as of kb.three_valued.provenance.
+
+    facts, rules : as of `answer_query`. Raises RuleError when a rule cannot be evaluated.
+    """
+    beliefs, defining = Beliefs(_facts(facts)), _clauses_of_rules(rules)
+    try:
+        derive(defining, beliefs)
+        return certain_instances(defining, beliefs)
+    except ClauseError as error:
+        raise RuleError(error) from None
 
 
 def _clauses_of_rules(rules: Sequence[str]) -> list[Clause]:
@@ -186,44 +247,73 @@ def _json_value(term: Value) -> int | str:
 
 
 def _record_message(code: clingo.MessageCode, message: str) -> None:
-    """Append a message of clingo's to `_messages`, as a QueryError whose character counts from the start of the query.
+    """Append a message of clingo's to `_messages`, as a QueryError whose place counts from the start of the query.
 
-    code : clingo's kind of the message, which is not used. A message without a place gets the character 0.
+    code : clingo's kind of the message, which is not used. A message without a place gets NO_PLACE_IN_QUERY.
     """
     place, _, what = message.partition(": error: ")
     if not what:
         place, _, what = message.partition(": info: ")
-    column = place.split(":")[2].split("-")[0] if place.count(":") >= 2 else "0"
-    at = max(0, int(column) - len(QUERY_HEAD)) if column.isdigit() else 0
+    line, column = (place.split(":")[1], place.split(":")[2]) if place.count(":") >= 2 else ("1", "0")
+    column = column.split("-")[0]
+    at = _place_in_query((int(line), int(column))) if line.isdigit() and column.isdigit() else NO_PLACE_IN_QUERY
     _messages.append(QueryError(" ".join(what.split()) or message.strip(), at))
 
 
+def _place_in_query(at: tuple[int, int]) -> tuple[int, int]:
+    """Return a place (line, column, from 1) in the rule that a query was made, as a place in the query."""
+    line, column = at
+    return (1, max(0, column - len(QUERY_HEAD))) if line == 1 else (line, column)
+
+
 _messages: list[QueryError] = []
+_held: list[tuple[int, BelievedFacts]] = []  # the facts of the last request, with their number; at most one entry
+
+
+def _held_facts(request: dict[str, Any]) -> BelievedFacts | None:
+    """Return the facts of a request, or those with its number that are held; None when these are not held.
+
+    Facts of a request are held until other ones come.
+    """
+    number = request.get("number", 0)
+    if "facts" in request:
+        _held.clear()
+        _held.append((number, believed_facts(request["facts"], request["rules"])))
+    return next((believed for held, believed in _held if held == number), None)
 
 
 def _respond(line: bytes) -> Response:
     """Return the response to one request, a line of JSON: JSON values by key, never an exception.
 
-    A request with "read" has the response of `read_rule_text`, one with "program" that of `solve_with_rules`, any other
-    that of `answer_query`. An error is {"error": message, "at": character from 1 or 0, "hint"}, with "rule" (index from
-    0) in the place of "at" for an error in a rule; {"limit": reason} when memory runs out.
+    A request with "read" has the response of `read_rule_text`, one with "justify" that of `justify_rules`, one
+    with "trace" that of kb.tracing.requests, one with "program" that of `solve_with_rules`, any other that of
+    `answer_over`; {"unknown": number} when it has no facts, and those with its number are not held. An error is
+    {"error": message, "at": [line, column] or [1, 0], "hint"}, with "rule" (index from 0) in the place of "at" for an
+    error in a rule; {"limit": reason} when memory runs out.
     """
     _messages.clear()
     try:
         request = json.loads(line)
         if "read" in request:
             return read_rule_text(request["read"])
+        if "justify" in request:
+            return justify_rules(request["facts"], request["rules"])
+        if "trace" in request:
+            return respond(request["trace"])
         if "program" in request:
             return solve_with_rules(request["program"], request["rules"], request["heads"], request["conflicts"])
-        found = answer_query(request["facts"], request["query"], request["rules"], request.get("max_rows"))
+        believed = _held_facts(request)
+        if believed is None:
+            return {"unknown": request["number"]}
+        found = answer_over(believed, request["query"], request.get("max_rows"))
     except QueryError as error:
         return {"error": error.what, "at": error.at, "hint": ""}
     except RuleError as bad:
         return {"error": bad.error.what, "rule": bad.error.at[0] - 1, "hint": bad.error.hint}
     except ClauseError as error:
-        return {"error": error.what, "at": max(0, error.at[1] - len(QUERY_HEAD)), "hint": error.hint}
+        return {"error": error.what, "at": _place_in_query(error.at), "hint": error.hint}
     except RecursionError:
-        return {"error": "it is nested too deep", "at": 0, "hint": ""}
+        return {"error": "it is nested too deep", "at": NO_PLACE_IN_QUERY, "hint": ""}
     except MemoryError:
         return {"limit": "it needs too much memory"}
     except RuntimeError as error:

@@ -22,6 +22,7 @@ from clingo.ast import (
 
 from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
+from kb.tracing.syntax import global_variables_of
 
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
 # Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
@@ -53,8 +54,9 @@ def read_statements(text: str) -> list[dict[str, Any]]:
     One dictionary of JSON values for each rule, `#minimize`, weak constraint and `#defined`: "at" (line and column,
     from 1), "heads" (the atoms stated or chosen) and "body" (those on which they depend), lists of dictionaries with
     the keys name, arity, at, constants, places and negative; "text" (the statement with checked arithmetic), "written"
-    (as the user wrote it, constants replaced), "plain" (whether it is a rule with one atom, not negated, as its head)
-    and "declares" ([name, number of arguments] of a `#defined`, else None). Other statements are left out.
+    (as the user wrote it, constants replaced), "plain" (whether it is a rule with one atom, not negated, as its head),
+    "variables" (the names of its global variables) and "declares" ([name, number of arguments] of a `#defined`, else
+    None). Other statements are left out.
 
     Raises
     ------
@@ -84,13 +86,13 @@ def _kept(node: AST) -> bool:
 def _entry(node: AST) -> dict[str, Any]:
     """Return a statement as a dictionary of JSON values.
 
-    The keys are at, heads, body, text, written, plain and declares (see `read_statements`): its place, the atoms that
-    it states, those on which they depend, the statement with checked arithmetic and as written, whether its head is one
-    atom, and the predicate of a `#defined` or None.
+    The keys are at, heads, body, text, written, plain, variables and declares (see `read_statements`): its place, the
+    atoms that it states, those on which they depend, the statement with checked arithmetic and as written, whether its
+    head is one atom, its global variables, and the predicate of a `#defined` or None.
     """
     if node.ast_type == ASTType.Defined:
         entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
-        return entry | {"declares": [node.name, node.arity]}
+        return entry | {"variables": [], "declares": [node.name, node.arity]}
     chosen, conditions = _split_head(node.head) if node.ast_type == ASTType.Rule else ([], [])
     heads = [atom for part in chosen for atom in _atoms(part)]
     body = [atom for part in (*node.body, *conditions) for atom in _atoms(part)]
@@ -101,6 +103,7 @@ def _entry(node: AST) -> dict[str, Any]:
         "text": str(_ArithmeticRewriter().visit(node)),
         "written": str(node),
         "plain": _is_plain(node),
+        "variables": list(global_variables_of(node)),
         "declares": None,
     }
 

@@ -79,6 +79,7 @@ class Statement:
     is_single_atom_rule : whether it is a rule with one atom as its head.
     declares : the predicate (name, number of arguments) of a `#defined`, which states nothing; None for other
         statements.
+    variables : the names of its global variables, in the order of the text.
     """
 
     source: Source
@@ -89,6 +90,7 @@ class Statement:
     written: str
     is_single_atom_rule: bool
     declares: Signature | None
+    variables: tuple[str, ...]
 
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
         """Return the problem `what` at the statement's place, or at another line and column (from 1).
@@ -105,10 +107,10 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
     """Return a statement from the JSON values of the worker (kb.reasoning.rule_reader.read_statements).
 
     It holds the source, the place (line, column, from 1), the atoms that it states and those on which they depend, its
-    text with checked arithmetic and as written, whether its head is one atom, and what it declares.
+    text with checked arithmetic and as written, whether its head is one atom, what it declares, and its variables.
 
-    source : the text of the file. entry : one of the dictionaries, with the keys at, heads, body, text, written, plain
-        and declares.
+    source : the text of the file. entry : one of the dictionaries, with the keys at, heads, body, text, written, plain,
+        variables and declares.
     """
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
@@ -121,6 +123,7 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
         written=entry["written"],
         is_single_atom_rule=entry["plain"],
         declares=declares,
+        variables=tuple(entry["variables"]),
     )
 
 
@@ -168,6 +171,12 @@ class Rulebook:
         problems = [problem for one in self.statements for problem in self._without_effect(one)]
         if problems:
             raise BadInputError(problems)
+
+    @property
+    def predicates(self) -> frozenset[Signature]:
+        """All predicates (name, number of arguments) that these rules name or declare."""
+        named = {atom.signature for one in self.statements for atom in (*one.heads, *one.body)}
+        return frozenset(named | self._declared)
 
     def rules_reaching(self, encoding: str) -> tuple[Statement, ...]:
         """Return the rules that take part in an encoding, in the order of the files; () for none.

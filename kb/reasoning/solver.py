@@ -11,7 +11,7 @@ from typing import Any
 
 import clingo
 
-from kb.reasoning.decisions import note_answer
+from kb.tracing.decisions import note_answer
 
 KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
@@ -27,7 +27,7 @@ def solve(
     """Return the shown atoms of the best answer set found.
 
     The same files and facts are answered from a cache: an answer depends on nothing else. Each answer is noted in the
-    record of kb.reasoning.decisions that is open, if one is.
+    record of kb.tracing.decisions that is open, if one is.
 
     Parameters
     ----------

@@ -7,7 +7,8 @@ too much memory or is no rule at all is only an error of its file. The rules are
 
 import atexit
 import re
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,14 +20,16 @@ from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import MAX_TERM_DEPTH, facts_from_text
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
-from kb.language.tokens import tokenize
+from kb.language.tokens import Token, tokenize
 from kb.language.vocabulary import Signature
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
+from kb.reasoning.sentences import RuleWords, read_sentences
 from kb.reasoning.solver import KB_ENCODINGS
 from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
+TOKENS_BETWEEN_CLOCKS = 1000  # tokens read between two looks at the clock: some milliseconds
 MAX_CONFLICTS = 100_000  # conflicts of clingo's search for the best answer; bounds it on every machine alike
 
 
@@ -66,7 +69,12 @@ def read_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) ->
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors; carries all of them.
     """
-    return _rulebook(tuple(read_source(path) for path in paths), limits.seconds)
+    return _rulebook(sources_of(paths), limits.seconds)
+
+
+def sources_of(paths: Sequence[Path | str]) -> tuple[Source, ...]:
+    """Return the texts of some files, in order; raise CannotOpenError or BadInputError where one cannot be read."""
+    return tuple(read_source(path) for path in paths)
 
 
 def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
@@ -90,7 +98,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
     CannotOpenError : a file cannot be read.
     BadInputError : the rules have errors, or the test fails.
     """
-    rules = read_rules(paths, limits)
+    return read_tested_sources(sources_of(paths), limits)
+
+
+def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIMITS) -> Rulebook:
+    """Return the rules of some texts after the test of `read_tested_rules`, with the same limits and errors."""
+    rules = _rulebook(tuple(sources), limits.seconds)
     if rules.self_contained:
         _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
@@ -98,10 +111,12 @@ def read_tested_rules(paths: Sequence[Path | str], limits: RuleLimits = RULE_LIM
             encoding = (KB_ENCODINGS / f"{name}.lp").read_text()
             _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
     if rules.query_rules:
-        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules]}
-        found = _worker().exchange(asked, limits.seconds)
+        asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules], "number": 0}
+        found = rules_worker().exchange(asked, limits.seconds)
         if "rule" in found:
             raise BadInputError([rules.query_rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+        if "limit" in found:
+            raise _error_at_first_rule(rules.query_rules, f"these rules were given up: {found['limit']}, in queries")
     return rules
 
 
@@ -133,10 +148,17 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
 
     seconds : the limit of wall-clock time.
     """
-    problems = [*integers_beyond_32_bits(source), *_not_allowed(source)]
+    end = time.monotonic() + seconds
+    try:
+        problems = list(_not_allowed(source, _until(end, tokenize(source, []))))
+        if not problems:
+            problems = list(integers_beyond_32_bits(source, _until(end, tokenize(source, []))))
+    except TimeoutError:
+        what = f"these rules were given up: it took more than {seconds:g} seconds to read them"
+        raise BadInputError([source.problem(source.start(), what)]) from None
     if problems:
         raise BadInputError(problems)
-    found = _worker().exchange({"read": source.text}, seconds)
+    found = rules_worker().exchange({"read": source.text}, max(0.0, end - time.monotonic()))
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
@@ -145,17 +167,38 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
         raise BadInputError([source.problem(_span(found["at"]), found["error"], found["hint"])])
     if not found["statements"]:
         raise BadInputError([source.problem(source.start(), "there is no rule in this file")])
-    return [statement_of(source, entry) for entry in found["statements"]]
+    statements = [statement_of(source, entry) for entry in found["statements"]]
+    _, wrong = words_of_rules(source, statements)
+    if wrong:
+        raise BadInputError(wrong)
+    return statements
 
 
-def _not_allowed(source: Source) -> Iterator[Problem]:
+def words_of_rules(source: Source, statements: Sequence[Statement]) -> tuple[RuleWords, tuple[Problem, ...]]:
+    """Return the sentences of a user's rules (kb.reasoning.sentences), and the problems of its annotations.
+
+    source : the text of a file. statements : the statements of that file.
+    """
+    rules = [(one.at, one.variables) for one in statements if one.declares is None]
+    return read_sentences(source, rules)
+
+
+def _until(end: float, tokens: Iterable[Token]) -> Iterator[Token]:
+    """Yield tokens; raise TimeoutError after the moment `end`, in seconds of the monotonic clock."""
+    for number, token in enumerate(tokens):
+        if number % TOKENS_BETWEEN_CLOCKS == 0 and time.monotonic() > end:
+            raise TimeoutError
+        yield token
+
+
+def _not_allowed(source: Source, tokens: Iterable[Token]) -> Iterator[Problem]:
     """Yield the problems of what must not reach clingo: `#include`, and brackets nested so deep that it would crash.
 
     One for each `#include` in the order of the text; nothing after the first bracket that is nested more than
-    MAX_TERM_DEPTH deep.
+    MAX_TERM_DEPTH deep. `tokens` are those of the source.
     """
     depth = 0
-    for token in tokenize(source, []):
+    for token in tokens:
         if token.text == "#include":
             yield source.problem(token.span, "#include is not allowed", "give each file with a --kb of its own")
         depth += (token.text == "(") - (token.text == ")")
@@ -218,7 +261,7 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
     request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
-    found = _worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
+    found = rules_worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
     if "limit" in found:
         where = f", in {name}" if name else ""
         raise _error_at_first_rule(reaching, f"these rules were given up: {found['limit']}{where}")
@@ -287,7 +330,7 @@ def _error_at_first_rule(reaching: Sequence[Statement], what: str) -> BadInputEr
 
 
 @cache
-def _worker() -> Worker:
+def rules_worker() -> Worker:
     """Return the handle of the separate process that all users' rules of this process share; it is ended at exit."""
     worker = Worker()
     atexit.register(worker.close)

@@ -26,6 +26,11 @@ class Worker:
         self._process: subprocess.Popen[bytes] | None = None
         self._lines: LineQueue = queue.SimpleQueue()
 
+    @property
+    def process_id(self) -> int | None:
+        """The number of the process; None while none runs."""
+        return None if self._process is None else self._process.pid
+
     def close(self) -> None:
         """End the process, if one runs; the next request starts another one."""
         worker, self._process = self._process, None

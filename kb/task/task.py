@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.reader import parse_facts
+from kb.language.reader import facts_from_text, parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term
 from kb.language.vocabulary import GOAL_VOCABULARY, RESERVED_PARAMETER_NAMES, START_VOCABULARY, Vocabulary, check_facts
@@ -143,6 +143,41 @@ def read_start(path: Path | str) -> tuple[Fact, ...]:
     if problems:
         raise BadInputError(problems)
     return start_facts
+
+
+def task_with_goals(task: Task, source: Source) -> Task:
+    """Return a task with other goals.
+
+    Parameters
+    ----------
+    task : the task whose parameters and claims are kept.
+    source : the goals, as in goal.lp, and perhaps further parameters and claims, as in start.lp.
+
+    Returns
+    -------
+    The task, checked: its goals are those of the source.
+
+    Raises
+    ------
+    BadInputError : the text has errors; carries all of them.
+    """
+    facts = parse_facts(source)
+    problems = check_facts(source, facts, {**START_VOCABULARY, **GOAL_VOCABULARY})
+    if problems:
+        raise BadInputError(problems)
+    goals = tuple(fact for fact in facts if fact.name in GOAL_VOCABULARY)
+    new = tuple(fact for fact in facts if fact.name not in GOAL_VOCABULARY)
+    kept = facts_from_text("".join(f"{fact}.\n" for fact in start_facts_of(task)), "start.lp")
+    return task_of(source, (*(fact for fact in kept if fact not in new), *new), source, goals)
+
+
+def start_facts_of(task: Task) -> Iterator[str]:
+    """Yield the facts of start.lp that introduce a task's parameters and claims, without full stops."""
+    for name, parameter in task.parameters.items():
+        yield f"{parameter.kind}({name})"
+    for claim in task.claims:
+        certain = claim.confidence == CERTAIN_CONFIDENCE
+        yield str(claim.fact) if certain else f"confidence({claim.fact},{claim.confidence})"
 
 
 def task_of(start: Source, start_facts: tuple[Fact, ...], goal: Source, goal_facts: tuple[Fact, ...]) -> Task:

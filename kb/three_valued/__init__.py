@@ -11,6 +11,7 @@ term_values       the values of terms whose variables are bound
 evaluation        the bindings with which a body holds or may hold
 aggregates        the value of an aggregate with uncertain elements
 derivation        atoms that rules derive from the believed facts
+provenance        which rule instances derive the certain atoms
 aliases           `utak` in queries, which facts call `org`
 known_words       the check of predicates and constants in queries and rules
 

@@ -128,6 +128,19 @@ def _conjunctions(body: Sequence[Literal]) -> Iterator[tuple[Literal, ...]]:
             yield from _conjunctions((*part, *(one for one in body if isinstance(one, Atom))))
 
 
+def types_of_variables(body: Sequence[Literal]) -> Iterator[tuple[str, ArgumentType]]:
+    """Yield the name of each variable that stands in an atom of the world model, with the type of that argument.
+
+    Atoms of the body itself count, not those inside aggregates and conditions; numbers count, too. A variable comes
+    once for each place in which it stands, the places in order.
+    """
+    for atom in body:
+        if isinstance(atom, Atom) and atom.signature in BELIEF_PREDICATES:
+            for slot, part in zip(BELIEF_PREDICATES[atom.signature].arguments, atom.parts, strict=True):
+                if isinstance(part, Variable):
+                    yield part.name, slot
+
+
 def _variable_types(atom: Atom) -> Iterator[tuple[str, ArgumentType]]:
     """Yield the name of each variable among the arguments of an atom with its argument type; numbers are left out.
 

@@ -8,6 +8,8 @@ from kb.three_valued.uncertain_values import Unknown, Value, compare
 
 FactRow = tuple[Value, ...]  # the arguments of one fact
 OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
+PARAMETER_SIGNATURE = ("parameter", 1)  # the parameters of the task
+TASK_SIGNATURES = frozenset({PARAMETER_SIGNATURE, ("bound", 2)})  # these are about parameters, not about things
 
 
 class Beliefs:
@@ -38,11 +40,13 @@ class Beliefs:
         self.known_names = frozenset(
             str(row[declared.subject])
             for signature, declared in BELIEF_PREDICATES.items()
+            if signature not in TASK_SIGNATURES
             for row in self._rows.get(signature, ())
         )
         counts = [row[1] for row in self._rows.get(("unseen", 2), ())]
         self.everything_seen = not any(isinstance(count, int) and count > 0 for count in counts)
         self._objects = sorted(row[0] for row in self._rows.get(OBJECT_SIGNATURE, ()))
+        self._parameters = sorted(row[0] for row in self._rows.get(PARAMETER_SIGNATURE, ()))
 
     def signatures(self) -> dict[Signature, list[FactRow]]:
         """Return the predicates (name, number of arguments) that certainly hold of something, each with its rows.
@@ -139,14 +143,19 @@ class Beliefs:
         """Yield the rows that may hold for things not seen yet, and for known things without such a fact.
 
         At most one row for all things not seen yet, with a new name as its subject; then one for each such known thing,
-        sorted in clingo's order. All other arguments are `Unknown`. Nothing for a predicate of which all facts are
-        known.
+        or for each such parameter of the task, sorted in clingo's order. All other arguments are `Unknown`. Nothing for
+        a predicate of which all facts are known.
 
         signature : the predicate, (name, number of arguments).
         declared : what the vocabulary says of the predicate: types of arguments, and how far it is open.
         subject : the value of the argument that the fact is about; None when it is open.
         """
         if declared.open is Openness.NEVER:
+            return
+        if declared.open is Openness.UNBOUND:
+            for name in self._parameters:
+                if subject in (None, name) and not self._stated(signature, [name, None]):
+                    yield self._row(declared, name)
             return
         if not self.everything_seen and (subject is None or str(subject) not in self.known_names):
             yield self._row(declared, Unknown(new=True))

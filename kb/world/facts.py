@@ -43,7 +43,13 @@ class Places(NamedTuple):
     corners: Mapping[str, Corner]
 
 
-def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound: Mapping[str, str]) -> dict[str, Any]:
+def belief(
+    model: WorldModel,
+    places: Places,
+    accommodated: Accommodation,
+    bound: Mapping[str, str],
+    parameters: Iterable[str] = (),
+) -> dict[str, Any]:
     """Return the `belief` of an episode's line, ready for JSON.
 
     Parameters
@@ -57,6 +63,8 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
         160 fields.
     bound : mapping of str to str
         Name of a parameter of the task -> name of the node of the model that it means.
+    parameters : iterable of str
+        The names of all parameters of the task that stand for objects.
 
     Returns
     -------
@@ -65,11 +73,12 @@ def belief(model: WorldModel, places: Places, accommodated: Accommodation, bound
         robot frame is turned against the grid of squares, in degrees, counter-clockwise positive, -44 to 45. pose: the
         kind of the explanation, such as predicted, blocked or lost. cells: how many of the 160 fields were predicted,
         explained or noise; kinds without any are left out. bound: the bindings, as given. facts: the facts of the world
-        model as text, sorted, with full stops. Further keys say what all this rests on (`kb.world.evidence`).
+        model and of the bindings as text, sorted, with full stops. Further keys say what all this rests on
+        (`kb.world.evidence`).
     """
     cells = Counter(str(status) for status in accommodated.fields.status)
     east, north = model.frame.place_to_utak(*model.place)
-    facts = sorted(f"{fact}." for fact in model_facts(model, places))
+    facts = sorted(f"{fact}." for fact in (*model_facts(model, places), *binding_facts(bound, parameters)))
     return {
         "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
         "lattice": model.frame.angle,
@@ -89,11 +98,30 @@ def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
     return {fact[len("kind(") : fact.index(",")]: fact for fact in kinds}
 
 
+def binding_facts(bound: Mapping[str, str], parameters: Iterable[str]) -> Iterator[str]:
+    """Yield `parameter(X)` for each parameter of the task, then `bound(X,N)` for each that is bound; no full stops.
+
+    Parameters
+    ----------
+    bound : mapping of str to str
+        Name of a parameter -> name of the node that it means.
+    parameters : iterable of str
+        The names of the parameters that stand for objects; those that are bound need not be among them.
+
+    Yields
+    ------
+    str
+        One fact, such as `bound(x,o2)`; each kind is sorted by the name of the parameter.
+    """
+    yield from (f"parameter({name})" for name in sorted({*parameters, *bound}))
+    yield from (f"bound({name},{node})" for name, node in sorted(bound.items()))
+
+
 def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     """Yield the world model, its rooms, doors and corners as facts without their full stops.
 
     The predicates are node/1, kind/3, child/2, offset/3, held/1, rect/5, segment/7, shape/3, colour/3, movable/2, in/2,
-    adjacent/2, room/1, unseen/2, door/1, width/2, connects/3, corner/3, junction/4, link/5 and crosses/2.
+    adjacent/2, room/1, unseen/2, door/1, width/2, threshold/5, connects/3, corner/3, junction/4, link/5 and crosses/2.
     Coordinates are hundredths of squares in the robot frame, those of offset/3 relative to the parent node; confidences
     are percent.
 
@@ -296,8 +324,8 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of rooms and doors, without full stops.
 
     These are room/1, unseen/2 (the number of squares of the room that no count settles), in/2 for the robot, and for
-    each door that counts as such door/1, width/2 (hundredths of squares) and connects/3, both ways round. Rooms r1, r2,
-    ... come first, in order, then the doors in the order of `rooms`.
+    each door that counts as such door/1, width/2 and threshold/5 (hundredths of squares) and connects/3, both ways
+    round. Rooms r1, r2, ... come first, in order, then the doors in the order of `rooms`.
     """
     unseen = np.bincount(rooms.labels[model.view.state == OPEN], minlength=int(rooms.labels.max(initial=0)) + 1)
     for room in range(1, len(unseen)):
@@ -309,6 +337,8 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     for door in rooms.sure:
         yield f"door({door.name})"
         yield f"width({door.name},{_hundredths(door.width)})"
+        ends = [_hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
+        yield f"threshold({door.name},{','.join(map(str, ends))})"
         yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))
 
 

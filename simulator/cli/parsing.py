@@ -1,16 +1,34 @@
 """The command line of `utak`: its subcommands and their options."""
 
 import argparse
+from typing import Any
 
-from simulator.cli.commands import query, repl, replay, routes, run, test, warm
-from simulator.cli.commands.files import check, new, show
+from simulator.cli.commands import explain, query, repl, replay, routes, run, schema, sweep, test, warm
+from simulator.cli.commands.files import check, import_scenario, new, show
 
-COMMANDS = (run, test, check, show, new, query, repl, replay, routes, warm)  # in the order of the help text
+# In the order of the help text.
+COMMANDS = (run, test, sweep, check, show, new, import_scenario, query, repl, explain, replay, routes, schema, warm)
 # The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "
     "74 a standard stream failed; 75 limit; 130 interrupted; 141 the reader of the output went away"
 )
+
+
+class IntermixedParser(argparse.ArgumentParser):
+    """A parser that takes options also between positional arguments, which argparse takes in one piece only."""
+
+    _within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Return the options and the arguments that are left, as argparse does."""
+        if self._within:
+            return super().parse_known_args(args, namespace)
+        self._within = True
+        try:
+            return super().parse_known_intermixed_args(args, namespace)
+        finally:
+            self._within = False
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -20,7 +38,7 @@ def build_parser() -> argparse.ArgumentParser:
         description="Utak, a simulated robot that sees coarsely, believes with confidence and solves spatial tasks.",
         epilog=EXIT_CODES,
     )
-    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=IntermixedParser)
     for command in COMMANDS:
         command.add(parts)
     return top

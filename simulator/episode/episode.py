@@ -5,7 +5,7 @@ Every line is written and flushed before the next command is given. So a killed 
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -15,10 +15,10 @@ from typing import Any, BinaryIO
 
 from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
+from simulator.episode.forms import KeyPath, complaints
 from simulator.episode.output_files import is_episode, keep_first, open_for_writing
-from simulator.episode.wellformed import HEADER_CHECK, RESULT_CHECK, STEP_CHECK, KeyPath, column
+from simulator.episode.wellformed import END, EPISODE_VERSION, HEADER, STEP, column
 
-EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
 MAX_EPISODE_BYTES = 500_000_000  # bytes; a convention
 
@@ -80,10 +80,11 @@ def read_episode(path: Path | str) -> Episode:
             raise _damaged(name, number + 2, f"step {number} is missing")
     problems: list[Problem] = []
     for number, raw in enumerate(lines):
-        check = HEADER_CHECK if number == 0 else STEP_CHECK if number < len(rows) else RESULT_CHECK
+        form = HEADER if number == 0 else STEP if number < len(rows) else END
         row = rows[number] if number < len(rows) else {"result": result}
         problems += (
-            _located(name, number + 1, raw, *complaint) for complaint in islice(check(row, ()), MAX_PROBLEMS_PER_FILE)
+            _located(name, number + 1, raw, *complaint)
+            for complaint in islice(complaints(form, row), MAX_PROBLEMS_PER_FILE)
         )
         if problems:
             raise BadInputError(problems)
@@ -145,6 +146,14 @@ def _damaged(path: str, number: int, what: str, column: int = 1) -> BadInputErro
     return BadInputError([Problem(path, SourceSpan(number, column, column), what)])
 
 
+def _was_changed(row: bytes) -> bool:
+    """Return whether a header states changes of the run from outside (simulator.run.changes)."""
+    with suppress(ValueError):
+        head = json.loads(row)
+        return isinstance(head, dict) and bool(head.get("changes"))
+    return False
+
+
 def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> Problem:
     """Return the problem of a value, placed at the key that leads to it."""
     at = column(raw.decode("utf-8"), where)
@@ -162,14 +171,21 @@ class EpisodeLog:
         out
         again byte for byte; a last line that was cut short is dropped.
     force : overwrite a file that is no episode.
+    listen : called with each line once it is written.
 
     Raises
     ------
     CannotOpenError : there is nothing to resume, or `simulator.episode.output_files` refuses the file.
     """
 
-    def __init__(self, path: Path | str | None, resume: bool = False, force: bool = False) -> None:
-        self._path = path
+    def __init__(
+        self,
+        path: Path | str | None,
+        resume: bool = False,
+        force: bool = False,
+        listen: Callable[[EpisodeLine], None] = lambda line: None,
+    ) -> None:
+        self._path, self._listen = path, listen
         self._number = 0
         self._recorded: Sequence[bytes] = ()
         self._stream: BinaryIO | None = None
@@ -207,6 +223,8 @@ class EpisodeLog:
         if self._number <= len(self._recorded):
             if text.encode("ascii") != self._recorded[self._number - 1]:
                 what = "the run does not repeat this line: another scenario, other options or another version of utak"
+                if self._number == 1 and _was_changed(self._recorded[0]):
+                    what = "this run was changed at the prompt, so `utak run` cannot repeat it: `utak repl` can"
                 raise _damaged(str(self._path), self._number, what)
         elif self._stream is not None:
             try:
@@ -216,3 +234,4 @@ class EpisodeLog:
                 raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
         elif self._path == STANDARD_OUTPUT:
             print(text, end="", flush=True)
+        self._listen(line)

@@ -31,6 +31,11 @@ def is_svg(head: bytes) -> bool:
     return re.match(rb"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*|<!DOCTYPE[^>]*>\s*)*<svg\b", head, re.DOTALL) is not None
 
 
+def is_junit(head: bytes) -> bool:
+    """Return whether a file with these first bytes holds the outcomes of tests as JUnit XML."""
+    return re.match(rb"\s*(<\?xml[^>]*>\s*)?<testsuites?\b", head) is not None
+
+
 def open_for_writing(path: Path | str, kind: Kind, name: str, force: bool = False) -> BinaryIO:
     """Return a file for writing, positioned at its start, with its contents kept; a new file is made if needed.
 

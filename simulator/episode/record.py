@@ -1,17 +1,27 @@
 """The values in an episode's lines: options, world and task in its header, commands and motions in its steps."""
 
 import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import shapely
 
 from geometry.motion.se2 import Motion, Translate
 from kb.body import Command, Grasp, Release, Turn
-from kb.language.source_text import read_source
-from simulator.episode.episode import EPISODE_VERSION, EpisodeLine
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.language.reader import facts_from_text, parse_facts
+from kb.language.source_text import Source, read_source, source_from_bytes
+from kb.language.vocabulary import GOAL_VOCABULARY, START_VOCABULARY, check_facts
+from kb.task.task import Task, task_of
+from kb.world.facts import binding_facts
+from simulator.episode.episode import EpisodeLine
+from simulator.episode.wellformed import EPISODE_VERSION
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import Thing, World
+
+SETTING_NAMES = ("seed", "noise", "paths", "max_steps", "pull")  # options of an episode that are settings of a run
 
 
 def action_entry(command: Command | None) -> EpisodeLine | None:
@@ -40,14 +50,13 @@ def motion_entry(motion: Motion | None) -> EpisodeLine | None:
 def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
     """Return the first line of an episode: options, world and task, without times and paths."""
     world, task = scenario.world, scenario.task
-    rules = [read_source(path).text for path in settings.kb_files]
     options = {
         "seed": settings.seed,
         "noise": settings.noise,
         "paths": settings.paths,
         "max_steps": settings.max_steps,
         "pull": settings.pull,
-        "kb": [hashlib.sha256(text.encode()).hexdigest() for text in rules],
+        "kb": rule_sums(settings.kb_files),
     }
     task_entry = {
         "parameters": {name: parameter.kind for name, parameter in task.parameters.items()},
@@ -62,6 +71,44 @@ def header(scenario: Scenario, settings: Settings) -> EpisodeLine:
         "world": _world_entry(world),
         "task": task_entry,
     }
+
+
+def rules_sum(path: str) -> str:
+    """Return the SHA-256 sum of a file of rules, in hexadecimal digits, by which an episode names it."""
+    return hashlib.sha256(read_source(path).text.encode()).hexdigest()
+
+
+def recorded_task(name: str, entry: EpisodeLine) -> Task:
+    """Return the task in an episode's header.
+
+    Parameters
+    ----------
+    name : the name of the episode, for messages.
+    entry : the task as `header` states it.
+
+    Returns
+    -------
+    The task.
+
+    Raises
+    ------
+    BadInputError : the entry states no task; the place in it is line 1 of the episode.
+    """
+    try:
+        claims = [f"confidence({fact}, {int(confidence)})." for fact, confidence in entry["claims"]]
+        parameters = [f"{kind}({parameter})." for parameter, kind in entry["parameters"].items()]
+        start, goal = (
+            source_from_bytes(name, "\n".join(lines).encode("utf-8"))
+            for lines in ([*parameters, *claims], [f"{fact}." for fact in entry["goals"]])
+        )
+        start_facts, goal_facts = parse_facts(start), parse_facts(goal)
+        problems = check_facts(start, start_facts, START_VOCABULARY) + check_facts(goal, goal_facts, GOAL_VOCABULARY)
+        if problems:
+            raise BadInputError(problems)
+        return task_of(start, start_facts, goal, goal_facts)
+    except (BadInputError, TypeError, ValueError) as bad:
+        why = bad.problems[0].what if isinstance(bad, BadInputError) else "a claim is no fact with a confidence"
+        raise BadInputError([Problem(name, SourceSpan(1, 1, 1), f"task: {why}: the episode is damaged")]) from None
 
 
 def _world_entry(world: World) -> EpisodeLine:
@@ -95,6 +142,97 @@ def recorded_world(head: EpisodeLine) -> World:
     verge = shapely.MultiPolygon([shapely.Polygon(rings[0], rings[1:]) for rings in entry["verge"]])
     movable, fixed = (tuple(_thing(*item) for item in entry[kind].items()) for kind in ("movable", "fixed"))
     return World(int(width), int(height), verge, movable, fixed, (0.0, 0.0), int(entry["heading"]))
+
+
+def facts_of_line(line: EpisodeLine, parameters: Mapping[str, Any] | None = None) -> list[str]:
+    """Return the world model in an episode's line as facts; [] when it has none.
+
+    Older episodes state what the parameters mean beside their facts; it is added as facts.
+
+    Parameters
+    ----------
+    line : the line of a step.
+    parameters : the kinds of the task's parameters by name (text, or values with the attribute `kind`); None for none.
+    """
+    believed: Any = line.get("belief")
+    facts: Any = believed.get("facts") if isinstance(believed, dict) else None
+    if not isinstance(facts, list):
+        return []
+    found = [str(fact) for fact in facts]
+    bound = believed.get("bound")
+    if isinstance(bound, dict) and not any(fact.startswith(("parameter(", "bound(")) for fact in found):
+        kinds = {name: getattr(kind, "kind", kind) for name, kind in (parameters or {}).items()}
+        names = [name for name, kind in kinds.items() if kind == "object"]
+        found += [f"{fact}." for fact in binding_facts({str(x): str(node) for x, node in bound.items()}, names)]
+    return found
+
+
+def recorded_scenario(head: EpisodeLine, waking: EpisodeLine) -> Scenario:
+    """Return the scenario of an episode, so that its run can be repeated.
+
+    Parameters
+    ----------
+    head : the header of the episode.
+    waking : the line of its step 0, which says where Utak woke.
+
+    Returns
+    -------
+    The world, the task and the expectations.
+
+    Raises
+    ------
+    BadInputError : the task in the header has errors.
+    KeyError, TypeError or ValueError : the header is not as `header` makes it.
+    """
+    world, entry = recorded_world(head), head["task"]
+    x, y = waking["utak"]
+    verge = world.verge.geoms[0] if len(world.verge.geoms) == 1 else world.verge
+    start = [f"{kind}({name})" for name, kind in entry["parameters"].items()]
+    start += [f"confidence({fact},{int(confidence)})" for fact, confidence in entry["claims"]]
+    sources = [Source("start.lp", _as_text(start)), Source("goal.lp", _as_text(entry["goals"]))]
+    facts = [parse_facts(source) for source in sources]
+    for source, stated, vocabulary in zip(sources, facts, (START_VOCABULARY, GOAL_VOCABULARY), strict=True):
+        if problems := check_facts(source, stated, vocabulary):
+            raise BadInputError(problems)
+    expected = entry["expect"]
+    return Scenario(
+        replace(world, verge=verge, utak=(float(x), float(y))),
+        task_of(sources[0], facts[0], sources[1], facts[1]),
+        None if expected is None else facts_from_text(_as_text(expected), "expect.lp"),
+    )
+
+
+def _as_text(facts: Iterable[str]) -> str:
+    """Return facts without full stops as the text of a fact file."""
+    return "".join(f"{fact}.\n" for fact in facts)
+
+
+def recorded_settings(head: EpisodeLine, kb_files: tuple[str, ...]) -> Settings:
+    """Return the options of an episode.
+
+    Parameters
+    ----------
+    head : the header of the episode.
+    kb_files : the paths of the users' rules with which it was made; a header holds only their sums.
+
+    Returns
+    -------
+    The settings of the run.
+
+    Raises
+    ------
+    ValueError : the rule files are others than those of the episode; the message says so.
+    """
+    options = dict(head["options"])
+    sums = options.pop("kb")
+    if sums != rule_sums(kb_files):
+        raise ValueError(f"it was made with {len(sums)} rule files, which must be given again with --kb")
+    return Settings(kb_files=kb_files, **{name: value for name, value in options.items() if name in SETTING_NAMES})
+
+
+def rule_sums(kb_files: tuple[str, ...]) -> list[str]:
+    """Return the SHA-256 sums of rule files in order, as a header holds them."""
+    return [rules_sum(path) for path in kb_files]
 
 
 def _thing(name: str, entry: EpisodeLine) -> Thing:

@@ -1,214 +1,169 @@
-"""The check of episodes: whether every value in a line is as simulator.episode.record writes it (docs/files.md).
-
-A check takes a value and the keys that lead to it, and yields complaints. The functions below return such checks.
-"""
-
-import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-from typing import Any
+"""The forms of an episode's lines: every value that simulator.episode.record and the robot write (docs/files.md)."""
 
 from kb.body import DIRECTIONS
-from kb.language.vocabulary import MAX_TABLE_SIDE
+from kb.language.vocabulary import MAX_TABLE_SIDE, VERDICT_WORDS
+from simulator.episode.forms import (
+    AnyOf,
+    Anything,
+    ByKind,
+    Characters,
+    Form,
+    IfKey,
+    KeyPath,
+    Keys,
+    ListOf,
+    NamesTo,
+    Noted,
+    Numeric,
+    OneOf,
+    OrNull,
+    Row,
+    Whole,
+)
 from simulator.scenario.settings import PATH_CHOICES
 
-KeyPath = tuple[str, ...]  # the keys that lead to a value
-LineComplaint = tuple[KeyPath, str]  # the place of a value, and what is wrong with it
-ValueCheck = Callable[[Any, KeyPath], Iterator[LineComplaint]]  # yields the complaints about a value
-
-MAX_TEXT_CHARACTERS = 100_000  # characters of a string; a convention
+EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
 TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
-FACT_PATTERN = re.compile(r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\.")  # a fact of `belief.facts`, by its form only
+MAX_STEP_NUMBER = 1_000_000  # the greatest --max-steps
+RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
+FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
 
-
-def number(low: float, high: float) -> ValueCheck:
-    """Return the check for a number from `low` to `high`."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            yield at, "a number is wanted"
-        elif not low <= value <= high:  # false for NaN and infinity, too
-            yield at, f"a number from {low:g} to {high:g} is wanted"
-
-    return check
-
-
-def whole_number(low: int, high: int) -> ValueCheck:
-    """Return the check for an integer from `low` to `high`."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            yield at, f"a whole number from {low} to {high} is wanted"
-
-    return check
-
-
-def text(form: re.Pattern[str] | None = None, name: str = "a text") -> ValueCheck:
-    """Return the check for a string; form : a pattern that must match all of it. name : what messages call it."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if not isinstance(value, str) or len(value) > MAX_TEXT_CHARACTERS or (form and not form.fullmatch(value)):
-            yield at, f"{name} is wanted"
-
-    return check
-
-
-def one_of(*known: Any) -> ValueCheck:
-    """Return the check for one of some values, of the same type."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if not any(type(value) is type(one) and value == one for one in known):
-            yield at, f"one of {', '.join(map(str, known))} is wanted"
-
-    return check
-
-
-def or_null(inner: ValueCheck) -> ValueCheck:
-    """Return the check for null, or what another check accepts."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if value is not None:
-            yield from inner(value, at)
-
-    return check
-
-
-def list_of(inner: ValueCheck, least: int = 0, most: int = 10_000_000) -> ValueCheck:
-    """Return the check for a list of `least` to `most` values that another check accepts."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if not isinstance(value, list) or not least <= len(value) <= most:
-            yield at, f"a list of {least} values is wanted" if least == most else "a list of values is wanted"
-            return
-        for one in value:
-            yield from inner(one, at)
-
-    return check
-
-
-def names_to(inner: ValueCheck) -> ValueCheck:
-    """Return the check for an object with any keys, whose values another check accepts."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if not isinstance(value, dict):
-            yield at, "an object is wanted"
-            return
-        for key, one in value.items():
-            yield from inner(one, (*at, key))
-
-    return check
-
-
-def keys(checks: Mapping[str, ValueCheck], optional: Collection[str] = ()) -> ValueCheck:
-    """Return the check for an object with these keys, each with its own check; further keys are accepted."""
-
-    def check(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-        if not isinstance(value, dict):
-            yield at, "an object is wanted"
-            return
-        for key, inner in checks.items():
-            if key in value:
-                yield from inner(value[key], (*at, key))
-            elif key not in optional:
-                yield at, f"the key {key} is missing"
-
-    return check
-
-
-def action(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-    """Check a command: yield complaints about it."""
-    yield from keys({"do": one_of(*ACTION_KEYS)})(value, at)
-    if isinstance(value, dict) and value.get("do") in ACTION_KEYS:
-        yield from keys(ACTION_KEYS[value["do"]])(value, at)
-
-
-def motion(value: Any, at: KeyPath) -> Iterator[LineComplaint]:
-    """Check a true motion: yield complaints about it."""
-    turned = isinstance(value, dict) and "rotate" in value
-    pair = list_of(number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE), 2, 2)
-    yield from keys(
-        {"rotate": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE), "about": pair} if turned else {"translate": pair}
-    )(value, at)
-
-
+TEXT = Characters()
+FLAG = OneOf((True, False))
+FACT = Characters(FACT_PATTERN, "a fact")
+STEP_NUMBER = Whole(0, MAX_STEP_NUMBER)
+COMMAND_NUMBER = Numeric(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE)
+PAIR = ListOf(COMMAND_NUMBER, 2, 2)  # (x, y) or (east, north) in squares
 # The keys of a straight motion, in squares of Utak's frame.
-STRAIGHT_KEYS = {
-    "east": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
-    "north": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE),
-}
-# The keys of a command besides `do`, by its kind.
-ACTION_KEYS: dict[str, dict[str, ValueCheck]] = {
-    "move": STRAIGHT_KEYS,
-    "push": STRAIGHT_KEYS,
-    "turn": {"degrees": number(-MAX_COMMAND_VALUE, MAX_COMMAND_VALUE)},
-    "grasp": {"direction": one_of(*DIRECTIONS)},
-    "release": {},
-}
-POINT_CHECK = list_of(number(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2)  # (x, y) in squares, table frame
-RING_CHECK = list_of(POINT_CHECK, 3)  # a closed boundary
-RINGS_CHECK = list_of(RING_CHECK, 1)  # the outer ring and the holes of a polygon
-THING_CHECK = keys({"colour": text(), "rings": RINGS_CHECK})  # a thing in the header
+STRAIGHT = Keys({"east": COMMAND_NUMBER, "north": COMMAND_NUMBER})
+ACTION = Noted(
+    "a command, in Utak's frame",
+    ByKind(
+        "do",
+        {
+            "move": STRAIGHT,
+            "push": STRAIGHT,
+            "turn": Keys({"degrees": COMMAND_NUMBER}),
+            "grasp": Keys({"direction": OneOf(tuple(DIRECTIONS))}),
+            "release": Keys({}),
+        },
+    ),
+)
+MOTION = Noted(
+    "what really happened, table frame",
+    IfKey("rotate", Keys({"rotate": COMMAND_NUMBER, "about": PAIR}), Keys({"translate": PAIR})),
+)
+POINT = ListOf(Numeric(-TABLE_MARGIN, MAX_TABLE_SIDE + TABLE_MARGIN), 2, 2)  # (x, y) in squares, table frame
+RING = ListOf(POINT, 3)  # a closed boundary
+RINGS = Noted("the outer ring and the holes of a polygon, squares, table frame", ListOf(RING, 1))
+THING = Keys({"colour": TEXT, "rings": RINGS})  # a thing in the header
+OPTIONS = Keys(
+    {
+        "seed": Whole(0, 2**63 - 1),
+        "noise": Numeric(0, 1),
+        "paths": OneOf(tuple(PATH_CHOICES)),
+        "max_steps": STEP_NUMBER,
+        "pull": FLAG,
+        "kb": Noted("the SHA-256 sum of every rule file", ListOf(TEXT)),
+    },
+    frozenset({"pull"}),
+)
+WORLD = Keys(
+    {
+        "table": Noted("width and height in squares", ListOf(Whole(1, MAX_TABLE_SIDE), 2, 2)),
+        "heading": Noted("degrees from the table's north, counter-clockwise", Whole(0, 359)),
+        "verge": ListOf(RINGS),
+        "fixed": NamesTo(THING),
+        "movable": NamesTo(THING),
+    }
+)
+TASK = Keys(
+    {
+        "parameters": Noted("kinds by name", NamesTo(TEXT)),
+        "claims": Noted("each a fact and a confidence in percent", ListOf(Anything())),
+        "goals": ListOf(TEXT),
+        "expect": Noted("the facts of expect.lp; null without it", OrNull(ListOf(TEXT))),
+    }
+)
+# The part of a run before a fork: until which step, with which options and task.
+RUN_STAGE = Keys({"until": STEP_NUMBER, "options": OPTIONS, "task": TASK})
 # The first line of an episode.
-HEADER_CHECK = keys(
+HEADER = Keys(
     {
-        "options": keys(
-            {
-                "seed": whole_number(0, 2**63 - 1),
-                "noise": number(0, 1),
-                "paths": one_of(*PATH_CHOICES),
-                "max_steps": whole_number(0, 1_000_000),
-                "pull": one_of(True, False),
-                "kb": list_of(text()),
-            },
-            optional=("pull",),
-        ),
-        "world": keys(
-            {
-                "table": list_of(whole_number(1, MAX_TABLE_SIDE), 2, 2),
-                "heading": whole_number(0, 359),
-                "verge": list_of(RINGS_CHECK),
-                "fixed": names_to(THING_CHECK),
-                "movable": names_to(THING_CHECK),
-            }
-        ),
-        "task": keys(
-            {
-                "parameters": names_to(text()),
-                "claims": list_of(lambda value, at: iter(())),
-                "goals": list_of(text()),
-                "expect": or_null(list_of(text())),
-            }
-        ),
-    }
+        "utak": OneOf(("episode",)),
+        "version": OneOf((EPISODE_VERSION,)),
+        "options": OPTIONS,
+        "world": WORLD,
+        "task": TASK,
+        "changes": Noted("what was assumed, retracted or wanted at the prompt, by step", ListOf(NamesTo(Anything()))),
+        "forked": Noted("the stages before, of a run that goes on otherwise, in order", ListOf(RUN_STAGE, 1)),
+    },
+    frozenset({"changes", "forked"}),
 )
+DIGITS = Characters(f"[0-7]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} digits from 0 to 7")
+FIELD_NUMBER = Whole(0, RETINA_FIELDS - 1)
+# A decision of an encoding: written in full, or as a reference to an earlier step.
+SOLVED_FORM = AnyOf(
+    (
+        Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)), ListOf(Anything()))),
+        Row((TEXT, ListOf(TEXT), OrNull(ListOf(TEXT)))),
+        Row((TEXT, Row((STEP_NUMBER, Whole(0, MAX_STEP_NUMBER))))),
+    ),
+    "a decision, [encoding, facts, answer, about] or [encoding, [step, index]],",
+)
+# The keys of `belief`; all but `facts` may be missing.
+BELIEF_FORMS: dict[str, Form] = {
+    "facts": Noted("the world model as facts", ListOf(FACT)),
+    "place": Noted("where Utak believes to be [east, north], squares, robot frame", PAIR),
+    "lattice": Noted("degrees of the robot frame against the grid", Whole(-360, 360)),
+    "origin": Noted("offset of the robot frame in its square [east, north], squares", PAIR),
+    "pose": Noted("how the impression was explained", TEXT),
+    "cells": Noted("fields by status", NamesTo(Whole(0, RETINA_FIELDS))),
+    "bound": Noted("node of each parameter of the task", NamesTo(TEXT)),
+    "status": Noted(
+        "of each field: p predicted, e explained, n noise",
+        Characters(f"[pen]{{{RETINA_FIELDS}}}", f"a text of {RETINA_FIELDS} letters p, e, n"),
+    ),
+    "least": Noted("the least gray level that the map allows each field", DIGITS),
+    "most": Noted("the greatest gray level that the map allows each field", DIGITS),
+    "explained": Noted("fields by the fact that explains them", NamesTo(ListOf(FIELD_NUMBER))),
+    "seen_from": Noted("where the impressions were received, as believed now, squares, robot frame", ListOf(PAIR)),
+    "map_from": Noted("the first impression on which the map rests", STEP_NUMBER),
+    "solved": Noted("the decisions of encodings since the line before", ListOf(SOLVED_FORM)),
+    "regions": Noted("region of each object node", NamesTo(TEXT)),
+    "moved": Noted("nodes whose place is known from having been moved", ListOf(TEXT)),
+    "necks": Noted("both ends of the line across each door, squares, robot frame", NamesTo(ListOf(PAIR, 2, 2))),
+    "routes": Noted(
+        "routes that were weighed for the next command, squares, robot frame",
+        ListOf(Keys({"points": ListOf(PAIR), "chosen": FLAG})),
+    ),
+}
+BELIEF_FORM = Keys(BELIEF_FORMS, frozenset(BELIEF_FORMS) - {"facts"})
 # The line of a step.
-STEP_CHECK = keys(
+STEP = Keys(
     {
-        "action": or_null(action),
-        "motion": or_null(motion),
-        "utak": POINT_CHECK,
-        "held": or_null(text()),
-        "objects": names_to(RING_CHECK),
-        "retina": list_of(whole_number(0, 7), 160, 160),
-        "touch": list_of(or_null(text()), 8, 8),
-        "belief": keys({"facts": list_of(text(FACT_PATTERN, "a fact"))}),
-        "why": text(),
+        "step": STEP_NUMBER,
+        "action": OrNull(ACTION),
+        "motion": OrNull(MOTION),
+        "utak": Noted("where Utak is, table frame", POINT),
+        "held": Noted("the name of what Utak holds", OrNull(TEXT)),
+        "objects": Noted("outlines of movable things by name, table frame", NamesTo(RING)),
+        "retina": Noted("gray levels", ListOf(Whole(0, 7), RETINA_FIELDS, RETINA_FIELDS)),
+        "touch": Noted("colours, clockwise from north", ListOf(OrNull(TEXT), 8, 8)),
+        "belief": BELIEF_FORM,
+        "why": Noted("why the command was given", TEXT),
     }
 )
+RESULT_FORMS: dict[str, Form] = {
+    "believed": Noted("whether Utak believes that the task is done", FLAG),
+    "achieved": Noted("whether it is by expect.lp; null without it", OrNull(FLAG)),
+    "verdict": OneOf(VERDICT_WORDS),
+    "reason": TEXT,
+    "steps": STEP_NUMBER,
+}
 # The last line of an episode.
-RESULT_CHECK = keys(
-    {
-        "result": keys(
-            {
-                "believed": one_of(True, False),
-                "achieved": or_null(one_of(True, False)),
-                "verdict": one_of("done", "impossible", "possible_if", "limit"),
-                "reason": text(),
-                "steps": whole_number(0, 1_000_000),
-            }
-        )
-    }
-)
+END = Keys({"result": Keys(RESULT_FORMS)})
 
 
 def column(row: str, where: KeyPath) -> int:

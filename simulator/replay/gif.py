@@ -45,7 +45,7 @@ COLOURS = {name: number for number, name in enumerate(PALETTE)}
 Pixels = list[tuple[float, float]]
 
 
-class Scale(NamedTuple):
+class GifScale(NamedTuple):
     """Places squares of the table, and hundredths of squares of the robot frame, on a picture.
 
     Attributes
@@ -98,7 +98,7 @@ def _frames(episode: Episode) -> Iterator[Any]:
     width, height = episode.header["world"]["table"]
     pixels = PANEL_PIXELS / max(width, height)
     x, y = episode.steps[0]["utak"]
-    scale = Scale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
+    scale = GifScale(width, height, pixels, (x, y), float(episode.header["world"]["heading"]))
     panel = math.ceil(width * pixels) + GAP_PIXELS
     size = 2 * panel + GAP_PIXELS, math.ceil(height * pixels) + 2 * GAP_PIXELS + TEXT_LINES * (TEXT_PIXELS + 4)
     colours = [part for colour in PALETTE.values() for part in colour]
@@ -125,7 +125,7 @@ def _words(episode: Episode, line: EpisodeLine) -> list[str]:
     return words
 
 
-def _panel(scale: Scale, colour: str) -> Any:
+def _panel(scale: GifScale, colour: str) -> Any:
     """Return an empty picture of the size of the table."""
     size = math.ceil(scale.width * scale.pixels), math.ceil(scale.height * scale.pixels)
     image = Image.new("P", size, COLOURS[colour])
@@ -133,7 +133,7 @@ def _panel(scale: Scale, colour: str) -> Any:
     return image
 
 
-def _true(episode: Episode, line: EpisodeLine, scale: Scale, places: Pixels) -> Any:
+def _true(episode: Episode, line: EpisodeLine, scale: GifScale, places: Pixels) -> Any:
     """Return the left picture: the table as it is, and the robot's places so far."""
     image = _panel(scale, "ground")
     on, world = ImageDraw.Draw(image), episode.header["world"]
@@ -151,13 +151,13 @@ def _true(episode: Episode, line: EpisodeLine, scale: Scale, places: Pixels) -> 
     return image
 
 
-def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: Scale, colour: str, outline: int = 0) -> None:
+def _fill(on: ImageDraw.ImageDraw, ring: Sequence[Any], scale: GifScale, colour: str, outline: int = 0) -> None:
     """Draw a filled ring of points of the table, with an outline of so many pixels."""
     points = [scale.table(x, y) for x, y in ring]
     on.polygon(points, COLOURS[colour], COLOURS["ink"] if outline else None, outline or 1)
 
 
-def _believed(line: EpisodeLine, scale: Scale) -> Any:
+def _believed(line: EpisodeLine, scale: GifScale) -> Any:
     """Return the right picture: the believed outlines, the surer, the stronger, and the robot's believed place."""
     image = _panel(scale, "beyond")
     on = ImageDraw.Draw(image)

@@ -38,8 +38,10 @@ def _is_shallow(value: Any) -> bool:
 
 
 def write_page(path: Path | str, episode: Episode, force: bool = False) -> None:
-    """Write the page of an episode; `force` overwrites what is no page. Raises CannotOpenError."""
-    write_whole(path, replay_page(episode), is_page, "page of HTML", force)
+    """Write the page of an episode, with trees of reasons; `force` overwrites no-pages. Raises CannotOpenError."""
+    from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
+
+    write_whole(path, replay_page(episode, trees_of_episode(episode)), is_page, "page of HTML", force)
 
 
 def check_page_path(path: Path | str, force: bool = False) -> None:

@@ -15,7 +15,7 @@ from string import Template
 from typing import Any
 
 from simulator.episode.episode import Episode
-from simulator.replay.events import episode_events
+from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import deflated, packed_episode
 from simulator.terminal.streams import escape_controls
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from simulator.episode.episode import Episode
 from simulator.replay.changes import changes
-from simulator.run.story import RecordedStory
+from simulator.run.recorded_story import RecordedStory
 from simulator.terminal.action_in_words import describe
 from simulator.terminal.streams import escape_controls
 

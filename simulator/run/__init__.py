@@ -6,9 +6,13 @@ session     one run, step by step, with its record
 embodiment  the robot's body: commands in, impressions out
 robots      the robot of the planner, made for a body and a task
 trial       a run as a test, judged by expect.lp
-story       a run or a recorded episode, read step by step
+forking     a recorded run, repeated up to a step, which goes on otherwise
+story       a run or a recorded episode, read step by step, back and forth
+live_story  a run that is read step by step, and changed on the way
+recorded_story  an episode that is read step by step; the live run that repeats it
+changes     assumptions and other goals, from a step on
 interrupts  Ctrl-C during a step
 warming     compilation of geometry's kernels before the first run
 
-Public names: `Session`, `Result`, `make_robot`, `run_trial`, `open_story`, `warm`.
+Public names: `Session`, `Result`, `make_robot`, `run_trial`, `open_story`, `LiveStory`, `repeat_until`, `warm`.
 """

@@ -16,16 +16,20 @@ class Embodiment:
 
     def act(self, command: Command) -> Impression:
         """Execute one command and return the impression at the place where Utak stops."""
-        table = self.__table
-        match command:
-            case Move(east, north):
-                table.move(east, north)
-            case Push(east, north):
-                table.push(east, north)
-            case Turn(degrees):
-                table.turn(degrees)
-            case Grasp(direction):
-                table.grasp(direction)
-            case Release():
-                table.release()
-        return Impression(*table.look())
+        carry_out(self.__table, command)
+        return Impression(*self.__table.look())
+
+
+def carry_out(table: Tabletop, command: Command) -> None:
+    """Execute one command on a table, as far as the world allows."""
+    match command:
+        case Move(east, north):
+            table.move(east, north)
+        case Push(east, north):
+            table.push(east, north)
+        case Turn(degrees):
+            table.turn(degrees)
+        case Grasp(direction):
+            table.grasp(direction)
+        case Release():
+            table.release()

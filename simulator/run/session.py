@@ -1,15 +1,17 @@
 """One run: the robot wakes in a scenario and acts until it has a verdict; the truth is recorded as it happens."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol, runtime_checkable
 
 from kb.body import Body, Command, Impression
 from kb.task.task import Task
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
-from simulator.scenario.expectation import Snapshot, should_fail, unmet
+from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
+from simulator.scenario.points import ExpectationOutcome, judge_expectations
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
@@ -70,8 +72,30 @@ class RobotProtocol(Protocol):
         """The verdict at the end."""
 
 
+@runtime_checkable
+class FollowingRobotProtocol(Protocol):
+    """A robot that takes commands from outside."""
+
+    def follow(self, command: Command, why: str) -> StepReportProtocol:
+        """Give a command that comes from outside, act and return the report."""
+
+
+@runtime_checkable
+class AdoptingRobotProtocol(Protocol):
+    """A robot that takes other rules and another task while it runs."""
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Take other rules, and another task unless None, for all that comes after the next impression."""
+
+
+class CannotAdoptError(Exception):
+    """Raised by a robot that takes no other rules and no other task while it runs."""
+
+
 # Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
+# Lets a robot go on with another task or other options of the run.
+RobotRedirector = Callable[[RobotProtocol, Task, Settings], None]
 
 
 @dataclass(frozen=True)
@@ -86,6 +110,8 @@ class Result:
     reason : the reason in words.
     steps : the number of commands.
     unmet : the expectations that the truth does not meet, as text.
+    came : what came instead of each of them, in words.
+    outcomes : what came of each expectation that a test tests, with its points.
     """
 
     believed: bool
@@ -94,6 +120,8 @@ class Result:
     reason: str
     steps: int
     unmet: tuple[str, ...] = field(default=())
+    came: tuple[str, ...] = field(default=())
+    outcomes: tuple[ExpectationOutcome, ...] = field(default=())
 
     @property
     def line(self) -> EpisodeLine:
@@ -125,10 +153,23 @@ class Session:
         self._log = log
         self._track: list[Snapshot] = []
 
-    def wake(self) -> EpisodeLine:
-        """Write the header, let the robot wake, write step 0 and return that line."""
-        self._log.write(header(self.scenario, self.settings))
+    def wake(self, head: EpisodeLine | None = None) -> EpisodeLine:
+        """Write the header, let the robot wake, write step 0 and return that line.
+
+        head : the header to write; None for that of the scenario and the settings.
+        """
+        self._log.write(header(self.scenario, self.settings) if head is None else head)
         return self._record(self.robot.wake())
+
+    def change(self, scenario: Scenario, settings: Settings, redirect: RobotRedirector) -> None:
+        """Go on with another scenario in the same world, and with other options.
+
+        scenario : the task and the expectations from now on. settings : the options from now on; with another seed, the
+        randomness begins anew. redirect : lets the robot go on with them.
+        """
+        self.table.disturb(settings.noise, settings.seed if settings.seed != self.settings.seed else None)
+        self.scenario, self.settings = scenario, settings
+        redirect(self.robot, scenario.task, settings)
 
     def step(self) -> EpisodeLine:
         """Let the robot act once, write what happened, and return the last line.
@@ -146,11 +187,13 @@ class Session:
     def end(self) -> Result:
         """Compare the verdict with the truth, write the result and return it."""
         verdict = self.robot.verdict
-        expectations = self.scenario.expectations
-        missed = unmet(expectations, self.scenario.world, self._track) if expectations is not None else []
-        achieved = None if expectations is None else not missed and not should_fail(expectations)
+        expected = self.scenario.expectations or ()
+        missed = shortfalls(expected, self.scenario.world, self._track, str(verdict.verdict))
+        achieved = None if self.scenario.expectations is None else not missed and not should_fail(expected)
+        outcomes = judge_expectations(expected, missed, verdict.believed, verdict.reason)
         steps = self._track[-1].step
-        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, tuple(map(str, missed)))
+        unmet, came = tuple(map(str, missed)), tuple(missed.values())
+        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes)
         self._log.write(result.line)
         return result
 
@@ -161,10 +204,45 @@ class Session:
         """
         self.wake()
         watch(self)
+        return self.go_on(watch)
+
+    def go_on(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+        """Run from the present step to the end, and return the result.
+
+        watch : called with this session after every step.
+        """
         while not self.finished:
             self.step()
             watch(self)
         return self.end()
+
+    def fork(self) -> "Session":
+        """Return a copy of this run that goes on by itself and writes no episode; this run is not changed.
+
+        The copy is at the same step and, left alone, does what this run does, byte for byte: world, robot and random
+        numbers are copied. It takes some milliseconds. Raises TypeError or another exception of `copy.deepcopy` when
+        the robot cannot be copied.
+        """
+        nothing = EpisodeLog(None)
+        return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
+
+    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
+        """Let the robot use other rules, and another task, for all that comes after its next impression.
+
+        Parameters
+        ----------
+        kb_files : paths of users' rules, all of them.
+        task : the new task; None to keep the old one. With another task nothing is expected of the truth any more.
+
+        Raises
+        ------
+        CannotAdoptError : the robot cannot do that.
+        """
+        if not isinstance(self.robot, AdoptingRobotProtocol):
+            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
+        self.robot.adopt(kb_files, task)
+        if task is not None:
+            self.scenario = replace(self.scenario, task=task, expectations=None)
 
     def _record(self, report: StepReportProtocol) -> EpisodeLine:
         """Write a step and return its line."""

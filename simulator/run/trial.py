@@ -1,16 +1,24 @@
-"""A scenario as a test: a run, and the comparison of its end with expect.lp."""
+"""A scenario as a test: a run, and the comparison of its end with expect.lp and with the questions of trial.lp."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from simulator.episode.episode import EpisodeLog
+from kb.language.terms import Fact
+from simulator.episode.episode import EpisodeLine, EpisodeLog
+from simulator.episode.record import facts_of_line
 from simulator.run.robots import make_robot
-from simulator.run.session import Result, Session
-from simulator.scenario.expectation import should_fail
-from simulator.scenario.scenario import read_scenario
-from simulator.scenario.settings import Settings
+from simulator.run.session import Result, RobotMaker, Session
+from simulator.scenario.expectation import expects_verdict
+from simulator.scenario.points import ExpectationOutcome, PointScore, score
+from simulator.scenario.scenario import Scenario, read_scenario
+from simulator.scenario.settings import Settings, kb_files_named
+from simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
+
+LAST_STEPS = 5  # the number of steps before the end that a trial keeps, for reports; a convention
+NO_PLAN = TrialPlan({}, (), {})  # what holds without trial.lp
 
 
 class ScenarioTrial(NamedTuple):
@@ -21,23 +29,46 @@ class ScenarioTrial(NamedTuple):
     passed : whether the test passed.
     message : the reasons, and the verdict.
     result : the end of the run.
+    settings : the options of the run.
+    faults : the reasons why it failed, in words; () when it passed.
+    outcomes : what came of each expectation and each question, with their points.
+    weighed : whether the scenario's author weighed them.
+    last_steps : the last lines of the episode: at most `LAST_STEPS` of them, without step 0.
     """
 
     passed: bool
     message: str
     result: Result
+    settings: Settings
+    faults: tuple[str, ...]
+    outcomes: tuple[ExpectationOutcome, ...]
+    weighed: bool
+    last_steps: tuple[EpisodeLine, ...]
+
+    @property
+    def score(self) -> PointScore:
+        """The points earned, and those that could be."""
+        return score(self.outcomes)
 
 
-def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioTrial:
-    """Run a scenario and judge the end by its expect.lp.
+def run_trial(
+    folder: Path | str,
+    given: Mapping[str, Any] | None = None,
+    kb_files: Sequence[str] = (),
+    make: RobotMaker = make_robot,
+) -> ScenarioTrial:
+    """Run a scenario and judge the end by its expect.lp and trial.lp.
 
-    A scenario with `fails` passes when Utak does not believe that the task is done, and gives a reason. Any other
-    passes when all expectations are met and Utak believes that the task is done.
+    A scenario passes when all that is tested is met, and its end is the one expected: with `fails`, Utak does not
+    believe that the task is done, and gives a reason; with `verdict(V)`, the verdict is V; otherwise Utak believes that
+    the task is done.
 
     Parameters
     ----------
     folder : the scenario.
-    settings : the options of the run; None for the defaults.
+    given : fields of `Settings` by name that the user gave; they win over those of trial.lp.
+    kb_files : files of rules, in addition to those of trial.lp.
+    make : makes the robot.
 
     Returns
     -------
@@ -48,27 +79,77 @@ def run_trial(folder: Path | str, settings: Settings | None = None) -> ScenarioT
     CannotOpenError : a file cannot be read.
     BadInputError : a file has errors, or there is no expect.lp.
     """
-    scenario = read_scenario(folder)
-    if scenario.expectations is None:
-        where = str(Path(folder) / "expect.lp")
-        raise BadInputError([Problem(where, SourceSpan(1, 1, 1), "a test needs expect.lp, which is missing")])
-    session = Session(scenario, settings or Settings(), make_robot, EpisodeLog(None))
-    result = session.run()
-    faults = list(_faults(result, should_fail(scenario.expectations)))
+    scenario, plan = _read(Path(folder))
+    rules = kb_files_named([*kb_files, *plan.rules])
+    settings = replace(Settings(kb_files=rules), **{**plan.options, **(given or {})})
+    session = Session(scenario, settings, make, EpisodeLog(None))
+    last_steps: list[EpisodeLine] = []
+
+    def keep(at: Session) -> None:
+        if at.line["action"] is not None and at.line not in last_steps[-1:]:
+            last_steps[:] = [*last_steps, at.line][-LAST_STEPS:]
+
+    result = session.run(keep)
+    outcomes = (*result.outcomes, *_answers(plan, facts_of_line(session.line), rules))
+    assert scenario.expectations is not None
+    faults = tuple(faults_of(result, outcomes, expects_verdict(scenario.expectations)))
     end = f"{result.verdict} in {result.steps} steps: {result.reason}"
-    return ScenarioTrial(not faults, "; ".join([*faults, end]), result)
+    weighed = any(fact.name == "weight" for fact in scenario.expectations) or any(n != 1 for n in plan.asks.values())
+    message = "; ".join([*faults, end])
+    return ScenarioTrial(not faults, message, result, settings, faults, outcomes, weighed, tuple(last_steps))
 
 
-def _faults(result: Result, to_fail: bool) -> Iterator[str]:
-    """Yield the reasons why the test fails."""
-    if to_fail:
-        if result.believed:
-            yield "Utak believes that an impossible task is done"
-        if not result.reason:
-            yield "Utak gives no reason"
+def _read(folder: Path) -> tuple[Scenario, TrialPlan]:
+    """Return a scenario that has an expect.lp, and what its trial.lp says; raise the errors of all files at once."""
+    problems: list[Problem] = []
+    scenario, plan = None, NO_PLAN
+    try:
+        scenario = read_scenario(folder)
+        if scenario.expectations is None:
+            what = "a test needs expect.lp, which is missing"
+            problems.append(Problem(str(folder / "expect.lp"), SourceSpan(1, 1, 1), what))
+    except BadInputError as bad:
+        problems += bad.problems
+    try:
+        if (folder / TRIAL_FILE).exists():
+            plan = read_trial_plan(folder / TRIAL_FILE)
+    except BadInputError as bad:
+        problems += bad.problems
+    if problems or scenario is None:
+        raise BadInputError(problems)
+    return scenario, plan
+
+
+def _answers(plan: TrialPlan, facts: Sequence[str], rules: Sequence[str]) -> Iterator[ExpectationOutcome]:
+    """Yield the outcome of each question of trial.lp, asked of the world model at the end."""
+    if not plan.asks:
         return
-    yield from (f"not met: {fact}" for fact in result.unmet)
-    if not result.believed:
+    from kb.reasoning.query import QueryEngine  # only where something is asked: it takes time
+
+    with QueryEngine(rules=rules) as engine:
+        for asked, points in plan.asks.items():
+            yield ExpectationOutcome(str(asked), _answer(engine, asked, facts), points)
+
+
+def _answer(engine: Any, asked: Fact, facts: Sequence[str]) -> str:
+    """Return '' when a question has the wanted answer, else its answer in words."""
+    from kb.reasoning.query import QueryLimitError
+
+    try:
+        found = engine.ask(facts, query_of(asked))
+    except QueryLimitError as limit:
+        return str(limit)
+    except BadInputError as bad:
+        return f"the question cannot be answered: {bad.problems[0].what}"
+    return answers_as_wanted(asked, found.kind, found.rows, found.more)
+
+
+def faults_of(result: Result, outcomes: Sequence[ExpectationOutcome], verdict_expected: bool) -> Iterator[str]:
+    """Yield the reasons why the test fails."""
+    for one in outcomes:
+        if not one.met:
+            yield one.came if one.expected == "fails" else f"not met: {one.expected}: {one.came}"
+    if not verdict_expected and not result.believed:
         yield "Utak does not believe that the task is done"
 
 

@@ -238,7 +238,8 @@ def walk() -> None:
     from geometry.motion.first_contact import ContactBody, Obstacles
     from geometry.motion.se2 import Translate
     from geometry.raster.line_of_sight import straight
-    from geometry.raster.rasterize import squares
+    from geometry.raster.rasterize import squares, window_of
+    from geometry.raster.surroundings import survey_square
     from geometry.raster.winding import shortest_path_with_crossing_number
 
     free = np.ones((3, 3), np.bool_)
@@ -246,6 +247,9 @@ def walk() -> None:
     straight(free, 0, 0, 2)
     shortest_path_with_crossing_number(free, (0, 0), (0, 0), (1.5, 1.5), 1)
     squares(shapely.box(0, 0, 1, 1), 1, 1)
+    window_of(np.array([[0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]]))
+    one, offsets = np.zeros(1, np.uint8), np.zeros((1, 3), np.int64)
+    survey_square(one[:, None], 0, 0, offsets, offsets[:, :2].copy(), 0, one, one.copy())
     Obstacles([shapely.box(10, 0, 11, 5)]).first_contact(ContactBody(None, [(4.0, 1.0)]), Translate(8.0, 0.0))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from kb.language.diagnostics import CannotOpenError
 from kb.language.source_text import lies_outside
 
-SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp")  # all files of a scenario
+SCENARIO_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp", "expect.lp", "trial.lp")  # all files of a scenario
 
 
 def add_untrusted_option(part: argparse.ArgumentParser) -> None:
@@ -24,10 +24,22 @@ def refuse_links(options: argparse.Namespace, place: Path | str, root: Path | st
     place : a scenario folder, or a file in one.
     root : the folder in which the scenario was found; None when the user named the scenario itself.
     """
-    if not options.untrusted:
-        return
+    if options.untrusted:
+        refuse_outside_links(place, root)
+
+
+def refuse_outside_links(place: Path | str, root: Path | str | None = None) -> None:
+    """Raise CannotOpenError when a link leads out of the scenario's folder.
+
+    Parameters
+    ----------
+    place : a scenario folder, or a file in one. Files of rules beside the scenario's own files are looked at, too.
+    root : the folder in which the scenario was found; None when the user named the scenario itself.
+    """
     place = Path(place)
     files = [place / name for name in SCENARIO_FILES] if place.is_dir() else [place]
+    if place.is_dir():
+        files += sorted(path for path in place.glob("*.lp") if path.name not in SCENARIO_FILES)
     within = [place] if root is not None and place != Path(root) else []
     for path in [*within, *files]:
         if path.exists() and lies_outside(path, root if path in within else None):

@@ -8,5 +8,5 @@ numbers          numbers on the command line
 printing         JSON output
 action_in_words  an action as text
 outcome          one of several things to do, with its exit code
-prompt           the prompt of `utak repl`
+progress         how much of long work is done, and how long the rest takes
 """

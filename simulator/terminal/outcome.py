@@ -26,21 +26,40 @@ def attempt(do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _
     -------
     The exit code.
     """
+    code, message = outcome_of(do, *args, **kwargs)
+    if message:
+        print(message, file=sys.stderr)
+    return code
+
+
+def outcome_of(
+    do: Callable[_Parameters, int], *args: _Parameters.args, **kwargs: _Parameters.kwargs
+) -> tuple[int, str]:
+    """Call a function and return its exit code with ''; for an error, the code for it and its message.
+
+    A failing output stream and Ctrl-C are raised. With UTAK_DEBUG set, unexpected exceptions are raised, too.
+
+    Parameters
+    ----------
+    do : the function; returns an exit code.
+    args, kwargs : its arguments.
+
+    Returns
+    -------
+    The exit code and the message.
+    """
     try:
-        return do(*args, **kwargs)
+        return do(*args, **kwargs), ""
     except BadInputError as bad:
-        print(bad, file=sys.stderr)
-        return exits.BAD_INPUT
+        return exits.BAD_INPUT, str(bad)
     except CannotOpenError as absent:
-        print(f"utak: {absent}", file=sys.stderr)
-        return exits.CANNOT_OPEN
+        return exits.CANNOT_OPEN, f"utak: {absent}"
     except (StreamError, BrokenPipeError):
         raise
     except Exception as bug:
         if os.environ.get("UTAK_DEBUG"):
             raise
-        print(bug_message(bug), file=sys.stderr)
-        return exits.OUR_BUG
+        return exits.OUR_BUG, bug_message(bug)
 
 
 def bug_message(bug: Exception) -> str:

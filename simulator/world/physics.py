@@ -5,15 +5,17 @@ hand moves things.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
 
-from geometry.motion.first_contact import ContactBody, Obstacles
+from geometry.kernels.arrays import Floats
+from geometry.motion.first_contact import MIN_EDGE_LENGTH, ContactBody, Obstacles, obstacle_part
 from geometry.motion.se2 import Motion, Rotate, Translate, direction
-from simulator.world.senses import Senses
-from simulator.world.table import Table
+from geometry.raster.rasterize import outline_edges
+from simulator.world.senses import ImpressionCodes, Senses, felt_colours, gray_levels
+from simulator.world.table import Table, TableColours
 from simulator.world.world import World
 
 TABLE_EDGE_WIDTH = 1.0  # squares; any width above 0 stops motions, because contacts are exact
@@ -49,20 +51,49 @@ class Tabletop:
         if not 0.0 <= noise <= 1.0:
             raise ValueError(f"noise must be from 0 to 1, not {noise}")
         self.world, self.noise = world, noise
-        self.utak = world.utak
+        self._senses = Senses(world.heading)
+        self._north = direction(world.heading)  # cosine and sine of Utak's heading
+        immovable = [world.verge, table_edge(world.width, world.height), *(thing.polygon for thing in world.fixed)]
+        self._immovable = [obstacle_part(polygon) for polygon in immovable]
+        self._parts_at_start = {thing.name: obstacle_part(thing.polygon) for thing in world.movable}
+        self._obstacles_at_start: dict[str | None, Obstacles] = {}
+        self._table_at_start = Table(world)
+        self.restart(seed)
+
+    def restart(self, seed: int) -> None:
+        """Put everything back to where it was at the start, and begin randomness anew with a seed.
+
+        The table is then as a new one with the same world and noise; what was prepared for it is kept.
+        """
+        self.utak = self.world.utak
         self.held: str | None = None
-        self.polygons: dict[str, Any] = {thing.name: thing.polygon for thing in world.movable}
+        self.polygons: dict[str, Any] = {thing.name: thing.polygon for thing in self.world.movable}
         self.motion: Motion | None = None
         self._random = np.random.default_rng(seed)
-        self._table = Table(world)
-        self._senses = Senses(world.heading)
-        # Kept as long as the held object stays the same: nothing else moves meanwhile.
-        self._obstacles: Obstacles | None = None
-        self._immovable = [
-            world.verge,
-            _table_edge(world.width, world.height),
-            *(thing.polygon for thing in world.fixed),
-        ]
+        self._table = self._table_at_start.copy()
+        self._parts = dict(self._parts_at_start)  # the movable things where they lie now
+        # What stands in the way of the thing held, by name, or of Utak alone (None); kept until another thing moves.
+        self._obstacles = dict(self._obstacles_at_start)
+        self._moved: set[str] = set()  # the names of things that are not known to lie as at the start
+        self._carried: CarriedThing | None = None  # the held thing where it lies now; None until it moves
+
+    def disturb(self, noise: float, seed: int | None) -> None:
+        """Disturb motions by another noise from now on.
+
+        Parameters
+        ----------
+        noise : as for the table.
+        seed : the seed of a new random generator; None to go on with the one there is.
+
+        Raises
+        ------
+        ValueError : the noise is not from 0 to 1.
+        """
+        if not 0.0 <= noise <= 1.0:
+            raise ValueError(f"noise must be from 0 to 1, not {noise}")
+        self.noise = noise
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
 
     def move(self, east: float, north: float) -> None:
         """Walk straight by (east, north) squares in Utak's frame; no effect while an object is held."""
@@ -79,8 +110,9 @@ class Tabletop:
     def turn(self, degrees: float) -> None:
         """Turn the held object about Utak by `degrees`, counter-clockwise positive; no effect when nothing is held."""
         self.motion = None
-        if self.held is None or not _require_finite(degrees):
+        if self.held is None:
             return
+        _require_finite(degrees)
         if self.noise:
             degrees *= 1.0 + self.noise * float(self._random.standard_normal())
         self._move_until_contact(Rotate(degrees, self.utak))
@@ -98,23 +130,37 @@ class Tabletop:
         slips = self.noise > 0.0 and float(self._random.random()) < self.noise
         if not slips:
             self.held = self._table.movable_at(*square)
-            self._obstacles = None
 
     def release(self) -> None:
         """Release the held object."""
         self.motion = None
         self.held = None
-        self._obstacles = None
+        self._carried = None
 
     def look(self) -> tuple[tuple[int, ...], tuple[str | None, ...]]:
         """Return the impression at Utak's place: 160 gray levels and 8 touches. Changes nothing."""
-        return self._senses.retina(self._table, self.utak), self._senses.touch(self._table, self.utak)
+        sensed = self.sense()
+        return gray_levels(sensed), felt_colours(sensed)
+
+    def sense(self, sensed: ImpressionCodes | None = None) -> ImpressionCodes:
+        """Return the impression at Utak's place in numbers: (168,) uint8. Changes nothing.
+
+        sensed : a contiguous array that is filled and returned; a new one is made if None.
+
+        First the 160 gray levels, 0 to 7, then the colours of the 8 adjacent squares, clockwise from north in Utak's
+        frame, as the places of their letters in the alphabet from 1; 0 for floor.
+        """
+        return self._senses.impression(self._table, self.utak, sensed)
+
+    @property
+    def colours(self) -> TableColours:
+        """The colours of the table's squares, as `Table.colours`; Utak is not in it."""
+        return self._table.colours
 
     def _disturbed_translation(self, east: float, north: float) -> Translate:
         """Return a translation in the table frame, disturbed by noise; east and north are in Utak's frame."""
-        if not (_require_finite(east) and _require_finite(north)):
-            return Translate(0.0, 0.0)
-        cosine, sine = direction(self.world.heading)
+        _require_finite(east, north)
+        cosine, sine = self._north
         dx, dy = east * cosine - north * sine, east * sine + north * cosine
         if self.noise:
             length = 1.0 + self.noise * float(self._random.standard_normal())
@@ -127,30 +173,92 @@ class Tabletop:
         """Move Utak and the held object as far as nothing blocks them."""
         if not any(wanted[:2]) if isinstance(wanted, Translate) else not wanted.degrees:
             return
-        carried = None if self.held is None else self.polygons[self.held]
-        if self._obstacles is None:
-            others = [self.polygons[name] for name in self.polygons if name != self.held]
-            self._obstacles = Obstacles([*self._immovable, *others])
-        fraction = self._obstacles.first_contact(ContactBody(carried, [self.utak]), wanted).fraction
+        carried = self._held_thing()
+        body = ContactBody(None, [self.utak]) if carried is None else carried.body
+        fraction = self._standing_obstacles().first_contact(body, wanted).fraction
         if fraction <= 0.0:
             return
         motion = wanted.part(fraction)
         if isinstance(motion, Translate):
             self.utak = (self.utak[0] + motion.dx, self.utak[1] + motion.dy)
-        if self.held is not None:
-            self.polygons[self.held] = motion.carry(carried)
-            self._table.update(self.held, self.polygons[self.held])
+        if carried is not None:
+            self._carry(carried.after(motion))
         self.motion = motion
 
+    def _held_thing(self) -> "CarriedThing | None":
+        """Return the held thing, ready to be moved with Utak; None with empty hands."""
+        if self.held is not None and self._carried is None:
+            self._carried = carried_thing(self.polygons[self.held], self.utak)
+        return self._carried
 
-def _require_finite(*values: float) -> bool:
-    """Return True; raise ValueError when a value is infinite or no number."""
-    if not all(math.isfinite(value) for value in values):
-        raise ValueError(f"a command with {values}: not a finite number")
-    return True
+    def _carry(self, carried: "CarriedThing") -> None:
+        """Put the held thing where it lies after a motion."""
+        assert self.held is not None
+        self._carried = carried
+        self.polygons[self.held] = carried.polygon
+        self._table.update(self.held, carried.outline)
+        self._parts.pop(self.held, None)
+        self._moved.add(self.held)
+        if self._obstacles.keys() - {self.held}:
+            self._obstacles = {self.held: self._obstacles[self.held]}
+
+    def _standing_obstacles(self) -> Obstacles:
+        """Return all that stands in the way of Utak and of what is held."""
+        if self.held not in self._obstacles:
+            for name in self.polygons.keys() - self._parts.keys():
+                self._parts[name] = obstacle_part(self.polygons[name])
+            others = [self._parts[name] for name in self.polygons if name != self.held]
+            self._obstacles[self.held] = Obstacles([*self._immovable, *others])
+            if self._moved <= {self.held}:
+                self._obstacles_at_start[self.held] = self._obstacles[self.held]
+        return self._obstacles[self.held]
 
 
-def _table_edge(width: int, height: int) -> Any:
+class CarriedThing(NamedTuple):
+    """A held thing where it lies, in the forms that its next motion needs.
+
+    Attributes
+    ----------
+    polygon : its outline, shapely Polygon, squares, table frame.
+    outline : (n, 4) its edges, for its projection onto squares.
+    body : itself and Utak as one rigid body.
+    is_made_anew : whether all of them are made anew after each motion, not moved: a polygon has holes, or edges so
+        small that rounding could decide which of them `body` has.
+    """
+
+    polygon: Any
+    outline: Floats
+    body: ContactBody
+    is_made_anew: bool
+
+    def after(self, motion: Motion) -> "CarriedThing":
+        """Return the thing as it lies after a motion, to the last digit as if it were made from its new polygon."""
+        body = self.body.after(motion)
+        if self.is_made_anew:
+            polygon = motion.carry(self.polygon)
+            return CarriedThing(polygon, outline_edges(polygon), ContactBody(polygon, body.points.tolist()), True)
+        corners = shapely.get_coordinates(self.polygon)
+        points = motion.points(np.concatenate([corners, self.outline.reshape(-1, 2)]))
+        polygon = shapely.polygons(points[: len(corners)])
+        return CarriedThing(polygon, points[len(corners) :].reshape(-1, 4), body, False)
+
+
+def carried_thing(polygon: Any, utak: tuple[float, float]) -> CarriedThing:
+    """Return a thing that was just grasped by Utak; squares, table frame."""
+    outline = outline_edges(polygon)
+    lengths = np.hypot(outline[:, 2] - outline[:, 0], outline[:, 3] - outline[:, 1])
+    is_made_anew = len(polygon.interiors) > 0 or bool((lengths <= 2 * MIN_EDGE_LENGTH).any())
+    return CarriedThing(polygon, outline, ContactBody(polygon, [utak]), is_made_anew)
+
+
+def _require_finite(*values: float) -> None:
+    """Raise ValueError when a value is infinite or no number."""
+    for value in values:
+        if not math.isfinite(value):
+            raise ValueError(f"a command with {values}: not a finite number")
+
+
+def table_edge(width: int, height: int) -> Any:
     """Return the frame around the table, in squares."""
     table = shapely.box(0, 0, width, height)
     return shapely.box(

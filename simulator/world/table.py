@@ -4,19 +4,19 @@ The verge and fixed things are projected once. A movable thing is projected agai
 its containing rectangle only.
 """
 
-import math
-from collections.abc import Iterable
+import string
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
-from geometry.kernels.arrays import Bools
-from geometry.raster.rasterize import squares
+from geometry.kernels.arrays import Bools, Floats
+from geometry.raster.rasterize import outline_edges, window_of
 from simulator.world.world import VERGE_COLOUR, World
 
-TableIndices = npt.NDArray[np.intp]  # columns or rows of squares
+TableColours = npt.NDArray[np.uint8]  # numbers of colours: the places of their letters in the alphabet, 0 for floor
+COLOUR_OF_CODE: tuple[str | None, ...] = (None, *string.ascii_lowercase)  # the letter of each number
 
 
 class Projection(NamedTuple):
@@ -39,17 +39,10 @@ class Projection(NamedTuple):
         row, column = j - self.south, i - self.west
         return 0 <= row < rows and 0 <= column < columns and bool(self.covered[row, column])
 
-    def under(self, i: TableIndices, j: TableIndices) -> Bools:
-        """Return which of many squares the thing covers.
 
-        i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.
-        """
-        rows, columns = self.covered.shape
-        row, column = j - self.south, i - self.west
-        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-        found = np.zeros(i.shape, dtype=bool)
-        found[inside] = self.covered[row[inside], column[inside]]
-        return found
+def colour_code(letter: str) -> int:
+    """Return the number of a lower-case letter in the alphabet, from 1."""
+    return ord(letter) - ord("a") + 1
 
 
 def project(shape: Any) -> Projection:
@@ -63,12 +56,23 @@ def project(shape: Any) -> Projection:
     -------
     The covered squares within the shape's containing rectangle.
     """
-    if shape.is_empty:
+    return project_edges(outline_edges(shape))
+
+
+def project_edges(edges: Floats) -> Projection:
+    """Return the digital representation of the shape with some edges.
+
+    Parameters
+    ----------
+    edges : (n, 4) the boundary, as `geometry.raster.rasterize.outline_edges` returns it; squares, table frame.
+
+    Returns
+    -------
+    The covered squares within the shape's containing rectangle.
+    """
+    if not len(edges):
         return Projection(0, 0, np.zeros((0, 0), dtype=bool))
-    x0, y0, x1, y1 = shape.bounds
-    west, south = math.floor(x0), math.floor(y0)
-    moved = shapely.transform(shape, lambda points: points - (west, south))
-    return Projection(west, south, squares(moved, math.ceil(x1) - west, math.ceil(y1) - south))
+    return Projection(*window_of(edges))
 
 
 class Table:
@@ -76,45 +80,73 @@ class Table:
 
     When several things share a square, movable things come first, then fixed things, each in the order of their names,
     then the verge. The first one determines the colour that is felt, and what a grasp takes.
+
+    Attributes
+    ----------
+    width, height : the size of the table, in squares.
+    colours : (height, width) uint8, row 0 in the south: the colour of each square as the number of its letter in the
+        alphabet, from 1; 0 for floor. Utak is not in it.
     """
 
     def __init__(self, world: World) -> None:
         self.width, self.height = world.width, world.height
-        self._colours = {thing.name: thing.colour for thing in world.movable}
+        self._codes = {thing.name: colour_code(thing.colour) for thing in world.movable}
         self._movable = {thing.name: project(thing.polygon) for thing in world.movable}
-        self._fixed = [(thing.colour, project(thing.polygon)) for thing in world.fixed]
-        self._verge = project(world.verge)
+        self._standing = np.zeros((self.height, self.width), np.uint8)  # verge and fixed things alone
+        self._paint(self._standing, project(world.verge), colour_code(VERGE_COLOUR))
+        for thing in reversed(world.fixed):
+            self._paint(self._standing, project(thing.polygon), colour_code(thing.colour))
+        self.colours: TableColours = self._standing.copy()
+        self._paint_movable(0, 0, self.width, self.height)
 
-    def update(self, name: str, polygon: Any) -> None:
-        """Project a movable thing again after it has moved."""
-        self._movable[name] = project(polygon)
+    def copy(self) -> "Table":
+        """Return a table in the same state, which changes independently."""
+        copied = copy(self)
+        copied._movable = dict(self._movable)
+        copied.colours = self.colours.copy()
+        return copied
 
-    def occupied(self, i: TableIndices, j: TableIndices) -> Bools:
-        """Return which of many squares are occupied by anything but Utak; squares beyond the table are.
+    def update(self, name: str, edges: Floats) -> None:
+        """Project a movable thing again after it has moved.
 
-        i, j : columns and rows of the squares, arrays of one shape. The result has the same shape.
+        edges : (n, 4) its boundary, as `geometry.raster.rasterize.outline_edges` returns it.
         """
-        found = (i < 0) | (i >= self.width) | (j < 0) | (j >= self.height)
-        for part in self._parts():
-            found |= part.under(i, j)
-        return found
+        before, now = self._movable[name], project_edges(edges)
+        self._movable[name] = now
+        rows, columns = zip(before.covered.shape, now.covered.shape, strict=True)
+        self._paint_movable(
+            min(before.west, now.west),
+            min(before.south, now.south),
+            max(before.west + columns[0], now.west + columns[1]),
+            max(before.south + rows[0], now.south + rows[1]),
+        )
 
     def colour(self, i: int, j: int) -> str | None:
         """Return the colour of what covers the square (i, j); None for floor."""
         if not (0 <= i < self.width and 0 <= j < self.height):
             return VERGE_COLOUR
-        name = self.movable_at(i, j)
-        if name is not None:
-            return self._colours[name]
-        layers = [*self._fixed, (VERGE_COLOUR, self._verge)]
-        return next((colour for colour, part in layers if part.covers(i, j)), None)
+        return COLOUR_OF_CODE[int(self.colours[j, i])]
 
     def movable_at(self, i: int, j: int) -> str | None:
         """Return the name of the movable thing that covers the square (i, j), the first by name; None without one."""
         return next((name for name, part in self._movable.items() if part.covers(i, j)), None)
 
-    def _parts(self) -> Iterable[Projection]:
-        """Yield the projections of the verge and of all things."""
-        yield self._verge
-        yield from (part for _, part in self._fixed)
-        yield from self._movable.values()
+    def _paint_movable(self, west: int, south: int, east: int, north: int) -> None:
+        """Write the colours of a rectangle of squares anew, after movable things in it have changed."""
+        west, south = max(west, 0), max(south, 0)
+        window = slice(south, max(north, south)), slice(west, max(east, west))
+        self.colours[window] = self._standing[window]
+        for name in reversed(self._movable):
+            part = self._movable[name]
+            rows, columns = part.covered.shape
+            if part.west < east and part.south < north and part.west + columns > west and part.south + rows > south:
+                self._paint(self.colours, part, self._codes[name])
+
+    def _paint(self, colours: TableColours, part: Projection, code: int) -> None:
+        """Write the code of a colour to the squares that a thing covers, as far as they are on the table."""
+        rows, columns = part.covered.shape
+        south, west = max(part.south, 0), max(part.west, 0)
+        north, east = min(part.south + rows, self.height), min(part.west + columns, self.width)
+        if south < north and west < east:
+            covered = part.covered[south - part.south : north - part.south, west - part.west : east - part.west]
+            np.copyto(colours[south:north, west:east], np.uint8(code), where=covered)

@@ -2,10 +2,13 @@
 
 run     run the robot on a scenario
 test    run scenarios as tests
+sweep   run scenarios with many seeds and noises
 query   ask what Utak believes
 repl    step through a run and ask
+explain tell why: facts, commands, verdicts, cells
 replay  show a recorded episode
 routes  find distinct routes on a map
+schema  print the JSON Schema of episodes and answers
 warm    compile the geometry kernels
-files   the subcommands that read and write files of scenarios: check, show, new
+files   the subcommands that read and write files of scenarios: check, show, new, import
 """

@@ -2,9 +2,10 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from simulator.cli.commands.run import add_settings, settings_of
+from simulator.cli.commands.run import DUMP_HELP, add_settings, settings_of
 from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
 from simulator.terminal.numbers import parse_whole
@@ -24,6 +25,8 @@ def add(parts: Any) -> None:
     part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
     part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
     part.add_argument("--limit", type=_limit, metavar="N", help="print so many rows at most (default 10000)")
+    part.add_argument("--dump-asp", metavar="DIR", help=f"{DUMP_HELP}: those of an episode up to the step")
+    part.add_argument("--force", action="store_true", help="let --dump-asp fill a folder that is not empty")
     add_settings(part)
     part.set_defaults(execute=execute)
 
@@ -33,10 +36,21 @@ def execute(options: argparse.Namespace) -> int:
     from kb.reasoning.query import MAX_ANSWER_ROWS, QueryEngine, QueryLimitError
     from simulator.run.story import open_story
 
+    if options.dump_asp is not None and Path(options.story).is_dir():
+        print(
+            "utak query: --dump-asp is for episodes here; utak run SCENARIO --dump-asp DIR is for runs", file=sys.stderr
+        )
+        return exits.USAGE
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
     _go_to(story, options.story, options.at)
     step = story.line["step"]
+    if options.dump_asp is not None:
+        from simulator.episode.episode import read_episode
+        from simulator.episode.program_dump import dump_episode
+
+        episode = read_episode(options.story)
+        dump_episode(options.dump_asp, options.story, episode, step, options.kb, options.force)
     try:
         with QueryEngine(rules=options.kb) as engine:
             answer = engine.ask(story.facts, options.query, options.limit or MAX_ANSWER_ROWS)

@@ -19,14 +19,11 @@ def add(parts: Any) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Execute lines of the standard input until it ends or `quit`."""
     from kb.reasoning.query import QueryEngine
+    from simulator.repl.loop import converse
     from simulator.run.story import open_story
-    from simulator.terminal.prompt import Prompt, lines_of
 
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
     with QueryEngine(rules=options.kb) as engine:
-        prompt = Prompt(story, engine)
-        for line in lines_of(prompt.words()):
-            if not prompt.obey(line):
-                break
+        converse(story, engine)
     return exits.SUCCESS

@@ -16,7 +16,13 @@ if TYPE_CHECKING:
 
     from simulator.episode.episode import Episode, EpisodeLine
     from simulator.run.session import Result, Session
+    from simulator.scenario.scenario import Scenario
     from simulator.scenario.settings import Settings
+
+    LineListener = Callable[[EpisodeLine], None]
+
+DUMP_HELP = "write program and facts of every decision into this folder, as plain clingo reads them"
+SETTINGS_OPTIONS = ("seed", "noise", "paths", "max_steps", "pull")  # the fields of Settings that options state
 
 
 def add(parts: Any) -> None:
@@ -29,7 +35,22 @@ def add(parts: Any) -> None:
     )
     part.add_argument("--html", metavar="FILE", help="write the whole run as a page that plays it in any browser")
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
-    part.add_argument("--force", action="store_true", help="let --log and --html overwrite files of other kinds")
+    part.add_argument(
+        "--from",
+        dest="origin",
+        metavar="EP.jsonl",
+        help="repeat this episode up to --at, then go on with the task of SCENARIO and the options given now",
+    )
+    part.add_argument("--at", type=_steps, metavar="STEP", help="the last step of --from that is repeated")
+    part.add_argument(
+        "--from-kb", action="append", metavar="FILE", default=[], help="a file of rules of the repeated run; repeatable"
+    )
+    part.add_argument("--dump-asp", metavar="DIR", help=DUMP_HELP)
+    part.add_argument(
+        "--force",
+        action="store_true",
+        help="let --log and --html overwrite files of other kinds, and --dump-asp fill a folder",
+    )
     part.add_argument("--json", action="store_true", help="print the result as one JSON object")
     part.add_argument(
         "--watch",
@@ -43,6 +64,11 @@ def add_settings(part: argparse.ArgumentParser) -> None:
     """Declare the options that determine a run."""
     part.add_argument("--seed", type=_seed, metavar="N", help="seed of all randomness (default 0)")
     part.add_argument("--noise", type=_noise, metavar="S", help="how much motions are disturbed, 0 to 1 (default 0)")
+    add_robot_settings(part)
+
+
+def add_robot_settings(part: argparse.ArgumentParser) -> None:
+    """Declare the options of a run besides seed and noise."""
     part.add_argument("--paths", choices=PATH_CHOICES, help="how routes are found (default skeleton)")
     part.add_argument(
         "--no-pull", dest="pull", action="store_false", default=None, help="push what is held, never pull"
@@ -54,36 +80,110 @@ def add_settings(part: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Run the robot and print the result."""
-    from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
-    from simulator.run.robots import make_robot
-    from simulator.run.session import Session
+    from simulator.episode.episode import STANDARD_OUTPUT
     from simulator.scenario.scenario import read_scenario
 
-    if options.resume and options.log in (None, STANDARD_OUTPUT):
-        print("utak run: --resume needs --log EP.jsonl", file=sys.stderr)
+    wrong = _wrong_usage(options)
+    if wrong:
+        print(f"utak run: {wrong}", file=sys.stderr)
         return exits.USAGE
     refuse_links(options, options.scenario)
     scenario = read_scenario(options.scenario)
-    settings = settings_of(options, _recorded_options(options))
     if options.html is not None:
-        from simulator.replay.output import check_page_path, write_page
+        from simulator.replay.output import check_page_path
 
         check_page_path(options.html, options.force)
     lines: list[EpisodeLine] = []
-    tell = _progress_printer(options.watch)
-
-    def note(session: Session) -> None:
-        if options.html is not None and len(lines) <= session.line["step"]:
-            lines.append(session.line)
-        tell(session)
-
-    with EpisodeLog(options.log, options.resume, options.force) as log:
-        session = Session(scenario, settings, make_robot, log)
-        result = session.run(note)
+    run = _run if options.origin is None else _run_fork
+    result = run(options, scenario, _progress_printer(options.watch), _listener(options, lines))
     if options.html is not None:
-        write_page(options.html, _recorded(session, lines, result), options.force)
+        from simulator.replay.output import write_page
+
+        write_page(options.html, _recorded(lines), options.force)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
+
+
+def _wrong_usage(options: argparse.Namespace) -> str:
+    """Return what is wrong with the combination of options; '' for nothing."""
+    from simulator.episode.episode import STANDARD_OUTPUT
+
+    if options.resume and options.log in (None, STANDARD_OUTPUT):
+        return "--resume needs --log EP.jsonl"
+    if (options.origin is None) != (options.at is None):
+        return "--from EP.jsonl and --at STEP belong together"
+    if options.origin is not None and options.resume:
+        return "--resume goes on from the fork that --log names; leave out --from and --at"
+    if options.origin is not None and _is_same_file(options.origin, options.log):
+        return "--log names the episode of --from; a fork is written to another file"
+    return ""
+
+
+def _is_same_file(one: str, other: str | None) -> bool:
+    """Return whether two names mean the same file."""
+    from pathlib import Path
+
+    try:
+        return other is not None and Path(one).samefile(other)
+    except (OSError, ValueError):
+        return False
+
+
+def _run(
+    options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
+) -> "Result":
+    """Run from the start, or go on from the episode that --log names; return the result."""
+    from simulator.episode.episode import EpisodeLog
+    from simulator.run.forking import repeat_stages, stages_until
+    from simulator.run.robots import make_robot, redirect_robot
+    from simulator.run.session import Session
+
+    head = _recorded_header(options) or {}
+    settings = settings_of(options, head.get("options"))
+    rules = [*options.kb, *options.from_kb]
+    before = stages_until(options.log, head, None, scenario, rules) if "forked" in head else []
+    with EpisodeLog(options.log, options.resume, options.force, listen) as log:
+        if not before:
+            return Session(scenario, settings, make_robot, log).run(watch)
+        return repeat_stages(before, scenario, settings, make_robot, redirect_robot, log).go_on(watch)
+
+
+def _run_fork(
+    options: argparse.Namespace, scenario: "Scenario", watch: "Callable[[Session], None]", listen: "LineListener"
+) -> "Result":
+    """Repeat the episode of --from up to --at, go on with the options given now, and return the result."""
+    from simulator.episode.episode import EpisodeLog, read_episode
+    from simulator.run.forking import options_at, repeat_until
+    from simulator.run.robots import make_robot, redirect_robot
+
+    episode = read_episode(options.origin)
+    settings = settings_of(options, options_at(episode.header, options.at))
+    with EpisodeLog(options.log, force=options.force, listen=listen) as log:
+        session = repeat_until(
+            options.origin, episode, options.at, scenario, settings, make_robot, redirect_robot, log, options.from_kb
+        )
+        return session.go_on(watch)
+
+
+def _listener(options: argparse.Namespace, lines: "list[EpisodeLine]") -> "LineListener":
+    """Return the function that takes each line of the episode, for --dump-asp and --html.
+
+    lines : grows by each line when --html is given.
+    """
+    listeners: list[LineListener] = []
+    if options.dump_asp is not None:
+        from simulator.episode.program_dump import ProgramDump
+
+        listeners.append(ProgramDump(options.dump_asp, "the run", [*options.kb, *options.from_kb], options.force).add)
+    if options.html is not None:
+        listeners.append(lines.append)
+
+    def listen(line: "EpisodeLine") -> None:
+        """Pass a line on."""
+        for take in listeners:
+            take(line)
+
+    return listen
 
 
 def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = None) -> "Settings":
@@ -92,10 +192,13 @@ def settings_of(options: argparse.Namespace, recorded: dict[str, Any] | None = N
 
     from simulator.scenario.settings import Settings, kb_files_named
 
-    names = ("seed", "noise", "paths", "max_steps", "pull")
-    given = {name: getattr(options, name) for name in names if getattr(options, name) is not None}
-    kept = {name: value for name, value in (recorded or {}).items() if name in names}
-    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given})
+    kept = {name: value for name, value in (recorded or {}).items() if name in SETTINGS_OPTIONS}
+    return replace(Settings(kb_files=kb_files_named(options.kb)), **{**kept, **given_settings(options)})
+
+
+def given_settings(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields of `Settings` that the command line states, by name, without the files of rules."""
+    return {name: getattr(options, name) for name in SETTINGS_OPTIONS if getattr(options, name) is not None}
 
 
 def exit_code(result: "Result") -> int:
@@ -105,16 +208,15 @@ def exit_code(result: "Result") -> int:
     return exits.LIMIT if result.verdict == "limit" else exits.NOT_REACHED
 
 
-def _recorded_options(options: argparse.Namespace) -> dict[str, Any] | None:
-    """Return the options of the episode that is to be resumed; None when there is none."""
+def _recorded_header(options: argparse.Namespace) -> dict[str, Any] | None:
+    """Return the header of the episode that is to be resumed; None when there is none."""
     from pathlib import Path
 
     from simulator.episode.episode import complete_lines, read_episode
 
     if not options.resume or not Path(options.log).exists() or not complete_lines(options.log):
         return None
-    found = read_episode(options.log).header.get("options")
-    return found if isinstance(found, dict) else None
+    return read_episode(options.log).header
 
 
 def _print(result: "Result", json: bool, stream: TextIO) -> None:
@@ -122,12 +224,13 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
     if json:
         print(as_json({**result.line["result"], "unmet": list(result.unmet)}), file=stream)
         return
-    truth = {None: "", True: ", achieved", False: ", not achieved"}[result.achieved]
+    achieved = ", achieved" if result.believed else ", as expected"  # by `verdict(V)` of expect.lp
+    truth = {None: "", True: achieved, False: ", not achieved"}[result.achieved]
     print(
         f"{result.verdict} in {result.steps} steps{truth}: {escape_controls(result.reason, lines=False)}", file=stream
     )
-    for expected in result.unmet:
-        print(f"not met: {expected}", file=sys.stderr)
+    for expected, came in zip(result.unmet, result.came, strict=True):
+        print(f"not met: {expected}: {came}", file=sys.stderr)
 
 
 def _progress_printer(watch: bool) -> "Callable[[Session], None]":
@@ -141,15 +244,14 @@ def _progress_printer(watch: bool) -> "Callable[[Session], None]":
     return lambda session: print(step_in_words(session.line), file=sys.stderr)
 
 
-def _recorded(session: "Session", lines: "list[EpisodeLine]", result: "Result") -> "Episode":
-    """Return a run as the episode that `--log` would have."""
+def _recorded(lines: "list[EpisodeLine]") -> "Episode":
+    """Return a run as the episode that `--log` would have, from all of its lines."""
     import json
 
     from simulator.episode.episode import Episode, encode
-    from simulator.episode.record import header
 
-    first, *steps = (json.loads(encode(line)) for line in (header(session.scenario, session.settings), *lines))
-    return Episode(first, tuple(steps), result.line["result"])
+    first, *steps, last = (json.loads(encode(line)) for line in lines)
+    return Episode(first, tuple(steps), last["result"])
 
 
 def _seed(text: str) -> int:

@@ -2,6 +2,7 @@
 
 Modules in reading order:
 
+events       the steps at which something happened
 delta        differences between JSON values
 outlines     facts with their outlines apart, so that little changes
 impressions  what the fields of the retina observe, what was predicted, how it was explained

@@ -18,8 +18,8 @@ from typing import NamedTuple
 SEGMENT = re.compile(r"segment\(([a-z]\w*),(\d{1,9})((?:,-?\d{1,9}){4}),(\d{1,9})\)\.", re.ASCII)
 AS_THE_OTHER_WAY = -1  # in the place of a confidence: as the same edge had it in an earlier outline
 
-Corner = tuple[int, int]  # east and north, hundredths of squares, robot frame
-Edge = tuple[Corner, Corner]
+OutlinePoint = tuple[int, int]  # east and north, hundredths of squares, robot frame
+Edge = tuple[OutlinePoint, OutlinePoint]
 
 
 class SplitFacts(NamedTuple):
@@ -81,7 +81,7 @@ def joined_facts(split: SplitFacts) -> list[str]:
     return sorted(facts)
 
 
-def rectangle_fact(name: str, corners: Sequence[Corner]) -> str:
+def rectangle_fact(name: str, corners: Sequence[OutlinePoint]) -> str:
     """Return the `rect/5` fact of a node whose outline has these corners."""
     easts, norths = zip(*corners, strict=True)
     return f"rect({name},{min(easts)},{min(norths)},{max(easts)},{max(norths)})."
@@ -90,7 +90,7 @@ def rectangle_fact(name: str, corners: Sequence[Corner]) -> str:
 def _written(edges: Iterable[Edge]) -> list[str]:
     """Return the corners of edges as text. What they begin with is lost where they form no rings."""
     written = []
-    first: Corner | None = None
+    first: OutlinePoint | None = None
     before = (0, 0)
     for start, end in edges:
         text = f"@{start[0]},{start[1]}" if first is None else f"{start[0] - before[0]},{start[1] - before[1]}"
@@ -104,7 +104,7 @@ def _written(edges: Iterable[Edge]) -> list[str]:
 def _edges(corners: Sequence[str]) -> list[Edge]:
     """Return the edges between corners that `_written` wrote."""
     edges: list[Edge] = []
-    ring: list[Corner] = []
+    ring: list[OutlinePoint] = []
     for text in corners:
         east, north = map(int, text.strip("@;").split(","))
         ring.append((ring[-1][0] + east, ring[-1][1] + north) if ring else (east, north))

@@ -24,7 +24,9 @@ from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
 from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
 
-STEPS_PER_BLOCK = 500  # a compromise: longer blocks pack better, shorter ones are read faster; benchmarks/replay.py
+STEPS_PER_BLOCK = (
+    500  # a compromise: longer blocks pack better, shorter ones are read faster; benchmarks/episodes/replay.py
+)
 # Bytes of a packed episode of up to STEPS_PER_BLOCK steps, and for each step more, that may be exceeded only when no
 # detail of decisions is left to leave out. With the player, 500 steps have 150 KB and 5,000 steps 1.5 MB; a convention.
 PACKED_BYTES = 110_000

@@ -15,7 +15,7 @@ TRACK_DIGITS = 6  # decimals of a square
 PARTS = 10.0**TRACK_DIGITS  # of a square
 POSE_DIGITS = 5  # decimals of a square and of a degree, in the poses of things
 KEPT_OUTLINE_TOLERANCE = 1e-4  # squares by which the outline of a thing may be off; a convention, far below a pixel
-Ring = Sequence[Sequence[float]]
+TrackedRing = Sequence[Sequence[float]]
 
 
 def track_columns(lines: Sequence[EpisodeLine]) -> dict[str, list[Any]]:
@@ -69,7 +69,7 @@ def predicted_place(before: list[float] | None, action: EpisodeLine | None) -> l
     return [_rounded(v + w) for v, w in zip(before, way, strict=True)]
 
 
-def posed(ring: Ring, first: Ring) -> list[Any]:
+def posed(ring: TrackedRing, first: TrackedRing) -> list[Any]:
     """Return the pose of a thing: where its first corner is, and how it is turned against its outline at first.
 
     Parameters
@@ -91,14 +91,14 @@ def posed(ring: Ring, first: Ring) -> list[Any]:
     return [[_rounded(v) for v in point] for point in ring]
 
 
-def placed(pose: Sequence[float], first: Ring) -> list[list[float]]:
+def placed(pose: Sequence[float], first: TrackedRing) -> list[list[float]]:
     """Return the outline of a thing with a pose; `first` is that in the header, in squares, table frame."""
     cosine, sine = math.cos(math.radians(pose[2])), math.sin(math.radians(pose[2]))
     ways = ((x - first[0][0], y - first[0][1]) for x, y in first)
     return [[pose[0] + dx * cosine - dy * sine, pose[1] + dx * sine + dy * cosine] for dx, dy in ways]
 
 
-def poses(objects: Mapping[str, Ring], movable: Mapping[str, EpisodeLine]) -> dict[str, list[Any]]:
+def poses(objects: Mapping[str, TrackedRing], movable: Mapping[str, EpisodeLine]) -> dict[str, list[Any]]:
     """Return the poses of things by name; the outline of a thing that the header's `movable` does not name."""
     return {name: posed(ring, movable[name]["rings"][0] if name in movable else ()) for name, ring in objects.items()}
 

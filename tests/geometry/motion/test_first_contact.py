@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import affinity, box
 
-from geometry.motion.first_contact import Contact, ContactBody, Obstacles
+from geometry.motion.first_contact import Contact, ContactBody, Obstacles, obstacle_part
 from geometry.motion.se2 import Motion, Pose, Rotate, Translate
 
 MAX_PENETRATION = 1e-6  # squares: an overlap deeper than this is penetration
@@ -107,6 +107,27 @@ def test_a_point_stops_where_its_line_enters(point: tuple, still: list, push: Tr
 
 FLOOR, WALL = box(-20, -2, 20, 0), box(10, 0, 12, 2)
 ROOM = Obstacles([FLOOR, WALL])
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.tuples(either, either), st.lists(shapes, min_size=1, max_size=3), st.lists(motions, min_size=1, max_size=3))
+def test_a_point_moves_the_same_whether_or_not_the_union_is_known(point: tuple, still: list, several: list) -> None:
+    known, body = Obstacles(still), ContactBody(None, [point])
+    assert len(known.point_surface.hull)
+    for motion in several:
+        assert Obstacles(still).first_contact(body, motion) == known.first_contact(body, motion)
+    assert Obstacles([obstacle_part(shape) for shape in still]).first_contact(body, motion) == known.first_contact(
+        body, motion
+    )
+
+
+def test_the_union_of_obstacles_is_computed_when_a_point_comes_near_only() -> None:
+    walls = Obstacles([box(0, 0, 4, 1), box(0, 1, 4, 2)])
+    for free in (Translate(3.0, 0.0), Translate(1e-9, 5.0), Rotate(90.0, (5.0, 1.0))):
+        assert walls.first_contact(ContactBody(None, [(5.0, 1.0)]), free).fraction == 1.0
+    assert "point_surface" not in vars(walls)
+    assert walls.first_contact(ContactBody(None, [(5.0, 1.0)]), Translate(-2.0, 0.0)).fraction == 0.5
+    assert "point_surface" in vars(walls)
 
 
 @pytest.mark.parametrize(

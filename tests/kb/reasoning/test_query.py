@@ -142,7 +142,10 @@ BAD = {
     "#script (python) import os #end": "syntax error",
     "X = @f()": "operation undefined",
     "object(\u201cx\u201d)": "typographic",
-    "object(X) % and\nmore": "one line",
+    "object(X) % and\nmore": "no comments",
+    "object(X),\n  shpe(X, Y, Z)": "query:2:3-3: error: unknown predicate shpe/3",
+    "object(X),\n\n (": "query:3:",
+    "object(X),\n  X = 3000000000": "query:2:7-16: error: a number beyond 32 bits",
     "a" * 20_000: "at most 10000 characters",
 }
 
@@ -233,3 +236,45 @@ def test_invalid_facts_are_refused(engine: QueryEngine) -> None:
 def test_any_text_is_answered_or_refused(engine: QueryEngine, text: str) -> None:
     with suppress(BadInputError, QueryLimitError):
         engine.ask(FACTS, text)
+
+
+BINDINGS = ["parameter(x).", "parameter(y).", "bound(x,o1).", *FACTS]
+BOUND = {
+    "bound(x, o1)": "yes",
+    "bound(x, o2)": "no",  # x is known to mean o1
+    "bound(y, o2)": "don't know",  # y means nothing yet
+    "bound(P, o2)": "don't know",
+    "not bound(y, o2)": "don't know",
+    "not bound(x, o2)": "yes",
+    "bound(z, o1)": "no",  # the task has no z
+    "parameter(z)": "no",
+    "bound(x, N), bound(y, N)": "don't know",
+    "bound(x, N), not object(N)": "no",
+}
+
+
+@pytest.mark.parametrize("query", BOUND)
+def test_what_an_unbound_parameter_means_is_not_known(engine: QueryEngine, query: str) -> None:
+    for unseen in ("unseen(r1,0).", "unseen(r1,9)."):
+        assert engine.ask([*BINDINGS, unseen], query).kind == BOUND[query]
+    with pytest.raises(BadInputError, match="unknown constant floor, which is no object"):
+        engine.ask(BINDINGS, "bound(x, floor)")
+
+
+def test_bound_parameters_are_rows(engine: QueryEngine) -> None:
+    answer = engine.ask(BINDINGS, "bound(P, N), shape(N, S, C)")
+    assert answer.rows == (("x", "o1", "square", 100),)
+    assert answer.types == ("parameter of the task", "thing", "shape", "a confidence")
+
+
+def test_a_worker_holds_the_facts_of_the_last_query_alone(engine: QueryEngine) -> None:
+    other = ["node(o7).", "kind(o7,object,90)."]
+    for _ in range(3):
+        assert engine.ask(FACTS, "object(X)").rows == (("o1",), ("o2",))
+        assert engine.ask(other, "object(X)").rows == (("o7",),)
+        engine.close()
+        assert engine.ask(other, "object(X)").rows == (("o7",),)
+
+
+def test_a_query_may_have_several_lines(engine: QueryEngine) -> None:
+    assert engine.ask(FACTS, "?- object(X),\n   shape(X, brick, C).\n").rows == (("o2", 60),)

@@ -1,9 +1,11 @@
 """Many scenarios at once, and scenarios from elsewhere: a bad one is reported and the others are still run."""
 
+import json
 import os
 import re
 import shutil
 import sys
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,8 @@ from random_scenes import write_scene
 
 from kb.language.source_text import lies_outside, read_source
 from simulator.cli.main import main
+from simulator.episode.forms import complaints
+from simulator.episode.output_forms import NAMED_FORMS
 from simulator.terminal import exits
 
 SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
@@ -58,6 +62,100 @@ def test_tests_continue_after_a_bad_scenario(
     assert f"BUG {root / 'good'}: " in seen.out
     assert "2 ended by a bug of ours" in seen.err
     assert "a bug of ours: ZeroDivisionError" in seen.err
+
+
+def test_outcomes_are_one_json_object_and_junit_xml(
+    scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root, junit = suite(scene), tmp_path / "junit.xml"
+    (scene / "expect.lp").write_text("fails. within(3). weight(fails, 2). weight(within(3), 3).")
+    arguments = ["test", str(root), str(root / "nowhere"), "--json", "--junit", str(junit), "--seed", "7"]
+    assert main(arguments) == 66
+    first = capsys.readouterr().out
+    found = json.loads(first)
+    assert list(complaints(NAMED_FORMS["test"], found)) == []
+    assert found["exit_code"] == 66
+    assert found["counts"] == {"passed": 0, "failed": 2, "bad": 1, "absent": 2, "bug": 0}
+    assert found["points"] == {"earned": 2, "possible": 6}
+    assert all(list(one) == list(found["scenarios"][0]) for one in found["scenarios"])
+    by_name = {Path(one["scenario"]).name: one for one in found["scenarios"]}
+    assert set(by_name) == {"nowhere", "a_failed", "b_bad", "c_absent", "good"}
+    good = by_name["good"]
+    assert (good["outcome"], good["verdict"], good["steps"]) == ("failed", "limit", 30)
+    assert good["points"] == {"earned": 2, "possible": 5}
+    assert good["expectations"] == [
+        {"expected": "fails", "met": True, "came": "", "points": 2},
+        {"expected": "within(3)", "met": False, "came": "30 commands were given", "points": 3},
+    ]
+    assert good["faults"] == ["not met: within(3): 30 commands were given"]
+    assert good["options"]["seed"] == 7
+    assert [step["step"] for step in good["last_steps"]] == [26, 27, 28, 29, 30]
+    assert good["command"] == f"utak test {scene} --seed 7"
+    assert "b_bad/expect.lp:1:8-8: error: a number of steps" in by_name["b_bad"]["error"]
+    suites = ElementTree.parse(junit).getroot()
+    assert suites.attrib == {"name": "utak", "tests": "5", "failures": "2", "errors": "3"}
+    assert main(arguments) == 66
+    assert capsys.readouterr().out == first  # the same, byte for byte: no times
+    assert main([*arguments, "--times"]) == 66
+    assert all(one["seconds"] >= 0 for one in json.loads(capsys.readouterr().out)["scenarios"][1:])
+    assert "time" in ElementTree.parse(junit).getroot()[0].attrib or "seconds" not in found["scenarios"][0]
+
+
+def test_junit_overwrites_no_other_file_and_says_so_before_anything_runs(
+    scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "precious.txt"
+    other.write_text("precious")
+    assert main(["test", str(scene), "--junit", str(other)]) == 66
+    seen = capsys.readouterr()
+    assert (seen.out, other.read_text()) == ("", "precious")
+    assert "it is no JUnit XML, and is not overwritten without --force" in seen.err
+    assert main(["test", str(scene), "--junit", str(tmp_path / "no" / "j.xml")]) == 66
+    assert main(["test", str(scene), "--junit", str(other), "--force"]) == 0
+    assert main(["test", str(scene), "--junit", str(other)]) == 0
+
+
+def test_scenarios_are_chosen_by_a_part_of_their_path(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root = suite(scene)
+    assert main(["test", str(root), "-k", "GOOD"]) == 0
+    assert capsys.readouterr().out.count("\n") == 1
+    assert main(["test", str(root), str(root / "good"), "-k", "good"]) == 0
+    assert capsys.readouterr().out.count("\n") == 1  # each scenario once
+    assert main(["test", str(root), "-k", "nonsense"]) == 66
+    assert "none of the 4 scenarios has that in its name" in capsys.readouterr().err
+
+
+def test_points_are_told_where_they_are_weighed(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (scene / "expect.lp").write_text("fails. weight(fails, 4).")
+    assert main(["test", str(scene)]) == 0
+    seen = capsys.readouterr()
+    assert seen.out == f"ok {scene}: 4 of 4 points: limit in 30 steps: the script has ended\n"
+    assert "1 of 1 passed; 4 of 4 points" in seen.err
+
+
+def test_a_plan_sets_options_and_asks(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (scene / "rules.lp").write_text("much(R) :- unseen(R, N), N > 20.")
+    (scene / "trial.lp").write_text(
+        'max_steps(5). seed(3). rules("rules.lp"). asks("much(R)", row(r1)). asks("unseen(R, N)", row(r1, 25)).'
+        'weight(asks("much(R)", row(r1)), 3). asks("nonsense(X)", yes).'
+    )
+    (scene / "expect.lp").write_text("verdict(limit).")
+    assert main(["check", str(scene)]) == 0
+    capsys.readouterr()
+    assert main(["test", str(scene), "--json", "--max-steps", "10"]) == 1
+    one = json.loads(capsys.readouterr().out)["scenarios"][0]
+    assert (one["steps"], one["options"]["seed"]) == (10, 3)  # the command line wins
+    assert one["points"] == {"earned": 1, "possible": 6}
+    assert [(e["met"], e["points"]) for e in one["expectations"]] == [(True, 1), (False, 3), (False, 1), (False, 1)]
+    came = [e["came"] for e in one["expectations"]]
+    assert came[1] == "the answer is no"
+    assert "the answer has 1 row: r1, 0" in came
+    assert any("the question cannot be answered: unknown predicate nonsense/1" in text for text in came)
+    (scene / "rules.lp").write_text("much(R) :- unseen(R, N")
+    assert main(["check", str(scene)]) == 65
+    assert main(["test", str(scene)]) == 65
+    (scene / "rules.lp").unlink()
+    assert main(["test", str(scene)]) == 66
 
 
 def test_checks_continue_after_a_bad_scenario(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:

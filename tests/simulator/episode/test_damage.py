@@ -166,7 +166,7 @@ def test_every_command_reports_damage_with_its_exit_code(
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"show\nstep\nfacts\n?- node(X).\nshow\n")))
     code = main(["repl", str(path)])
     seen = capsys.readouterr()
-    assert code == 65 or PLACE.search(seen.out)
+    assert code == 65 or PLACE.search(seen.err)
     assert "bug" not in seen.out + seen.err
 
 

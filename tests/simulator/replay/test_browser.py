@@ -13,7 +13,7 @@ from replay_episodes import hostile, same
 
 from benchmarks.harness.browser import CHROMIUM, Browser
 from simulator.episode.episode import Episode
-from simulator.replay.events import episode_events
+from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import NO_HTML, kept_line, slim
 from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE
 from simulator.replay.page import replay_page

@@ -18,10 +18,13 @@ from random_scenes import write_scene
 
 from kb.reasoning.query import QueryEngine
 from simulator.cli.commands.files.new import NEW_SCENARIO_FILES
+from simulator.repl.commands import PROMPT_COMMANDS
+from simulator.repl.dialogue import Dialogue
+from simulator.repl.printer import Printer
 from simulator.run.interrupts import defer_interrupt
-from simulator.run.story import Story, open_story
+from simulator.run.live_story import LiveStory
+from simulator.run.story import open_story
 from simulator.scenario.settings import Settings
-from simulator.terminal.prompt import Prompt
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -41,7 +44,7 @@ def scripted(monkeypatch: pytest.MonkeyPatch) -> None:
     scripted_robot.install()
 
 
-def finished(story: Story) -> list[Any]:
+def finished(story: LiveStory) -> list[Any]:
     """Return every line of a story with its picture, and its result."""
     lines = [(story.line, story.picture())]
     while story.advance():
@@ -136,7 +139,7 @@ def test_the_first_ctrl_c_completes_the_step_and_the_second_interrupts_it() -> N
 
 
 def test_the_prompt_stops_after_a_complete_step(
-    tmp_path: Path, scripted: None, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, scripted: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     story = open_story(write_scene(tmp_path / "s", 4), Settings())
     step = scripted_robot.Robot.step
@@ -147,11 +150,11 @@ def test_the_prompt_stops_after_a_complete_step(
         return step(robot)
 
     monkeypatch.setattr(scripted_robot.Robot, "step", pressing)
-    said: list[str] = []
     with QueryEngine() as engine:
-        Prompt(story, engine, said.append).obey("run")
-    assert [text.split(":")[0] for text in said if text.startswith("step")] == ["step 1", "step 2", "step 3", "step 4"]
-    assert said[-1] == "interrupted"
+        Dialogue(story, engine, Printer(), PROMPT_COMMANDS).obey("run")
+    said = capsys.readouterr()
+    assert [text.split(":")[0] for text in said.out.splitlines()] == ["step 1", "step 2", "step 3", "step 4"]
+    assert said.err.splitlines()[-1] == "interrupted"
     assert story.line["step"] == 4
 
 

@@ -7,8 +7,10 @@ import pytest
 import shapely
 from shapely.affinity import translate
 
+from benchmarks.harness.judging import judge_module, judge_path
 from kb.language.diagnostics import BadInputError
-from simulator.scenario.expectation import Snapshot, read_expectations, should_fail, unmet
+from simulator.scenario.expectation import Snapshot, read_expectations, shortfalls, should_fail, unmet
+from simulator.scenario.points import PointScore, judge_expectations, score
 from simulator.world.world import Thing, World
 
 T1 = shapely.box(4, 4, 6, 6)
@@ -48,6 +50,16 @@ CASES = [
     ("unmoved(t1).", STAY, True),
     ("unmoved(t1).", track((5, 1), (5, 1), pushed=1e-9), False),
     ("unmoved(p1).", STAY, True),
+    ('near(utak, "POINT (5 5.5)", "2.5").', STAY, True),
+    ('near(utak, "POINT (5 5.5)", "2.4").', STAY, False),
+    ('avoids(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").', STAY, False),
+    ('avoids(utak, "POLYGON ((7 0, 9 0, 9 2, 7 2, 7 0))").', STAY, True),
+    ('avoids(t1, "POLYGON ((7 4, 9 4, 9 6, 7 6, 7 4))").', track((5, 1), (5, 1), pushed=3), False),
+    ('pose(t1, "POINT (8 5)", 0, 0).', track((5, 1), (5, 1), pushed=3), True),
+    ('pose(t1, "POINT (8 5)", 90, "0.01").', track((5, 1), (5, 1), pushed=3), True),
+    ('pose(t1, "POINT (8 5)", 45, "0.3").', track((5, 1), (5, 1), pushed=3), False),
+    ('pose(t1, "POINT (7.5 5)", 0, "0.4").', track((5, 1), (5, 1), pushed=3), False),
+    ('pose(t1, "POINT (7.5 5)", 0, "0.5").', track((5, 1), (5, 1), pushed=3), True),
     ("within(1).", STAY, True),
     ("within(0).", STAY, False),
 ]
@@ -69,6 +81,22 @@ BAD = {
     'near(utak, "POINT (1 1)").': "near takes 3 arguments, not 2",
     'inside(utak, "POINT (1 1)").': "a shape here is a POLYGON or MULTIPOLYGON",
     "fails(t1).": "fails takes 0 arguments, not 1",
+    'near(utak, "POINT (1 1)", "2,5").': 'a distance in squares must be a number, not "2,5"',
+    'near(utak, "POINT (1 1)", "-1").': "a distance in squares must be from 0 to 4096",
+    'pose(p1, "POINT (1 1)", 0, 1).': "p1 is fixed",
+    'pose(utak, "POINT (1 1)", 0, 1).': "the world has no object utak",
+    "verdict(dome).": "unknown verdict dome",
+    "verdict(done). verdict(limit).": "1:16-29: error: a run has one verdict",
+    "fails. verdict(done).": "1:8-20: error: verdict(done) contradicts fails",
+    "within(3). within(3).": "1:12-20: error: stated twice: within(3)",
+    "within(3). weight(within(4), 2).": "1:19-27: error: within(4) is weighed, but not expected",
+    "within(3). weight(within(3), -2).": "a weight must be from 0 to",
+    "within(3). weight(within(3), 0).": "1:30-30: error: all weights are 0",
+    "within(3). weight(within(3), 2). weight(within(3), 2).": "1:34-53: error: a second weight of within(3)",
+    "within(3). weight(within(3)).": "weight takes 2 arguments, not 1",
+    "within(3). weight(weight(within(3), 1), 1).": "unknown predicate weight/2",
+    "within(3). weight(unmoved(t2), 1).": "unmoved(t2) is weighed, but not expected",
+    "weight(within(3), 1).": "nothing is expected: there are weights alone",
 }
 
 
@@ -78,3 +106,70 @@ def test_errors_of_expectations_are_reported(text: str, tmp_path: Path) -> None:
     with pytest.raises(BadInputError) as caught:
         read_expectations(tmp_path / "expect.lp", WORLD)
     assert BAD[text] in str(caught.value)
+
+
+CAME = {
+    'inside(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").': "utak is at POINT (5.00 3.00) at the end, 1.00 squares",
+    'inside(t1, "POLYGON ((5 4, 9 4, 9 6, 5 6, 5 4))").': "t1 is at POINT (5.00 5.00) at the end, 50 % of it outside",
+    'near(utak, "POINT (5 6)", 2).': "utak is at POINT (5.00 3.00) at the end, 3.00 squares away from it",
+    'visits(utak, "POLYGON ((4 4, 6 4, 6 6, 4 6, 4 4))").': "it was at no step there; the nearest was step 1",
+    'avoids(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").': "it was there at step 0: utak is at POINT (5.00 1.00)",
+    "circles(utak, p1).": "the track winds about it by",
+    "within(0).": "1 command was given",
+    "verdict(done).": "the verdict is limit",
+}
+
+
+@pytest.mark.parametrize("text", CAME)
+def test_what_came_is_said_in_words(text: str, tmp_path: Path) -> None:
+    (tmp_path / "expect.lp").write_text(text)
+    found = shortfalls(read_expectations(tmp_path / "expect.lp", WORLD), WORLD, STAY, "limit")
+    assert CAME[text] in next(iter(found.values()))
+
+
+def outcomes(text: str, folder: Path, believed: bool, verdict: str, reason: str = "why") -> PointScore:
+    """Return the points of the run STAY by an expect.lp."""
+    (folder / "expect.lp").write_text(text)
+    expected = read_expectations(folder / "expect.lp", WORLD)
+    missed = shortfalls(expected, WORLD, STAY, verdict)
+    return score(judge_expectations(expected, missed, believed, reason))
+
+
+def test_points_are_weights_and_one_without_a_weight(tmp_path: Path) -> None:
+    text = "within(0). unmoved(t1). verdict(done). weight(verdict(done), 5)."
+    assert outcomes(text, tmp_path, True, "done") == (6, 7)
+    assert outcomes(text, tmp_path, False, "limit") == (1, 7)
+    assert outcomes("within(5). weight(within(5), 0). unmoved(t1).", tmp_path, True, "done") == (1, 1)
+
+
+def test_where_failure_is_expected_other_facts_count_by_their_weight_alone(tmp_path: Path) -> None:
+    text = "fails. within(0). verdict(possible_if)."
+    assert outcomes(text, tmp_path, False, "possible_if") == (2, 2)
+    assert outcomes(text, tmp_path, False, "limit") == (1, 2)
+    assert outcomes(text, tmp_path, True, "done") == (0, 2)
+    assert outcomes(text, tmp_path, False, "limit", reason="") == (0, 2)
+    assert outcomes(text + " weight(within(0), 4).", tmp_path, False, "possible_if") == (2, 6)
+
+
+@pytest.mark.skipif(judge_path() is None, reason="no judge (set UTAK_JUDGE)")
+@pytest.mark.parametrize(("text", "steps", "met"), CASES)
+def test_the_independent_judge_agrees(text: str, steps: list[Snapshot], met: bool, tmp_path: Path) -> None:
+    (tmp_path / "expect.lp").write_text(text)
+    (tmp_path / "world.lp").write_text(
+        """table(12, 12). verge("POLYGON ((0 11, 0 12, 12 12, 12 11, 0 11))"). utak("POINT (5 1)", 0).
+        object(t1, g, "POLYGON ((6 4, 6 6, 4 6, 4 4, 6 4))"). fixed(p1, h, "POLYGON ((2 8, 2 9, 1 9, 1 8, 2 8))")."""
+    )
+    path = judge_path()
+    assert path is not None
+    judge = judge_module(path)
+    watcher = judge.Judge(judge.World(tmp_path))
+    lines = [
+        {"step": one.step, "utak": one.utak, "objects": {n: p.exterior.coords[:-1] for n, p in one.polygons.items()}}
+        for one in steps
+    ]
+    if "p1" in text:
+        for line in lines:
+            line["objects"]["p1"] = PILLAR.polygon.exterior.coords[:-1]
+    watcher.ends(tmp_path, lines, {"believed": True, "achieved": met, "verdict": "done", "reason": "", "steps": 1})
+    assert bool(watcher.findings) != met
+    assert not [finding for finding in watcher.findings if "says achieved" in str(finding)]

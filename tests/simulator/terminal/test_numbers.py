@@ -130,7 +130,16 @@ def routes(scene: Path, tmp_path: Path) -> list[list[str]]:
     return [["routes", str(path), "--from", start, "--to", goal] for start, goal in ends]
 
 
-PRINTED: dict[str, Callable[[Path, Path], list[list[str]]]] = {"run": run, "query": query, "routes": routes}
+def sweep(scene: Path, tmp_path: Path) -> list[list[str]]:
+    return [["sweep", str(scene), "--max-steps", "1"]]
+
+
+PRINTED: dict[str, Callable[[Path, Path], list[list[str]]]] = {
+    "run": run,
+    "query": query,
+    "routes": routes,
+    "sweep": sweep,
+}
 
 
 def test_every_command_with_json_is_tried() -> None:

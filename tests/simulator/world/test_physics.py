@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from geometry.motion.se2 import Rotate, Translate
 from simulator.world.physics import Tabletop
+from simulator.world.senses import NEIGHBOUR_OFFSETS
 from simulator.world.world import Thing, World, outer_ring
 
 VERGE = shapely.box(0, 0, 20, 18).difference(shapely.box(2, 2, 18, 16))
@@ -174,6 +175,45 @@ def test_things_never_overlap_after_motions(heading: int, commands: list[Any], n
         assert not inside
     for name, polygon in world.polygons.items():
         assert (polygon.area, polygon.length) == pytest.approx(sizes[name])
+
+
+# Grasps what is beside Utak, if anything is, so that random commands carry something.
+carrying = st.one_of(command, st.just(("take",)), st.just(("take",)))
+
+
+def play(world: Tabletop, commands: list[Any]) -> None:
+    """Carry out commands; "take" grasps the first adjacent thing that can be grasped."""
+    for name, *values in commands:
+        if name != "take":
+            getattr(world, name)(*values)
+        for direction in NEIGHBOUR_OFFSETS if name == "take" else ():
+            world.grasp(direction)
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.sampled_from([0, 90, 33]), st.lists(carrying, max_size=10), st.lists(carrying, max_size=4))
+def test_a_table_that_was_played_on_is_as_a_new_one(heading: int, commands: list[Any], further: list[Any]) -> None:
+    """What is kept between commands for speed changes no digit: neither what is sensed nor how far motions go."""
+    played = table(*THINGS, heading=heading, fixed=(box("p", 4, 12, 3, 1),))
+    play(played, commands)
+    played.release()
+    things = tuple(Thing(name, "g", polygon) for name, polygon in played.polygons.items())
+    new = Tabletop(World(20, 18, VERGE, things, played.world.fixed, played.utak, heading))
+    for one in further:
+        play(played, [one])
+        play(new, [one])
+        assert (played.motion, played.utak, played.held) == (new.motion, new.utak, new.held)
+        assert [outer_ring(p) for p in played.polygons.values()] == [outer_ring(p) for p in new.polygons.values()]
+        assert played.look()[0] == new.look()[0]
+
+
+def test_a_thing_with_points_very_near_each_other_is_carried_as_any_other() -> None:
+    near = shapely.Polygon([(9, 8), (10, 8), (10, 8 + 1.5e-7), (10, 9), (9, 9)])
+    worlds = [table(Thing("a", "g", shape)) for shape in (near, shapely.box(9, 8, 10, 9))]
+    for world in worlds:
+        play(world, [("take",), ("push", 0.3, 1.0), ("turn", 33.3), ("push", 50.0, 0.0), ("turn", -50.0)])
+    assert worlds[0].utak == pytest.approx(worlds[1].utak)
+    assert worlds[0].look() == worlds[1].look()
 
 
 @settings(max_examples=60, deadline=None)

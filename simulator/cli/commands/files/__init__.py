@@ -1,6 +1,7 @@
 """The subcommands of `utak` that read and write files of scenarios, and run nothing.
 
-check   check the files of scenarios
-show    print a world as a picture
-new     write a small scenario
+check            check the files of scenarios
+show             print a world as a picture
+new              write a small scenario
+import_scenario  write the scenario of a file of another format
 """

@@ -48,11 +48,16 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _parts(path: Path) -> list[Path]:
-    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone."""
+    """Return the scenarios in a folder that is no scenario itself; else a list of the path alone.
+
+    Files of a task without a world and without expectations, such as the solution of an exercise, are no scenario.
+    """
     names = ("world.lp", "world.txt", "start.lp", "goal.lp")
     if not path.is_dir() or any((path / name).exists() for name in names):
         return [path]
-    return sorted({goal.parent for goal in path.rglob("goal.lp")}) or [path]
+    folders = sorted({goal.parent for goal in path.rglob("goal.lp")})
+    others = ("world.lp", "world.txt", "expect.lp")
+    return [folder for folder in folders if any((folder / name).exists() for name in others)] or [path]
 
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
@@ -62,6 +67,8 @@ def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     refuse_links(options, path, root)
     if path.is_dir():
         read_scenario(path)
+        if (path / "trial.lp").exists():
+            _plan(path / "trial.lp")
         return exits.SUCCESS
     check = _checks().get(path.name)
     if check is None:
@@ -84,6 +91,17 @@ def _rules(path: Path) -> None:
     read_tested_rules([path])
 
 
+def _plan(path: Path) -> None:
+    """Check a trial.lp, and the files of rules that it names."""
+    from simulator.scenario.trialfile import read_trial_plan
+
+    rules = read_trial_plan(path).rules
+    if rules:
+        from kb.reasoning.user_rules import read_tested_rules
+
+        read_tested_rules(list(rules))
+
+
 def _checks() -> dict[str, Callable[[Path], Any]]:
     """Return the check for each file of a scenario, by name."""
     from kb.task.task import read_start, read_task
@@ -98,4 +116,5 @@ def _checks() -> dict[str, Callable[[Path], Any]]:
         "start.lp": read_start,
         "goal.lp": lambda path: read_task(path.parent / "start.lp", path),
         "expect.lp": lambda path: read_expectations(path, read_any_world(path.parent)),
+        "trial.lp": _plan,
     }

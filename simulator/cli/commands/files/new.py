@@ -4,7 +4,6 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import CannotOpenError
 from simulator.terminal import exits
 
 # The files of the new scenario: text by name.
@@ -52,15 +51,9 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Write the scenario; existing files are not overwritten."""
+    from simulator.scenario.folder_writer import write_folder
+
     folder = Path(options.folder)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise CannotOpenError(str(folder), "it is there already, and not empty")
-        for name, text in NEW_SCENARIO_FILES.items():
-            with (folder / name).open("x") as stream:
-                stream.write(text)
-    except (OSError, ValueError) as error:
-        raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
+    write_folder(folder, NEW_SCENARIO_FILES)
     print(f"{folder}: {', '.join(NEW_SCENARIO_FILES)}")
     return exits.SUCCESS

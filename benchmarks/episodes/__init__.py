@@ -1,0 +1,6 @@
+"""Benchmarks about recorded episodes.
+
+explanations  trees of reasons, confirmed node by node
+killing       runs and sweeps that are killed at random moments, and resumed
+replay        size and speed of replay pages
+"""

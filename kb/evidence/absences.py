@@ -1,0 +1,151 @@
+"""Why a fact is not believed: the smallest change of what encodings were given, or what is believed in its place."""
+
+from collections.abc import Iterator, Sequence
+
+from kb.evidence.atoms import atom_parts
+from kb.evidence.beliefs import FactExplainer, plain_fact
+from kb.evidence.inputs import Given, input_reason
+from kb.evidence.reason import Reason, ReasonKind
+from kb.explanation.whynot import explain_absence
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.tracing.decisions import SolverCall
+
+INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
+SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives
+SURE_SHAPE = {"rectangle": 98, "polygon": 99}  # percent: likewise by shapes.lp
+SURE_CLASS = 98  # percent: the surest class of shapes: 62 + 12 * 3 in shapes.lp
+
+
+class AbsenceExplainer:
+    """Explains why facts of the world model are not believed.
+
+    Parameters
+    ----------
+    facts : explains the facts that are.
+    rule_files : the paths of the files with users' rules that took part in the run.
+    """
+
+    def __init__(self, facts: FactExplainer, rule_files: Sequence[str] = ()) -> None:
+        self._facts, self._rule_files = facts, tuple(rule_files)
+
+    def explain(self, fact: str, step: int) -> Reason:
+        """Return why a fact is not believed at a step.
+
+        Parameters
+        ----------
+        fact : a fact of the world model without variables, but for its confidence: a name with a capital letter there
+            stands for the surest that the rules give.
+        step : the number of the step.
+
+        Returns
+        -------
+        Reason
+            In `data` it has `missing` and `in_way`: facts that its encoding would have to be given, and given facts
+            that would have to be absent; no member can be left out. `partial` says whether a smaller change may exist.
+            For facts that no encoding derives, it names what is believed in their place.
+
+        Raises
+        ------
+        BadInputError : the fact is believed.
+        """
+        wanted = plain_fact(fact)
+        if wanted in self._facts.record.steps[step].fact_set:
+            raise _error(wanted, f"this is believed at step {step}: why tells the reason")
+        for call, atom in self._decisions(wanted, step):
+            return self._absence(wanted, call, atom, step)
+        return self._instead(wanted, step)
+
+    def _decisions(self, fact: str, step: int) -> Iterator[tuple[SolverCall, str]]:
+        """Yield the answer of an encoding that could have derived a fact, with the atom that would have been it."""
+        name, arguments = atom_parts(fact)
+        now = self._facts.record.steps[step]
+        if name == "kind" and len(arguments) == 3 and arguments[0] in now.regions:
+            confidence = _number_or(arguments[2], SURE_KIND.get(arguments[1], 95))
+            atom = f"kind({now.regions[arguments[0]]},{arguments[1]},{confidence})"
+            yield from self._calls("interpretation", atom, step, "")
+        elif name == "shape" and len(arguments) == 3:
+            confidence = _number_or(arguments[2], SURE_SHAPE.get(arguments[1], SURE_CLASS))
+            atom = f"shape({arguments[0]},{arguments[1]},{confidence})"
+            yield from self._calls("shapes", atom, step, f"fit({arguments[0]},")
+        elif name == "bound" and len(arguments) == 2:
+            yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step, "")
+        elif name in ("door", "connects", "width"):
+            yield from self._opening(step)
+        elif name == "corner" and len(arguments) == 3:
+            yield from self._corner(arguments, step)
+
+    def _calls(self, encoding: str, atom: str, step: int, needs: str) -> Iterator[tuple[SolverCall, str]]:
+        """Yield the newest answer of an encoding at a step whose facts have one that begins with `needs`."""
+        for call in reversed(self._facts.record.decisions(step)):
+            if call.encoding == encoding and any(fact.startswith(needs) for fact in call.facts):
+                yield call, atom
+
+    def _opening(self, step: int) -> Iterator[tuple[SolverCall, str]]:
+        """Yield the answer of rooms.lp with the neck that comes nearest to being a door and is none."""
+        for call in reversed(self._facts.record.decisions(step)):
+            for atom in call.answer or () if call.encoding == "rooms" else ():
+                name, arguments = atom_parts(atom)
+                if name == "opening":
+                    neck = next(fact for fact in call.facts if fact.startswith(f"neck({arguments[0]},"))
+                    yield call, f"door({arguments[0]},{atom_parts(neck)[1][4]})"
+
+    def _corner(self, arguments: Sequence[str], step: int) -> Iterator[tuple[SolverCall, str]]:
+        """Yield the answer of corners.lp, if there is a convex corner at the place that is not the furthest."""
+        for call in reversed(self._facts.record.decisions(step)):
+            for fact in call.facts if call.encoding == "corners" else ():
+                number, *place = atom_parts(fact)[1]
+                if place == list(arguments[1:]):
+                    yield call, f"furthest({arguments[0]},{number})"
+
+    def _absence(self, fact: str, call: SolverCall, atom: str, step: int) -> Reason:
+        """Return why an answer does not hold an atom, with the reasons of what is in the way."""
+        found = explain_absence(call.encoding, call.facts, call.answer, atom, self._rule_files)
+        in_way = tuple(
+            input_reason(self._facts.record, Given(given, call, step), self._facts.reason) for given in found.in_way
+        )
+        needed = tuple(
+            Reason(f"missing: {given}", "with it, and without what is in the way, it would hold", ReasonKind.REJECTED)
+            for given in found.missing
+        )
+        rival = (Reason(found.rival.atom, found.rival.sentence, ReasonKind.REJECTED),) if found.rival else ()
+        data = {
+            "encoding": call.encoding,
+            "atom": atom,
+            "missing": list(found.missing),
+            "in_way": list(found.in_way),
+            "partial": found.partial,
+            "found": found.found,
+        }
+        below = (*rival, *needed, *in_way, *self._alternatives(fact, step))
+        return Reason(f"not {fact}", found.sentence, ReasonKind.NEGATION, f"step {step}", below, data)
+
+    def _instead(self, fact: str, step: int) -> Reason:
+        """Return why a fact that no encoding derives is not believed: it is measured, and something else was."""
+        instead = tuple(self._alternatives(fact, step))
+        because = (
+            "it would have to be measured so; this is believed instead"
+            if instead
+            else "nothing seen so far is about it: no such thing is believed to be there"
+        )
+        data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
+        return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
+
+    def _alternatives(self, fact: str, step: int) -> Iterator[Reason]:
+        """Yield the reasons of believed facts of the same predicate about the same thing."""
+        name, arguments = atom_parts(fact)
+        start = f"{name}({arguments[0]}," if len(arguments) > 1 else f"{name}("
+        facts = [other for other in self._facts.record.steps[step].facts if other.startswith(start)]
+        for other in facts[:INSTEAD_SHOWN]:
+            reason = self._facts.reason(other, step)
+            if reason is not None:
+                yield reason
+
+
+def _number_or(text: str, default: int) -> int:
+    """Return the number that a text denotes; the default for a variable."""
+    return int(text) if text.removeprefix("-").isdigit() else default
+
+
+def _error(text: str, what: str) -> BadInputError:
+    """Return the error `what` about a question."""
+    return BadInputError([Problem("whynot", SourceSpan(1, 1, max(1, len(text))), what, text)])

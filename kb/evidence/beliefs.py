@@ -1,0 +1,280 @@
+"""Reasons for the facts of the world model: the rules that derived them, down to cells, touches and commands."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from kb.evidence.atoms import atom_parts
+from kb.evidence.inputs import FLOOR, VERGE, Given, input_reason
+from kb.evidence.proving import words_of
+from kb.evidence.reason import Reason, ReasonKind
+from kb.evidence.record import Record
+from kb.evidence.witness import (
+    UNITS_PER_SQUARE,
+    command_reason,
+    felt_reason,
+    line_squares,
+    node_squares,
+    seen_reason,
+)
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT
+from kb.tracing.decisions import SolverCall
+
+ROBOT = "org"  # the node of the robot
+ROBOT_ALIAS = "utak"  # its name in questions
+
+
+class AnswerProver(Protocol):
+    """Explains the answer of an encoding."""
+
+    def __call__(self, call: SolverCall, atom: str, leaf: Callable[[str], Reason]) -> Reason:
+        """Return the reason why an answer holds an atom; leaf : returns the reason of an input of the encoding."""
+
+
+class FactExplainer:
+    """Explains the facts of the world model of a run.
+
+    Parameters
+    ----------
+    record : the record of the run.
+    prove : explains the answers of encodings.
+
+    Attributes
+    ----------
+    record : as given.
+    """
+
+    def __init__(self, record: Record, prove: AnswerProver) -> None:
+        self.record = record
+        self._prove = prove
+
+    def explain(self, fact: str, step: int) -> Reason:
+        """Return the reason why a fact is believed at a step.
+
+        Parameters
+        ----------
+        fact : a fact of the world model, such as `shape(o1,square,95)`; the robot may be called utak.
+        step : the number of the step.
+
+        Raises
+        ------
+        BadInputError : the fact is not believed then; the hint names what is believed instead.
+        MissingRecordError : the episode does not record what is needed.
+        """
+        wanted = plain_fact(fact)
+        found = self.reason(wanted, step)
+        if found is None:
+            raise self._not_believed(wanted, step)
+        return found
+
+    def reason(self, fact: str, step: int) -> Reason | None:
+        """Return the reason of a fact without a full stop at a step; None when it is not believed then."""
+        if fact not in self.record.steps[step].fact_set:
+            return None
+        name, arguments = atom_parts(fact)
+        if name == "parameter":
+            return Reason(fact, words_of("belief", fact), ReasonKind.TASK, "the task")
+        below = self._below(fact, name, arguments, step)
+        return Reason(fact, words_of("belief", fact), ReasonKind.FACT, f"step {step}", tuple(below))
+
+    def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
+        """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it.
+
+        step : the step from which to look back. oldest : the first step that counts.
+        """
+        found = self.record.last_answer(step, encoding, atom, oldest)
+        if found is None:
+            return None
+        at, call = found
+        return self.prove(call, atom, at)
+
+    def prove(self, call: SolverCall, atom: str, step: int) -> Reason:
+        """Return the reason of an atom of an answer that was given at a step, with the reasons of its inputs."""
+
+        def leaf(given: str) -> Reason:
+            """Return the reason of an input of the encoding."""
+            return input_reason(self.record, Given(given, call, step), self.reason)
+
+        return self._prove(call, atom, leaf)
+
+    def _below(self, fact: str, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
+        """Return what a believed fact rests on."""
+        node = arguments[0]
+        if name == "kind":
+            return self._kind_reasons(node, arguments[1], arguments[2], step)
+        if name == "shape":
+            found = self.decision("shapes", fact, step)
+            return [found] if found else [self._squares(node, step)]
+        if name == "colour":
+            felt = felt_reason(self.record, step, node_squares(self.record.steps[step], node), arguments[1], node)
+            return [felt] if felt else [self._squares(node, step)]
+        if name in ("door", "width", "threshold", "connects", "crosses"):
+            return self._door_reasons(name, arguments, step)
+        if name == "corner":
+            return self._corner_reasons(arguments, step)
+        if name == "movable":
+            return self._movable_reasons(node, arguments[1], step)
+        if name == "held":
+            return self._grasp_reasons(node, step)
+        if name == "segment":
+            return self._segment_reasons(node, arguments, step)
+        if name == "adjacent":
+            return self._facts([f"offset({ROBOT},", f"rect({arguments[1]},"], step)
+        if name == "bound":
+            found = self.decision("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
+            return [found] if found else []
+        if name in ("offset", "in", "rect") and node == ROBOT:
+            return [self._pose_reason(step)]
+        return self._other_reasons(name, arguments, step)
+
+    def _other_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
+        """Return what facts rest on that geometry measures alone: places, outlines, rooms and the pathgraph."""
+        node = arguments[-1] if name == "child" else arguments[0]
+        if name in ("room", "unseen", "link", "junction"):
+            node = FLOOR
+        if node == ROBOT:
+            return [Reason("the robot is the root of the world model", "", ReasonKind.CONVENTION)]
+        if name == "offset" and node in (FLOOR, VERGE):
+            return [self._pose_reason(step)]
+        if name == "in":
+            return [self._squares(node, step), *self._facts([f"room({arguments[1]})"], step)]
+        return [self._squares(node, step)]
+
+    def _kind_reasons(self, node: str, kind: str, confidence: str, step: int) -> list[Reason]:
+        """Return why a node is of a kind: the interpretation of its region, or that it was moved."""
+        if node == ROBOT:
+            return [Reason("the robot is itself in the world", "", ReasonKind.CONVENTION)]
+        now = self.record.steps[step]
+        if node in now.moved:
+            return self._motion_reasons(node, step)
+        region = now.regions.get(node)
+        if region is not None:
+            found = self.decision("interpretation", f"kind({region},{kind},{confidence})", step, oldest=step)
+            if found is not None:
+                return [found]
+            colour = next((fact for fact in now.facts if fact.startswith(f"colour({node},")), None)
+            if colour is not None:
+                return self._facts([colour], step)
+        return [self._squares(node, step)]
+
+    def _squares(self, node: str, step: int) -> Reason:
+        """Return the reason of the squares of a node: the cells that show them."""
+        what = {FLOOR: "the squares of the floor", VERGE: "the squares of the verge"}.get(
+            node, f"the squares of {node}"
+        )
+        return seen_reason(self.record, step, node_squares(self.record.steps[step], node), node != FLOOR, what)
+
+    def _segment_reasons(self, node: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
+        """Return why a piece of a boundary is believed: the cells on its two sides. The node lies on its left."""
+        now = self.record.steps[step]
+        west, south, east, north = (int(value) / UNITS_PER_SQUARE for value in arguments[2:6])
+        inside = line_squares(now, (west, south), (east, north), 0.5)
+        outside = line_squares(now, (west, south), (east, north), -0.5)
+        return [
+            seen_reason(self.record, step, inside, node != FLOOR, "the squares on its left"),
+            seen_reason(self.record, step, outside, node == FLOOR, "the squares on its right"),
+        ]
+
+    def _door_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
+        """Return why a door is believed: the neck of the floor that rooms.lp takes for a door."""
+        door = arguments[1] if name == "crosses" else arguments[0]
+        ends = self.record.steps[step].necks.get(door)
+        for number in range(step, -1, -1):
+            for call in reversed(self.record.decisions(number)):
+                if call.encoding != "rooms" or ends is None:
+                    continue
+                for atom in call.answer or ():
+                    kind, (neck, *_) = atom_parts(atom)
+                    if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == list(ends):
+                        return [self.prove(call, atom, number)]
+        return [self._squares(FLOOR, step)]
+
+    def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
+        """Return why a corner is the furthest one: the answer of corners.lp with its place."""
+        side, east, north = arguments
+        for number in range(step, -1, -1):
+            for call in reversed(self.record.decisions(number)):
+                if call.encoding != "corners":
+                    continue
+                for atom in call.answer or ():
+                    kind, parts = atom_parts(atom)
+                    if kind == "furthest" and parts[0] == side and f"convex({parts[1]},{east},{north})" in call.facts:
+                        return [self.prove(call, atom, number)]
+        return [self._squares(FLOOR, step)]
+
+    def _movable_reasons(self, node: str, confidence: str, step: int) -> list[Reason]:
+        """Return why a node is believed to be movable, or not: motions with it, or that it was never tried."""
+        if node in self.record.steps[step].moved:
+            return self._motion_reasons(node, step)
+        if confidence == "0":
+            tried = self._motion_reasons(node, step)
+            if tried:
+                return tried
+        squares = self._squares(node, step)
+        untried = Reason("it was never tried", "without a trial both are as likely", ReasonKind.CONVENTION)
+        return [untried, squares]
+
+    def _grasp_reasons(self, node: str, step: int) -> list[Reason]:
+        """Return why a node is believed to be in hand: the newest grasp."""
+        for number in range(step, -1, -1):
+            action = self.record.steps[number].action
+            if action is not None and action["do"] == "grasp":
+                return [command_reason(self.record.steps[number]), self._squares(node, step)]
+        return [self._squares(node, step)]
+
+    def _motion_reasons(self, node: str, step: int) -> list[Reason]:
+        """Return the newest grasp and the newest push or turn while a node was in hand, and the cells that show it."""
+        held = f"held({node})"
+        for number in range(step, -1, -1):
+            now = self.record.steps[number]
+            if held in now.fact_set and now.action is not None and now.action["do"] in ("push", "turn"):
+                return [command_reason(now), *self._grasp_reasons(node, number)]
+        return []
+
+    def _pose_reason(self, step: int) -> Reason:
+        """Return why the robot believes itself where it does: the explanation of its newest impression."""
+        for call in reversed(self.record.decisions(step)):
+            if call.encoding == "accommodation" and call.answer:
+                return self.prove(call, call.answer[0], step)
+        now = self.record.steps[step]
+        counts = {letter: now.status.count(letter) for letter in "pen"}
+        because = (
+            f"the motion ended as predicted: of 160 cells {counts['p']} are as predicted, {counts['e']} show what is "
+            f"new, {counts['n']} contradict the map"
+        )
+        return Reason(
+            f"the impression was {now.pose}",
+            because,
+            ReasonKind.MEASURED,
+            f"step {step}",
+            (command_reason(now),),
+            counts,
+        )
+
+    def _facts(self, starts: list[str], step: int) -> list[Reason]:
+        """Return the reasons of the believed facts that begin with some texts, in the order of these."""
+        now = self.record.steps[step]
+        facts = [fact for start in starts for fact in now.facts if fact.startswith(start)]
+        return [reason for fact in facts if (reason := self.reason(fact, step)) is not None]
+
+    def _not_believed(self, fact: str, step: int) -> BadInputError:
+        """Return the error that a fact is not believed, with the nearest believed one as a hint."""
+        name, _ = atom_parts(fact)
+        near = did_you_mean(fact, [other for other in self.record.steps[step].facts if other.startswith(f"{name}(")])
+        hint = near or "whynot tells what is missing"
+        span = SourceSpan(1, 1, max(1, len(fact)))
+        return BadInputError([Problem("why", span, f"this is not believed at step {step}", fact, hint)])
+
+
+def plain_fact(fact: str) -> str:
+    """Return a fact as the world model states it: without blanks and full stop, and with org for utak.
+
+    >>> plain_fact(" offset(utak, 0, -150). ")
+    'offset(org,0,-150)'
+    """
+    name, arguments = atom_parts(fact.strip())
+    declared = BELIEF_PREDICATES.get((name, len(arguments)))
+    types = declared.arguments if declared else ()
+    things = {number for number, type_ in enumerate(types) if type_ == THING_ARGUMENT}
+    named = [ROBOT if at in things and argument == ROBOT_ALIAS else argument for at, argument in enumerate(arguments)]
+    return f"{name}({','.join(named)})" if named else name

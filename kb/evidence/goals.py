@@ -1,0 +1,173 @@
+"""Reasons for goals, commands and verdicts: the facts that they are about, and the decisions that led to them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from kb.evidence.atoms import atom_parts
+from kb.evidence.beliefs import ROBOT, ROBOT_ALIAS, FactExplainer
+from kb.evidence.reason import Reason, ReasonKind
+from kb.evidence.witness import command_reason
+from kb.tracing.decisions import SolverCall
+
+CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
+    "aims": ("choose", "this subgoal was chosen"),
+    "routes": ("choose", "this route was chosen"),
+    "transport": ("try", "geometry was asked for this way of carrying"),
+    "boldness": ("take", "this manipulation plan was taken"),
+}
+STEP_WORDS = ("first", "then")  # goals that are steps of a sequence
+PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
+ROOMS = ("in({0},", "connects(", "width(")  # the facts that say in which room a node is, and how rooms hang together
+GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its first argument, {1} for that of its second
+    "at": (*PLACES, "rect({1},", "corner({1},"),
+    "in": ROOMS,
+    "through": ROOMS,
+    "around": PLACES,
+    "circled": ("offset({0},", "rect({1},"),
+    "beside": ("rect({0},", "rect({1},"),
+    "pose": PLACES,
+    "not_through": ROOMS,
+}
+
+
+@dataclass(frozen=True)
+class RecordedTask:
+    """The task of a run and its end, as an episode states them.
+
+    Attributes
+    ----------
+    goals : the goals in the order of goal.lp, as text.
+    result : the end, with the keys verdict and reason; None while the run goes on.
+    """
+
+    goals: Sequence[str]
+    result: Mapping[str, Any] | None = None
+
+
+def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Reason:
+    """Return the reason of the command before the impression of a step: goal, facts, and what was chosen among what.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    task : the task.
+    step : the number of the step; the command was decided on what was believed one step before.
+
+    Returns
+    -------
+    Reason
+        It rests on the goals with the facts that they are about, on what parameters mean, and on the choices of the
+        planner's encodings, each with the alternatives that were not chosen or were refuted.
+    """
+    now = beliefs.record.steps[step]
+    if now.action is None:
+        return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
+    command = command_reason(now)
+    below = (*_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
+    return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
+
+
+def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
+    """Return the reason of the verdict, with the goals, the facts that they are about and the last choices.
+
+    None while the run goes on.
+    """
+    if task.result is None:
+        return None
+    last = len(beliefs.record.steps) - 1
+    below = (*_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
+    claim = f"verdict({task.result['verdict']})"
+    return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
+
+
+def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
+    """Return a goal with the facts that it is about and what its parameters mean, as believed at a step.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    goal : the goal as goal.lp states it, without a full stop.
+    step : the number of the step.
+    """
+    name, arguments = atom_parts(goal)
+    if name in STEP_WORDS:
+        name, arguments = atom_parts(arguments[0])
+    facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
+    below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
+    bound = tuple(_bindings(beliefs, arguments, step))
+    says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
+    return Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+
+
+def _goal_reasons(beliefs: FactExplainer, task: RecordedTask, step: int) -> Iterator[Reason]:
+    """Yield a reason for each goal: the facts that it is about, as believed at a step."""
+    yield from (explain_goal(beliefs, goal, step) for goal in task.goals)
+
+
+def _meant(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[str]:
+    """Yield the facts `bound(Parameter, Node)` for the arguments of a goal, where they are facts."""
+    now = beliefs.record.steps[step]
+    for argument in arguments:
+        if argument in now.bound and f"bound({argument},{now.bound[argument]})" in now.fact_set:
+            yield f"bound({argument},{now.bound[argument]})"
+
+
+def _bindings(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[Reason]:
+    """Yield the reasons why parameters of a goal mean what they do, where no fact says so."""
+    now = beliefs.record.steps[step]
+    for argument in dict.fromkeys(arguments):
+        node = now.bound.get(argument)
+        if node is not None and f"bound({argument},{node})" not in now.fact_set:
+            found = beliefs.decision("reconciliation", f"bind({argument},{node})", step)
+            if found is not None:
+                yield found
+
+
+def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
+    """Yield the believed facts that decide a goal."""
+    now = beliefs.record.steps[step]
+    nodes = [_node(beliefs, argument, step) for argument in (*arguments, "", "")][:2]
+    for form in GOAL_FACTS.get(name, PLACES):
+        start = form.format(*nodes)
+        if "(," not in start:
+            yield from (fact for fact in now.facts if fact.startswith(start))
+
+
+def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
+    """Return the node, or the name of the corner, that an argument of a goal means; '' for none."""
+    if argument == ROBOT_ALIAS:
+        return ROBOT
+    name, parts = atom_parts(argument) if argument else ("", ())
+    if name == "corner" and parts:
+        return parts[0]
+    return beliefs.record.steps[step].bound.get(argument, "")
+
+
+def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:
+    """Yield the reasons of the last choice of each of the planner's encodings at a step, and what it refused."""
+    latest: dict[str, SolverCall] = {}
+    for call in beliefs.record.decisions(step):
+        if call.encoding in CHOICES and call.answer:
+            latest[call.encoding] = call
+    for encoding, call in latest.items():
+        predicate, words = CHOICES[encoding]
+        for atom in call.answer or ():
+            if atom_parts(atom)[0] == predicate:
+                found = beliefs.prove(call, atom, step)
+                yield Reason(
+                    found.claim, _about(call, atom) or words, found.kind, found.source, found.rests_on, found.data
+                )
+
+
+def _about(call: SolverCall, atom: str) -> str:
+    """Return in words what a choice is about; '' when the record does not say."""
+    arguments = atom_parts(atom)[1]
+    number = arguments[0] if arguments else ""
+    if not number.isdigit() or int(number) >= len(call.about):
+        return ""
+    about = call.about[int(number)]
+    if isinstance(about, str):
+        return f"{CHOICES[call.encoding][1]}: {about}"
+    points = " ".join(f"({east:g}, {north:g})" for east, north in about)
+    return f"{CHOICES[call.encoding][1]}: {points}"

@@ -1,0 +1,182 @@
+"""Reasons for what encodings were given: regions, necks, corners and fits to cells; properties of nodes to facts."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from geometry.kernels.arrays import Square
+from kb.evidence.atoms import atom_parts
+from kb.evidence.proving import words_of
+from kb.evidence.reason import Reason, ReasonKind
+from kb.evidence.record import Record
+from kb.evidence.witness import UNITS_PER_SQUARE, command_reason, felt_reason, line_squares, node_squares, seen_reason
+from kb.tracing.decisions import SolverCall
+
+FLOOR, VERGE = "floor", "verge"  # the nodes of the whole floor and of all that bounds it
+TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "not_through"})  # what start.lp and goal.lp say
+NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
+    "candidate": "kind({0},object,{1})",
+    "fixed": "movable({0},0)",
+}
+
+
+class Given(NamedTuple):
+    """An input of an encoding, in the decision of some step.
+
+    Attributes
+    ----------
+    atom : the input, as text.
+    call : the decision.
+    step : the step whose beliefs the decision was about.
+    """
+
+    atom: str
+    call: SolverCall
+    step: int
+
+
+def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int], Reason | None]) -> Reason:
+    """Return the reason why an encoding was given an atom, down to cells, touches, commands or the task.
+
+    Parameters
+    ----------
+    record : the record of the run.
+    given : the input.
+    fact_reason : returns the reason of a fact of the world model at a step; None when it is not believed then.
+    """
+    name, arguments = atom_parts(given.atom)
+    says = words_of(given.call.encoding, given.atom)
+    if name in TASK_INPUTS:
+        return Reason(given.atom, says, ReasonKind.TASK, "the task")
+    below = [*_below(record, given, name, arguments, fact_reason)]
+    kind = ReasonKind.INPUT if below else ReasonKind.MEASURED
+    return Reason(given.atom, says, kind, f"step {given.step}", tuple(below), _data(given, arguments))
+
+
+def _data(given: Given, arguments: tuple[str, ...]) -> dict[str, Any]:
+    """Return what the record says of the candidate that an input is about; {} for nothing."""
+    number = arguments[0] if arguments else ""
+    if number.isdigit() and int(number) < len(given.call.about):
+        return {"about": given.call.about[int(number)]}
+    return {}
+
+
+def _below(
+    record: Record,
+    given: Given,
+    name: str,
+    arguments: tuple[str, ...],
+    fact_reason: Callable[[str, int], Reason | None],
+) -> list[Reason]:
+    """Return the reasons of an input; [] when it is a measurement that rests on nothing that is recorded."""
+    step, encoding = given.step, given.call.encoding
+    if encoding == "interpretation":
+        return _region_reasons(record, step, name, arguments)
+    if encoding == "shapes":
+        return [_squares_reason(record, step, arguments[0])]
+    if encoding == "rooms":
+        return _neck_reasons(record, given, arguments)
+    if encoding == "corners":
+        return _corner_reasons(record, step, arguments)
+    if encoding == "accommodation":
+        return [command_reason(record.steps[step])]
+    if encoding == "reconciliation":
+        return _property_reasons(record, step, name, arguments, fact_reason)
+    return []
+
+
+def _region_reasons(record: Record, step: int, name: str, arguments: tuple[str, ...]) -> list[Reason]:
+    """Return the reasons of a fact about regions: the cells that show their squares, or a touch."""
+    node = _node_of(record, step, arguments[0])
+    if name == "touched":
+        squares = node_squares(record.steps[step], node)
+        felt = felt_reason(record, step, squares, arguments[1], _named(node))
+        return [felt] if felt else []
+    if name == "surrounds":
+        inner = _node_of(record, step, arguments[1])
+        return [_squares_reason(record, step, other) for other in dict.fromkeys((node, inner))]
+    return [_squares_reason(record, step, node)]
+
+
+def _node_of(record: Record, step: int, region: str) -> str:
+    """Return the node that a region is; the verge or the floor for regions that are no objects."""
+    now = record.steps[step]
+    for node, other in now.regions.items():
+        if other == region:
+            return node
+    for call in reversed(record.decisions(step)):
+        if call.encoding == "interpretation":
+            return FLOOR if any(fact.startswith(f"region({region},zero,") for fact in call.facts) else VERGE
+    return VERGE
+
+
+def _named(node: str) -> str:
+    """Return a node in words."""
+    return {FLOOR: "the floor", VERGE: "the verge"}.get(node, node)
+
+
+def _squares_reason(record: Record, step: int, node: str) -> Reason:
+    """Return the reason why the squares of a node are believed to be occupied, or free for the floor."""
+    squares = node_squares(record.steps[step], node)
+    return seen_reason(record, step, squares, node != FLOOR, f"the squares of {_named(node)}")
+
+
+def _neck_reasons(record: Record, given: Given, arguments: tuple[str, ...]) -> list[Reason]:
+    """Return the reasons of a neck: the two walls at its ends, and the floor between them."""
+    now, ends = record.steps[given.step], given.call.about[int(arguments[0])]
+    (west, south), (east, north) = ends
+    between = line_squares(now, (west, south), (east, north), 0.0)
+    walls = [_beyond(record, given.step, near, far) for near, far in ((ends[0], ends[1]), (ends[1], ends[0]))]
+    width = int(arguments[1]) / UNITS_PER_SQUARE
+    passage = Reason(
+        f"the passage from ({west:g}, {south:g}) to ({east:g}, {north:g}) is {width:.2f} squares wide",
+        "measured between the two walls",
+        ReasonKind.MEASURED,
+        f"step {given.step}",
+        (),
+        {"ends": [list(end) for end in ends], "width": width},
+    )
+    floor = seen_reason(record, given.step, between, False, "the floor between the walls")
+    ends_seen = [
+        seen_reason(record, given.step, wall, True, f"the {which} wall")
+        for which, wall in zip(("first", "second"), walls, strict=True)
+    ]
+    return [passage, *ends_seen, floor]
+
+
+def _beyond(record: Record, step: int, near: list[float], far: list[float]) -> list[Square]:
+    """Return the squares just beyond an end of a line, seen from its other end, map frame."""
+    dx, dy = near[0] - far[0], near[1] - far[1]
+    length = max((dx * dx + dy * dy) ** 0.5, 1e-9)
+    end = near[0] + dx / length, near[1] + dy / length
+    return line_squares(record.steps[step], (near[0], near[1]), end, 0.0)
+
+
+def _corner_reasons(record: Record, step: int, arguments: tuple[str, ...]) -> list[Reason]:
+    """Return the reason of a corner of the known floor: the cells that show the floor at it."""
+    east, north = (int(value) / UNITS_PER_SQUARE for value in arguments[1:3])
+    x, y = record.steps[step].frame.place_from_utak(east, north)
+    column, row = round(x), round(y)
+    around = [(column + dx, row + dy) for dx in (-1, 0) for dy in (-1, 0)]
+    floor = set(node_squares(record.steps[step], FLOOR))
+    inside = [square for square in around if square in floor] or around
+    return [seen_reason(record, step, inside, False, f"the floor at the corner ({east:g}, {north:g})")]
+
+
+def _property_reasons(
+    record: Record,
+    step: int,
+    name: str,
+    arguments: tuple[str, ...],
+    fact_reason: Callable[[str, int], Reason | None],
+) -> list[Reason]:
+    """Return the reasons of what reconciliation.lp is given of a node: facts of the world model, or cells."""
+    node = arguments[1] if name == "bound_before" else arguments[0]
+    fact = NODE_INPUTS[name].format(*arguments) if name in NODE_INPUTS else ""
+    if name == "has":
+        fact = f"{arguments[1]}({node},{arguments[2]},{arguments[3]})"
+    found = fact_reason(fact, step) if fact else None
+    if found is not None:
+        return [found]
+    if name == "bound_before" and step > 0:
+        return [command_reason(record.steps[step])]
+    return [_squares_reason(record, step, node)]

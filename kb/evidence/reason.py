@@ -1,0 +1,124 @@
+"""A tree of reasons: a claim, why it holds, and the reasons of what that rests on."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+MID_LEVELS = 3  # levels of a tree that the depth `mid` shows: the claim, what it rests on, and what that rests on
+
+
+class ReasonKind(StrEnum):
+    """The kind of a reason."""
+
+    FACT = "fact"
+    """A fact of the world model."""
+    RULE = "rule"
+    """An atom that a rule derived or chose."""
+    NEGATION = "negation"
+    """Something of which nothing is known."""
+    COMPUTED = "computed"
+    """A comparison, a sum or a condition in a rule."""
+    REJECTED = "rejected"
+    """Another choice, and why it was not made."""
+    INPUT = "input"
+    """What an encoding was given."""
+    MEASURED = "measured"
+    """What geometry measured or verified: a witness."""
+    CELLS = "cells"
+    """Cells of impressions: a leaf."""
+    TOUCH = "touch"
+    """A colour that was felt: a leaf."""
+    COMMAND = "command"
+    """A command that was given: a leaf."""
+    TASK = "task"
+    """What start.lp or goal.lp says: a leaf."""
+    CONVENTION = "convention"
+    """What holds by definition, such as that the robot is the root of the world model: a leaf."""
+
+
+class Depth(StrEnum):
+    """The part of a tree that is shown."""
+
+    SHORT = "short"
+    MID = "mid"
+    LONG = "long"
+
+
+# Kinds that end a branch of a complete tree.
+LEAF_KINDS = frozenset(ReasonKind) - {ReasonKind.FACT, ReasonKind.RULE, ReasonKind.INPUT}
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A claim with its reason.
+
+    Attributes
+    ----------
+    claim : what holds: a fact or an atom as text, or a statement in words.
+    because : why, in words; '' where the claim says it all.
+    kind : the kind of the reason.
+    source : where the reason stands, such as `kb/asp/rooms.lp:26` or `impression 3`; '' where it stands nowhere.
+    rests_on : the reasons of what it rests on.
+    data : the values behind it, ready for JSON: cells, places, widths.
+    """
+
+    claim: str
+    because: str
+    kind: ReasonKind
+    source: str = ""
+    rests_on: tuple["Reason", ...] = ()
+    data: dict[str, Any] = field(default_factory=dict)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the tree as JSON values; keys without a value are left out."""
+        entry: dict[str, Any] = {"claim": self.claim, "kind": str(self.kind)}
+        for key in ("because", "source", "data"):
+            if getattr(self, key):
+                entry[key] = getattr(self, key)
+        if self.rests_on:
+            entry["rests_on"] = [reason.as_dict() for reason in self.rests_on]
+        return entry
+
+    def walk(self) -> Iterator["Reason"]:
+        """Yield this reason and all below it, each object once, before what it rests on."""
+        waiting, seen = [self], set[int]()
+        while waiting:
+            reason = waiting.pop()
+            if id(reason) not in seen:
+                seen.add(id(reason))
+                yield reason
+                waiting += reversed(reason.rests_on)
+
+    def text(self, depth: Depth = Depth.MID) -> str:
+        """Return the tree as indented lines.
+
+        depth : `short` for one line, `mid` for MID_LEVELS levels, `long` for all. What stands in the tree before is
+            not written again.
+        """
+        levels = {Depth.SHORT: 1, Depth.MID: MID_LEVELS, Depth.LONG: None}[depth]
+        return "\n".join(_lines(self, levels, "", set()))
+
+    def leaves(self) -> Iterator["Reason"]:
+        """Yield the reasons that rest on nothing else."""
+        return (reason for reason in self.walk() if not reason.rests_on)
+
+
+def _lines(reason: Reason, levels: int | None, indent: str, written: set[tuple[str, str]]) -> Iterator[str]:
+    """Yield the lines of a tree: `levels` levels of it, None for all.
+
+    written : claims and reasons that were written before; grows.
+    """
+    because = f": {reason.because}" if reason.because else ""
+    source = f"  [{reason.source}]" if reason.source else ""
+    key = (reason.claim, reason.because)
+    if key in written:
+        yield f"{indent}{reason.claim} (as above)"
+        return
+    yield f"{indent}{reason.claim}{because}{source}"
+    written.add(key)
+    if levels is None or levels > 1:
+        for below in reason.rests_on:
+            yield from _lines(below, None if levels is None else levels - 1, f"{indent}  ", written)
+    elif reason.rests_on and levels == 1 and indent:
+        yield f"{indent}  ..."

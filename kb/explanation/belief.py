@@ -1,0 +1,105 @@
+"""Why a predicate that users' rules define for queries certainly holds: rule instances down to believed facts."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+from kb.explanation.programs import ExplanationError, RuleUnit, canonical, decision_program, texts_of, words_of_users
+from kb.explanation.support import Support, supports_of
+from kb.explanation.tree import ProofTrees
+from kb.explanation.values import Proof, RuleInstance, RuleText
+from kb.language.diagnostics import BadInputError
+from kb.reasoning.query import request_entries
+from kb.reasoning.rulebook import Statement
+from kb.reasoning.sentences import fill
+from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
+
+BELIEF = "belief"  # the encoding that declares the believed facts
+# The meaning of object(N) in queries, as a rule.
+OBJECT_RULE = RuleText(
+    "queries", 1, 1, "object(N) :- kind(N, object, C).", "rule", "{N} is believed to be an object, with {C} percent."
+)
+
+
+def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Proof:
+    """Return why an atom certainly holds in queries.
+
+    Parameters
+    ----------
+    facts : the world model, atoms as text with or without full stops, such as `kind(o1,object,95).`.
+    atom : a believed fact, `object(N)`, or an atom that users' rules derive; likewise.
+    rule_files : the paths of files with users' rules.
+
+    Returns
+    -------
+    The proof: rule instances with their sentences; its leaves are believed facts, and what is not possible by what is
+    believed. No atom in it rests on itself.
+
+    Raises
+    ------
+    ExplanationError : the atom does not certainly hold, or the rules took too much time.
+    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
+    """
+    (wanted,) = canonical([atom])
+    files = tuple(map(str, rule_files))
+    trees, holding = _trees(canonical(facts), files, texts_of(files))
+    if wanted not in holding:
+        raise ExplanationError(f"{wanted} does not certainly hold by what is believed")
+    return Proof(BELIEF, trees.node(wanted))
+
+
+@lru_cache(maxsize=16)
+def _trees(
+    facts: tuple[str, ...], rule_files: tuple[str, ...], _texts: tuple[str, ...]
+) -> tuple[ProofTrees, frozenset[str]]:
+    """Return the proofs of all atoms that certainly hold, and these atoms; the last ones are kept.
+
+    _texts : the texts of the files; when one changes, nothing that was kept counts.
+    """
+    rules = read_rules(rule_files).query_rules if rule_files else ()
+    request = {"justify": True, "facts": request_entries(facts), "rules": [one.written for one in rules]}
+    found = rules_worker().exchange(request, MAX_RULE_SECONDS)
+    if "limit" in found:
+        raise ExplanationError(f"the explanation was given up: {found['limit']}")
+    if "rule" in found:
+        raise BadInputError([rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+    if "error" in found:
+        raise ExplanationError(found["error"])
+    sentences, words = words_of_users(rules)
+    units = [_unit(entry, rules, sentences) for entry in found["units"]]
+    supports = supports_of(found, units)
+    for fact in facts:
+        _add_object(fact, supports)
+    trees = ProofTrees(
+        supports, facts, found["atoms"], {**decision_program(BELIEF).words, **words}, (), _instance, _none
+    )
+    return trees, frozenset(found["atoms"])
+
+
+def _unit(entry: dict[str, Any], rules: Sequence[Statement], sentences: Sequence[str]) -> RuleUnit:
+    """Return a unit from the response of the worker."""
+    number = entry["statement"]
+    one, names = rules[number], tuple(entry["names"])
+    rule = RuleText(one.source.file, one.at[0], one.at[1], " ".join(one.written.split()), "rule", sentences[number])
+    return RuleUnit(rule, names, names, tuple(entry["literals"]), tuple(map(tuple, entry["conditions"])))
+
+
+def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
+    """Add the instance of OBJECT_RULE that a fact gives, if it is that of an object."""
+    name, _, rest = fact.partition("(")
+    parts = rest.removesuffix(")").split(",")
+    if name == "kind" and len(parts) == 3 and parts[1] == "object":
+        unit = RuleUnit(OBJECT_RULE, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
+        one = Support(-1, unit, (parts[0], parts[2]), (fact,), ((),), 0, ())
+        supports.setdefault(f"object({parts[0]})", []).append(one)
+
+
+def _instance(support: Support) -> RuleInstance:
+    """Return a rule with the values of one of its instances."""
+    rule, values = support.unit.rule, dict(zip(support.unit.names, support.values, strict=True))
+    return RuleInstance(rule, tuple(values.items()), fill(rule.sentence, values) or rule.text)
+
+
+def _none(_support: Support) -> tuple[()]:
+    """Return no other ways to choose: rules of queries choose nothing."""
+    return ()

@@ -1,0 +1,211 @@
+"""Encodings as explanations need them: their rules with sentences, users' rules that reach them, and who is asked.
+
+Programs without users' rules are asked in this process, others in the separate process of kb.reasoning.worker.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.explanation.values import RuleInstance, RuleText
+from kb.language.reader import facts_from_text
+from kb.language.source_text import Source, read_source, source_from_bytes
+from kb.reasoning.rulebook import Statement
+from kb.reasoning.sentences import PredicateWords, fill, read_sentences
+from kb.reasoning.solver import ENCODING_FOLDERS
+from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
+from kb.tracing.requests import respond
+from kb.tracing.syntax import JsonValues, ProgramPart
+
+HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
+
+
+class ExplanationError(Exception):
+    """Says that nothing can be explained: there is no such encoding, or the decision is not one of its answers."""
+
+
+class RuleUnit(NamedTuple):
+    """A rule with one alternative of each of its pools.
+
+    Attributes
+    ----------
+    rule : the rule.
+    variables : the names that the rule gives to its global variables.
+    names : the same with those of hidden variables; instances have a value for each.
+    literals : what is known of each literal of its body (kb.tracing.instrument.literal_info).
+    conditions : the same of the conditions of each atom of its head.
+    """
+
+    rule: RuleText
+    variables: tuple[str, ...]
+    names: tuple[str, ...]
+    literals: tuple[JsonValues, ...]
+    conditions: tuple[tuple[JsonValues, ...], ...]
+
+
+class DecisionProgram:
+    """An encoding, with the users' rules that reach it.
+
+    Parameters
+    ----------
+    encoding : the name of the encoding without `.lp`.
+    rule_files : the paths of files with users' rules.
+    seconds : the limit of wall-clock time for each request where users' rules take part.
+
+    Attributes
+    ----------
+    encoding : its name.
+    units : the rules of the program, as `RuleUnit`s.
+    words : how predicates read, by (name, number of arguments).
+    shown : the predicates of its answers.
+    declared : the predicates of its input facts.
+
+    Raises
+    ------
+    ExplanationError : there is no such encoding.
+    CannotOpenError, BadInputError : a file with users' rules cannot be read or has errors.
+    """
+
+    def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
+        self.encoding, self._seconds = encoding, seconds
+        path = _path_of(encoding)
+        self._users: tuple[Statement, ...] = read_rules(rule_files).rules_reaching(encoding) if rule_files else ()
+        _refuse_helping_names([atom.name for one in self._users for atom in (*one.heads, *one.body)])
+        text = path.read_text(encoding="utf-8")
+        own = ProgramPart(f"{path.parent.parent.name}/asp/{path.name}", 1, text)
+        written = [ProgramPart(one.source.file, one.at[0], one.written) for one in self._users]
+        self.parts: tuple[ProgramPart, ...] = (*written, own)
+        found = self.ask({"task": "statements"})
+        rules, self.words = _rules_with_words(found["statements"], self._users, own)
+        self.units = tuple(_unit(one, rules, found["statements"]) for one in found["units"])
+        self.shown = frozenset((name, arity) for name, arity in found["shown"])
+        self.declared = frozenset((name, arity) for name, arity in found["declared"])
+
+    def ask(self, request: JsonValues) -> JsonValues:
+        """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
+        whole = {**request, "parts": [list(part) for part in self.parts]}
+        if self._users:
+            found = rules_worker().exchange({"trace": whole}, self._seconds)
+            if "limit" in found:
+                raise ExplanationError(f"the explanation was given up: {found['limit']}")
+            if "error" in found:
+                raise ExplanationError(f"the explanation failed: {found['error']}")
+        else:
+            found = respond(whole)
+        if "failed" in found:
+            raise ExplanationError(found["failed"])
+        return found
+
+    def instance(self, unit: RuleUnit, values: Sequence[str]) -> RuleInstance:
+        """Return a rule with values for its named variables.
+
+        values : one for each of the unit's `names`, or for each of its `variables` alone.
+        """
+        names = unit.variables if len(values) == len(unit.variables) else unit.names
+        given = dict(zip(names, values, strict=True))
+        shown = tuple((name, given[name]) for name in unit.variables)
+        return RuleInstance(unit.rule, shown, fill(unit.rule.sentence, given) or unit.rule.text)
+
+
+def decision_program(encoding: str, rule_files: tuple[str, ...] = ()) -> DecisionProgram:
+    """Return an encoding with the users' rules that reach it; the same object while no file changes.
+
+    Raises what `DecisionProgram` does.
+    """
+    return _kept_program(encoding, rule_files, texts_of(rule_files))
+
+
+@lru_cache(maxsize=64)
+def _kept_program(encoding: str, rule_files: tuple[str, ...], _texts: tuple[str, ...]) -> DecisionProgram:
+    """Return an encoding with users' rules; the last ones are kept, as long as the texts of the files stay the same."""
+    return DecisionProgram(encoding, rule_files)
+
+
+def texts_of(rule_files: Sequence[str]) -> tuple[str, ...]:
+    """Return the texts of files; CannotOpenError or BadInputError when one cannot be read or is no text of ours."""
+    return tuple(read_source(path).text for path in rule_files)
+
+
+def canonical(atoms: Sequence[str]) -> tuple[str, ...]:
+    """Return atoms as clingo writes them, without full stops, in their order.
+
+    Raises BadInputError for a text that is no fact: text of an episode never reaches clingo unread. Raises
+    ExplanationError for a name that explanations use themselves.
+    """
+    text = "\n".join(atom if atom.rstrip().endswith(".") else f"{atom}." for atom in atoms)
+    found = tuple(str(fact) for fact in facts_from_text(text))
+    _refuse_helping_names(found)
+    return found
+
+
+def _refuse_helping_names(names: Sequence[str]) -> None:
+    """Raise ExplanationError when an atom or a name begins like those of helping rules (kb.tracing.instrument)."""
+    for name in names:
+        if name.startswith(HELPING_PREFIX):
+            raise ExplanationError(f"names that begin with {HELPING_PREFIX} belong to explanations: {name}")
+
+
+def encoding_names() -> tuple[str, ...]:
+    """Return the names of all encodings, sorted."""
+    return tuple(sorted(path.stem for folder in ENCODING_FOLDERS for path in folder.glob("*.lp")))
+
+
+def rules_of(encoding: str) -> tuple[RuleText, ...]:
+    """Return the rules of one of our encodings with their sentences, in order; ExplanationError for an unknown name."""
+    units = decision_program(encoding).units
+    return tuple(dict.fromkeys(unit.rule for unit in units))
+
+
+def _path_of(encoding: str) -> Path:
+    """Return the path of an encoding; ExplanationError when there is none of that name."""
+    for folder in ENCODING_FOLDERS:
+        path = folder / f"{encoding}.lp"
+        if path.parent == folder and path.is_file():
+            return path
+    raise ExplanationError(f"there is no encoding {encoding}; there are {', '.join(encoding_names())}")
+
+
+def _rules_with_words(
+    statements: Sequence[JsonValues], users: Sequence[Statement], own: ProgramPart
+) -> tuple[list[RuleText], Mapping[tuple[str, int], PredicateWords]]:
+    """Return the rules of a program with their sentences, and how predicates read.
+
+    statements : the rules as kb.tracing found them, those of users first. users : the users' rules. own : the encoding.
+    """
+    ours = statements[len(users) :]
+    source = source_from_bytes(own.file, own.text.encode("utf-8"))
+    found, problems = read_sentences(source, [((one["line"], one["column"]), one["variables"]) for one in ours])
+    if problems:
+        raise ExplanationError(str(problems[0]))
+    sentences, words = words_of_users(users)
+    rules = [
+        RuleText(one.source.file, *one.at, " ".join(one.written.split()), entry["kind"], sentence)
+        for one, entry, sentence in zip(users, statements, sentences, strict=False)
+    ]
+    for entry in ours:
+        at = (entry["line"], entry["column"])
+        rules.append(RuleText(own.file, *at, entry["text"], entry["kind"], found.sentences.get(at, "")))
+    return rules, {**words, **found.predicates}
+
+
+def words_of_users(users: Sequence[Statement]) -> tuple[list[str], dict[tuple[str, int], PredicateWords]]:
+    """Return the sentence of each of some users' rules, '' for none, and how predicates read in their files."""
+    words: dict[tuple[str, int], PredicateWords] = {}
+    sentences: dict[tuple[Source, tuple[int, int]], str] = {}
+    for source in dict.fromkeys(one.source for one in users):
+        found, _ = words_of_rules(source, [one for one in users if one.source == source])
+        words = {**found.predicates, **words}
+        sentences |= {(source, at): text for at, text in found.sentences.items()}
+    return [sentences.get((one.source, one.at), "") for one in users], words
+
+
+def _unit(entry: JsonValues, rules: Sequence[RuleText], statements: Sequence[JsonValues]) -> RuleUnit:
+    """Return a unit from the response of kb.tracing."""
+    return RuleUnit(
+        rules[entry["statement"]],
+        tuple(statements[entry["statement"]]["variables"]),
+        tuple(entry["names"]),
+        tuple(entry["literals"]),
+        tuple(map(tuple, entry["conditions"])),
+    )

@@ -1,0 +1,249 @@
+"""Which rule instance derives each atom of an answer, such that no atom rests on itself."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from kb.explanation.programs import RuleUnit
+from kb.tracing.syntax import JsonValues
+
+LiteralValue = str | list[str]  # an atom, or the sides of a comparison or the bounds of an aggregate
+
+
+@dataclass(frozen=True)
+class CountedElement:
+    """An element of an aggregate or of a conditional literal whose condition holds.
+
+    Attributes
+    ----------
+    element : the index of the element in its literal.
+    terms : its tuple; for a conditional literal its literal.
+    condition : the literals of its condition.
+    """
+
+    element: int
+    terms: tuple[LiteralValue, ...]
+    condition: tuple[LiteralValue, ...]
+
+
+@dataclass(frozen=True)
+class Support:
+    """A rule instance that derives or chooses an atom.
+
+    Attributes
+    ----------
+    number : the index of its unit.
+    unit : the rule with one alternative of each pool.
+    values : a value for each of the unit's names.
+    literals : the literals of its body.
+    elements : of each literal the elements that count; () for literals other than aggregates and conditional ones.
+    head_element : the index of the atom in the rule's head.
+    condition : the literals of the condition of that atom.
+    """
+
+    number: int
+    unit: RuleUnit
+    values: tuple[str, ...]
+    literals: tuple[LiteralValue, ...]
+    elements: tuple[tuple[CountedElement, ...], ...]
+    head_element: int
+    condition: tuple[LiteralValue, ...]
+
+
+def supports_of(trace: JsonValues, units: Sequence[RuleUnit]) -> dict[str, list[Support]]:
+    """Return the rule instances that derive or may choose each atom, by atom; a choice lists also what is not chosen.
+
+    trace : the response of kb.tracing to the task "trace". units : the units of the program.
+    """
+    bodies = {(unit, tuple(values)): tuple(literals) for unit, values, literals in trace["on"]}
+    counted: dict[tuple[int, tuple[str, ...], int], list[CountedElement]] = {}
+    for unit, literal, element, values, terms, condition in trace["elements"]:
+        member = CountedElement(element, tuple(terms), tuple(condition))
+        counted.setdefault((unit, tuple(values), literal), []).append(member)
+    found: dict[str, list[Support]] = {}
+    for unit, element, values, head, condition in trace["heads"]:
+        key = (unit, tuple(values))
+        inner = tuple(tuple(counted.get((*key, at), ())) for at in range(len(units[unit].literals)))
+        one = Support(unit, units[unit], key[1], bodies[key], inner, element, tuple(condition))
+        found.setdefault(head, []).append(one)
+    return found
+
+
+def founded_supports(
+    supports: Mapping[str, Sequence[Support]], given: Iterable[str], holding: Iterable[str]
+) -> tuple[dict[str, Support], dict[str, int]]:
+    """Return for each atom of an answer the rule instance that explains it, and its height in the proof.
+
+    The height of a given fact is 0, that of any other atom greater than those of the atoms on which it rests. Of
+    several instances the one of least height is taken, then the one with fewer literals, then the one that stands
+    first.
+
+    supports : the instances for each atom. given : the input facts. holding : all atoms of the answer.
+    """
+    heights = dict.fromkeys(given, 0)
+    chosen: dict[str, Support] = {}
+    wanted = set(holding)
+    _raise_levels(supports, wanted, heights, chosen)
+    while True:  # what rests on aggregates that are founded by a part of their elements
+        level = max(heights.values(), default=0) + 1
+        ready = {
+            atom: best
+            for atom in sorted(wanted - heights.keys())
+            if (best := _best_at_least(supports.get(atom, ()), heights)) is not None
+        }
+        if not ready:
+            return chosen, heights
+        for atom, support in ready.items():
+            heights[atom], chosen[atom] = level, support
+
+
+def _raise_levels(
+    supports: Mapping[str, Sequence[Support]], wanted: set[str], heights: dict[str, int], chosen: dict[str, Support]
+) -> None:
+    """Give heights and rule instances to all atoms that rest on given facts, level after level.
+
+    wanted : the atoms that hold. heights, chosen : changed.
+    """
+    waiting: dict[str, list[tuple[str, int]]] = {}  # by atom the instances that need it: (their atom, their index)
+    left: dict[tuple[str, int], int] = {}  # how many needed atoms of an instance have no height yet
+    size: dict[tuple[str, int], int] = {}
+    ready: list[tuple[str, int]] = []
+    for atom in sorted(wanted - heights.keys()):
+        for index, support in enumerate(supports.get(atom, ())):
+            needed = set(_all_needed(support))
+            key = (atom, index)
+            size[key], left[key] = len(needed), len(needed - heights.keys())
+            for other in needed - heights.keys():
+                waiting.setdefault(other, []).append(key)
+            if not left[key]:
+                ready.append(key)
+    level = 0
+    while ready:
+        level += 1
+        best: dict[str, tuple[int, int]] = {}
+        for atom, index in ready:
+            if atom not in heights:
+                best[atom] = min(best.get(atom, (size[atom, index], index)), (size[atom, index], index))
+        ready = []
+        for atom, (_, index) in best.items():
+            heights[atom], chosen[atom] = level, supports[atom][index]
+            for key in waiting.get(atom, ()):
+                left[key] -= 1
+                if not left[key]:
+                    ready.append(key)
+
+
+def positive_atoms(literals: Iterable[LiteralValue], infos: Iterable[JsonValues]) -> Iterator[str]:
+    """Yield the atoms among literals that are not negated."""
+    for value, info in zip(literals, infos, strict=True):
+        if info["kind"] == "atom" and isinstance(value, str):
+            yield value
+
+
+def element_atoms(one: CountedElement, info: JsonValues) -> Iterator[str]:
+    """Yield the atoms on which the condition of an element rests."""
+    yield from positive_atoms(one.condition, info["conditions"][one.element])
+
+
+def _best_at_least(options: Sequence[Support], heights: Mapping[str, int]) -> Support | None:
+    """Return the first instance that holds by atoms that have heights, aggregates by a part of their elements."""
+    for support in options:
+        needed = _needed_at_least(support, heights)
+        if needed is not None and all(atom in heights for atom in needed):
+            return support
+    return None
+
+
+def _all_needed(support: Support) -> Iterator[str]:
+    """Yield all atoms that hold and that the body and the condition of an instance read without negation."""
+    yield from positive_atoms(support.literals, support.unit.literals)
+    if support.condition:
+        yield from positive_atoms(support.condition, support.unit.conditions[support.head_element])
+    for info, elements in zip(support.unit.literals, support.elements, strict=True):
+        for one in elements:
+            yield from element_atoms(one, info)
+            if info["kind"] == "conditional":
+                yield from positive_atoms(one.terms, [info["literal"]])
+
+
+def _needed_at_least(support: Support, heights: Mapping[str, int]) -> Iterable[str] | None:
+    """Return the atoms that suffice for an instance, given those that have heights; None when they do not suffice.
+
+    An aggregate must hold by the elements all of whose atoms have heights; a conditional literal must hold for these.
+    """
+    found = list(positive_atoms(support.literals, support.unit.literals))
+    if support.condition:
+        found += positive_atoms(support.condition, support.unit.conditions[support.head_element])
+    for value, info, elements in zip(support.literals, support.unit.literals, support.elements, strict=True):
+        ready = founded_elements(info, elements, heights)
+        if info["kind"] == "aggregate" and not info["negated"] and not holds_aggregate(info, value, ready):
+            return None
+        for one in ready:
+            found += element_atoms(one, info)
+            if info["kind"] == "conditional":
+                found += positive_atoms(one.terms, [info["literal"]])
+    return found
+
+
+def founded_elements(
+    info: JsonValues, elements: Iterable[CountedElement], heights: Mapping[str, int], below: int | None = None
+) -> tuple[CountedElement, ...]:
+    """Return the elements whose atoms all have heights; with `below`, heights less than that."""
+    return tuple(
+        one
+        for one in elements
+        if all(atom in heights and (below is None or heights[atom] < below) for atom in element_atoms(one, info))
+    )
+
+
+def aggregate_value(info: JsonValues, elements: Iterable[CountedElement]) -> str:
+    """Return the value of an aggregate over its elements as text; `#inf` and `#sup` for the greatest and least of none.
+
+    Elements with equal tuples count once. Members that are no numbers do not count in a sum; among the greatest and the
+    least, numbers are compared with numbers and else texts with texts, a name being greater than any number.
+    """
+    tuples = dict.fromkeys(_flat(one.terms) for one in elements)
+    function = info["function"]
+    if function == "#count":
+        return str(len(tuples))
+    firsts = [terms[0] for terms in tuples if terms]
+    if function in ("#sum", "#sum+"):
+        numbers = [int(term) for term in firsts if _is_number(term)]
+        return str(sum(number for number in numbers if function == "#sum" or number > 0))
+    if not firsts:
+        return "#inf" if function == "#max" else "#sup"
+    pick = max if function == "#max" else min
+    return pick(firsts, key=_order)
+
+
+def holds_aggregate(info: JsonValues, bounds: LiteralValue, elements: Iterable[CountedElement]) -> bool:
+    """Return whether the value of an aggregate over its elements keeps the bounds."""
+    value = aggregate_value(info, elements)
+    terms = iter(bounds)
+    return all(
+        _compare(next(terms), sign, value) if side == 0 else _compare(value, sign, next(terms))
+        for side, sign in enumerate(info["signs"])
+        if sign
+    )
+
+
+def _compare(left: str, sign: str, right: str) -> bool:
+    """Return whether `left sign right` holds, for terms as texts."""
+    a, b = _order(left), _order(right)
+    return {"=": a == b, "!=": a != b, "<": a < b, "<=": a <= b, ">": a > b, ">=": a >= b}[sign]
+
+
+def _order(term: str) -> tuple[int, int, str]:
+    """Return a key that orders terms: `#inf`, numbers, other terms, `#sup`."""
+    if term in ("#inf", "#sup"):
+        return (-1 if term == "#inf" else 2), 0, ""
+    return (0, int(term), "") if _is_number(term) else (1, 0, term)
+
+
+def _is_number(term: str) -> bool:
+    """Return whether a term is an integer."""
+    return term.removeprefix("-").isdigit()
+
+
+def _flat(terms: Iterable[LiteralValue]) -> tuple[str, ...]:
+    """Return the members of a tuple as texts."""
+    return tuple(one if isinstance(one, str) else f"({','.join(one)})" for one in terms)

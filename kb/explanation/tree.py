@@ -1,0 +1,172 @@
+"""Proof trees built from rule instances: the same for encodings and for users' rules in queries."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+from kb.explanation.support import (
+    CountedElement,
+    LiteralValue,
+    Support,
+    element_atoms,
+    founded_elements,
+    founded_supports,
+    positive_atoms,
+)
+from kb.explanation.values import ProofNode, RivalChoice, RuleInstance
+from kb.explanation.wording import (
+    WordsByPredicate,
+    absent_words,
+    aggregate_claim,
+    aggregate_words,
+    atom_pattern,
+    atom_words,
+    comparison_claim,
+    comparison_words,
+    member_text,
+    substituted,
+    variables_in,
+)
+from kb.tracing.syntax import JsonValues
+
+
+class ProofTrees:
+    """The proofs of the atoms that hold.
+
+    Parameters
+    ----------
+    supports : the rule instances that derive or may choose each atom.
+    given : the input facts.
+    holding : all atoms that hold.
+    words : how predicates read.
+    assumed : those of the facts that are not given really.
+    instance : makes a rule with values of a rule instance.
+    rivals : returns the other ways to choose for a rule instance that chose an atom.
+    """
+
+    def __init__(
+        self,
+        supports: Mapping[str, Sequence[Support]],
+        given: Iterable[str],
+        holding: Iterable[str],
+        words: WordsByPredicate,
+        assumed: Iterable[str],
+        instance: Callable[[Support], RuleInstance],
+        rivals: Callable[[Support], tuple[RivalChoice, ...]],
+    ) -> None:
+        self._chosen, self._heights = founded_supports(supports, given, holding)
+        self._words, self._assumed, self._instance, self._rivals = words, frozenset(assumed), instance, rivals
+        self._nodes: dict[str, ProofNode] = {}
+
+    def node(self, atom: str) -> ProofNode:
+        """Return the proof of an atom that holds; the proof of an atom is one object, wherever it stands."""
+        for other in sorted(self._needed(atom), key=lambda one: (self._heights[one], one)):
+            if other not in self._nodes:
+                self._nodes[other] = self._built(other)
+        return self._nodes[atom]
+
+    def _needed(self, atom: str) -> set[str]:
+        """Return an atom and all atoms on which its proof rests."""
+        found, waiting = {atom}, [atom]
+        while waiting:
+            one = waiting.pop()
+            for other in self._direct(one):
+                if other not in found:
+                    found.add(other)
+                    waiting.append(other)
+        return found
+
+    def _direct(self, atom: str) -> Iterator[str]:
+        """Yield the atoms on which the rule instance that explains an atom rests."""
+        support = self._chosen.get(atom)
+        if support is None:
+            return
+        yield from positive_atoms(support.literals, support.unit.literals)
+        if support.condition:
+            yield from positive_atoms(support.condition, support.unit.conditions[support.head_element])
+        for info, elements in zip(support.unit.literals, support.elements, strict=True):
+            for one in founded_elements(info, elements, self._heights, self._heights[atom]):
+                yield from element_atoms(one, info)
+                if info["kind"] == "conditional":
+                    yield from positive_atoms(one.terms, [info["literal"]])
+
+    def _built(self, atom: str) -> ProofNode:
+        """Return the proof of an atom whose parts have been built."""
+        words = atom_words(atom, self._words)
+        support = self._chosen.get(atom)
+        if support is None:
+            return ProofNode("assumed" if atom in self._assumed else "given", atom, words)
+        chosen = support.unit.rule.kind == "choice"
+        children = tuple({node.claim: node for node in self._children(atom, support)}.values())
+        rivals = self._rivals(support) if chosen else ()
+        return ProofNode("chosen" if chosen else "derived", atom, words, self._instance(support), children, rivals)
+
+    def _children(self, atom: str, support: Support) -> Iterator[ProofNode]:
+        """Yield the parts of the body of the rule instance that explains an atom."""
+        values = dict(zip(support.unit.names, support.values, strict=True))
+        parts = zip(support.literals, support.unit.literals, support.elements, strict=True)
+        for value, info, elements in parts:
+            ready = founded_elements(info, elements, self._heights, self._heights[atom])
+            yield from self._literal(value, info, ready, values)
+        if support.condition:
+            infos = support.unit.conditions[support.head_element]
+            for value, info in zip(support.condition, infos, strict=True):
+                yield from self._literal(value, info, (), None)
+
+    def _literal(
+        self,
+        value: LiteralValue,
+        info: JsonValues,
+        elements: Sequence[CountedElement],
+        values: Mapping[str, str] | None,
+    ) -> Iterator[ProofNode]:
+        """Yield the node of one literal; nothing for a constant truth.
+
+        values : the values of the variables of its rule; None where local variables may stand in it.
+        """
+        kind, words = info["kind"], self._words
+        if kind == "atom" and isinstance(value, str):
+            yield self._nodes[value]
+        elif kind == "not" and isinstance(value, str):
+            yield ProofNode("absent", f"not {atom_pattern(value)}", absent_words(value, words))
+        elif kind == "notnot" and isinstance(value, str):
+            claim = f"not not {atom_pattern(value)}"
+            yield ProofNode("negated", claim, f"it holds, whatever derives it, that {atom_words(value, words)}")
+        elif kind == "comparison" and not isinstance(value, str):
+            known = values if values is not None and variables_in(info["text"]) <= values.keys() else None
+            claim, told = comparison_claim(info, value, known), comparison_words(info, value, known)
+            yield ProofNode("comparison", claim, told)
+        elif kind == "aggregate":
+            claim, told = aggregate_claim(info, list(value), elements), aggregate_words(info, list(value), elements)
+            yield ProofNode("aggregate", claim, told, children=tuple(self._members(info, elements)))
+        elif kind == "conditional":
+            text = substituted(info["text"], values or {})
+            number = f"in all {len(elements)} cases" if len(elements) > 1 else "in the one case that there is"
+            told = f"{number} it holds that {text}" if elements else f"there is no case in which to check {text}"
+            yield ProofNode("each", text, told, children=tuple(self._cases(info, elements)))
+
+    def _members(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
+        """Yield a node for each element that counts in an aggregate; that of its only atom when it has one."""
+        for one in elements:
+            infos = info["conditions"][one.element]
+            parts = [
+                node
+                for value, inner in zip(one.condition, infos, strict=True)
+                for node in self._literal(value, inner, (), None)
+            ]
+            if len(parts) == 1:
+                yield parts[0]
+            else:
+                text = member_text(one.terms)
+                yield ProofNode("each", text, f"{text} counts", children=tuple(parts))
+
+    def _cases(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:
+        """Yield a node for each case of a conditional literal: its literal, with its condition below."""
+        for one in elements:
+            (literal,) = self._literal(one.terms[0], info["literal"], (), None)
+            infos = info["conditions"][one.element]
+            parts = [
+                node
+                for value, inner in zip(one.condition, infos, strict=True)
+                for node in self._literal(value, inner, (), None)
+            ]
+            below = (literal,) if literal.children or literal.instance else ()
+            yield ProofNode("each", literal.claim, literal.words, children=(*parts, *below))

@@ -1,0 +1,129 @@
+"""Why an atom does not hold in the answer of an encoding: the least change of the facts with which it would."""
+
+from collections.abc import Sequence
+
+from kb.explanation.programs import DecisionProgram, ExplanationError, canonical, decision_program
+from kb.explanation.proof import TracedDecision, traced_decision
+from kb.explanation.rivals import rivals_of
+from kb.explanation.values import Absence, Proof
+from kb.explanation.wording import absent_words, atom_words, split_atom
+from kb.language.reader import facts_from_text
+from kb.reasoning.interfaces import USER_RULE_INTERFACES
+
+
+def explain_absence(
+    encoding: str,
+    facts: Sequence[str],
+    answer: Sequence[str] | None,
+    atom: str,
+    rule_files: Sequence[str] = (),
+) -> Absence:
+    """Return why an atom does not hold in an answer of an encoding.
+
+    Parameters
+    ----------
+    encoding : the name of the encoding without `.lp`.
+    facts : its input facts, atoms as text with or without full stops.
+    answer : the shown atoms of its answer, likewise; None where it had no answer.
+    atom : the atom that does not hold.
+    rule_files : the paths of files with users' rules that took part.
+
+    Returns
+    -------
+    The least change of the input facts with which the atom holds: facts that would have to be given (over the constants
+    that are known, and numbers that the rules need), and facts that would have to be absent. No member of it can be
+    left out. `partial` marks a change that may not be the least one. For an atom that could have been chosen it holds
+    also how that choice compares with the answer. After the change the atom is part of a best answer.
+
+    Raises
+    ------
+    ExplanationError : there is no such encoding, the answer is none of its answers, or the atom holds in it.
+    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
+    """
+    (wanted,) = canonical([atom])
+    files = tuple(map(str, rule_files))
+    program, given = decision_program(encoding, files), canonical(facts)
+    known: Sequence[str] = given
+    rival = None
+    if answer is not None:
+        shown = canonical(answer)
+        decision = traced_decision(encoding, given, shown, files)
+        if wanted in decision.atoms:
+            raise ExplanationError(f"{wanted} holds in this answer of {encoding}.lp")
+        known = sorted(decision.atoms)
+        options = decision.supports.get(wanted, ())
+        if any(one.unit.rule.kind == "choice" for one in options):
+            rival = next(iter(rivals_of(program, given, shown, [wanted], with_none=False)), None)
+    request = {"facts": list(given), "atom": wanted}
+    candidates = program.ask({**request, "task": "candidates", "known": list(known)})
+    candidates["facts"] = [fact for fact in candidates["facts"] if _is_sensible(encoding, fact)]
+    found = program.ask({**request, "task": "change", "candidates": candidates})
+    missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
+    partial = not found["least"] or (candidates["cut"] and len(missing) + len(in_way) > 1)
+    proof = _proof_after(program, given, missing, in_way, wanted) if found["found"] else None
+    sentence = _sentence(program, wanted, given, missing, in_way, found["found"])
+    return Absence(encoding, wanted, missing, in_way, partial, found["found"], sentence, rival, proof)
+
+
+def _is_sensible(encoding: str, fact: str) -> bool:
+    """Return whether the arguments of a candidate fact are of the types that the encoding's vocabulary declares."""
+    (one,) = facts_from_text(f"{fact}.")
+    types = USER_RULE_INTERFACES.get(encoding, {}).get(one.signature)
+    return types is None or all(type_.check(term) is None for type_, term in zip(types, one.args, strict=True))
+
+
+def _proof_after(
+    program: DecisionProgram,
+    given: Sequence[str],
+    missing: Sequence[str],
+    in_way: Sequence[str],
+    wanted: str,
+) -> Proof | None:
+    """Return why an atom holds after a change of the given facts; None when no best answer holds it."""
+    facts = [fact for fact in given if fact not in in_way] + list(missing)
+    found = program.ask({"task": "answer", "facts": facts, "atom": wanted})
+    if found["atoms"] is None:
+        return None
+    try:
+        decision = TracedDecision(program, facts, found["atoms"], missing)
+    except ExplanationError:  # the search for this answer was cut off
+        return None
+    return Proof(program.encoding, decision.node(wanted)) if wanted in decision.atoms else None
+
+
+def _sentence(
+    program: DecisionProgram,
+    wanted: str,
+    given: Sequence[str],
+    missing: Sequence[str],
+    in_way: Sequence[str],
+    found: bool,
+) -> str:
+    """Return in one sentence why an atom does not hold."""
+    said = absent_words(wanted, program.words)
+    start = f"{wanted} does not hold" if said == f"no {wanted} is known" else f"{wanted} does not hold: {said}"
+    if not found:
+        return f"{start}; no change of the given facts was found with which it would."
+    if not missing and not in_way:
+        return f"{start}, but another answer that costs the same holds it."
+    parts = [f"{_fact_words(fact, program)} were given{_replaced(fact, given)}" for fact in missing]
+    parts += [f"{_fact_words(fact, program)} were not given" for fact in in_way]
+    return f"{start}; it would if {' and '.join(parts)}."
+
+
+def _fact_words(fact: str, program: DecisionProgram) -> str:
+    """Return a fact with its plain words in brackets, where it has any."""
+    words = atom_words(fact, program.words)
+    return fact if words == fact else f"{fact} ({words})"
+
+
+def _replaced(fact: str, given: Sequence[str]) -> str:
+    """Return the given fact that differs from another one in one number alone, as an addition to a sentence; or ''."""
+    name, arguments = split_atom(fact)
+    for other in given:
+        their_name, theirs = split_atom(other)
+        if their_name == name and len(theirs) == len(arguments):
+            unlike = [(a, b) for a, b in zip(arguments, theirs, strict=True) if a != b]
+            if len(unlike) == 1 and all(part.removeprefix("-").isdigit() for part in unlike[0]):
+                return f" (given is {other})"
+    return ""

@@ -1,0 +1,203 @@
+"""Assumptions: facts and rules that a user adds while the robot runs, checked, and brought to where they count.
+
+A fact of a predicate that an encoding knows becomes a rule of that encoding, as with `--kb`. A fact of the world model
+that no encoding takes counts for queries alone. Some facts of the world model have an equivalent in
+`reconciliation.lp`: what an object's colour is, whether it can be moved, and what a parameter of the task means.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.language.diagnostics import BadInputError, did_you_mean
+from kb.language.integers import integers_beyond_32_bits
+from kb.language.reader import parse_facts
+from kb.language.source_text import Source, source_from_bytes
+from kb.language.terms import Fact, Number, Symbol
+from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts
+from kb.reasoning.interfaces import DEFINING_FACTS, USER_RULE_INTERFACES
+from kb.reasoning.rulebook import INTERFACE_PREDICATES, INTERNAL_PREDICATES, PREDICATES_BY_ENCODING, QUERY_INTERFACE
+from kb.reasoning.user_rules import read_rules, read_tested_sources, sources_of
+
+ASSUMPTION_FILE = "assume"  # the name of an assumption in messages
+# By a predicate of the world model: the atom of reconciliation.lp that says the same of a fact; '' for none.
+EQUIVALENTS: Mapping[Signature, Callable[[Fact], str]] = {
+    ("bound", 2): lambda fact: f"bind({fact.args[0]},{fact.args[1]})",
+    ("colour", 3): lambda fact: f"has({fact.args[0]},colour,{fact.args[1]},{fact.args[2]})",
+    ("movable", 2): lambda fact: f"fixed({fact.args[0]})" if str(fact.args[1]) == "0" else "",
+}
+ENCODING_PREDICATES = frozenset(signature for interface in USER_RULE_INTERFACES.values() for signature in interface)
+
+
+class Assumption(NamedTuple):
+    """One fact or rule that is assumed.
+
+    Attributes
+    ----------
+    written : the fact or rule in one line, with its full stop.
+    rule : the text of a rule file that states it; '' when it counts for queries alone.
+    facts : facts that queries see besides those that the robot believes, with their full stops.
+    reaches : the names of the encodings that it reaches, without `.lp`; () when it counts for queries alone.
+    """
+
+    written: str
+    rule: str
+    facts: tuple[str, ...]
+    reaches: tuple[str, ...]
+
+
+def read_assumptions(text: str, kb_files: Sequence[str] = ()) -> tuple[Assumption, ...]:
+    """Return the assumptions that a text states: facts, or rules in the language of `--kb`.
+
+    Parameters
+    ----------
+    text : one or more facts with full stops (the last may lack it), or rules. `utak` may stand for `org`.
+    kb_files : the paths of the user's rule files, with which they are tested together.
+
+    Returns
+    -------
+    The assumptions in the order of the text, at least one; rules come as one assumption.
+
+    Raises
+    ------
+    BadInputError : the text has errors, or contradicts the encodings or the user's rules, or would change nothing. The
+        problems stand in a file named `assume`.
+    CannotOpenError : a rule file cannot be read.
+    """
+    source = source_from_bytes(ASSUMPTION_FILE, _ended(text).encode("utf-8", errors="surrogateescape"))
+    beyond = list(integers_beyond_32_bits(source))
+    if beyond:
+        raise BadInputError(beyond)
+    if ":-" in source.text or ":~" in source.text or "{" in source.text:
+        return (_rule(source.text, " ".join(source.text.split()), (), kb_files),)
+    facts = parse_facts(source)
+    if not facts:
+        raise BadInputError([source.problem(source.start(), "nothing is assumed", "such as shape(o1, square, 90).")])
+    return tuple(_assumed_fact(source, fact, kb_files) for fact in facts)
+
+
+def canonical_facts(text: str, file: str) -> tuple[str, ...]:
+    """Return the facts of a text as the world model writes them: no blanks, full stops, `org` for `utak`.
+
+    Parameters
+    ----------
+    text : facts; the last full stop may be missing.
+    file : the name of the text in messages.
+
+    Returns
+    -------
+    The facts in the order of the text, such as `shape(o1,square,90).`.
+
+    Raises
+    ------
+    BadInputError : the text has syntax errors, or states no fact.
+    """
+    source = source_from_bytes(file, _ended(text).encode("utf-8", errors="surrogateescape"))
+    facts = parse_facts(source)
+    if not facts:
+        raise BadInputError([source.problem(source.start(), "a fact is wanted", "such as shape(o1, square, 90).")])
+    return tuple(f"{_with_org(fact)}." for fact in facts)
+
+
+def _ended(text: str) -> str:
+    """Return a text with a full stop at its end."""
+    text = text.strip()
+    return text if text.endswith(".") or not text else f"{text}."
+
+
+def _with_org(fact: Fact) -> Fact:
+    """Return a fact of the world model with `org` for `utak` where a thing is named; any other fact as it is."""
+    declared = BELIEF_PREDICATES.get(fact.signature)
+    if declared is None:
+        return fact
+    args = tuple(
+        Symbol("org", (), term.span) if slot is THING_ARGUMENT and str(term) == "utak" else term
+        for slot, term in zip(declared.arguments, fact.args, strict=True)
+    )
+    return Symbol(fact.name, args, fact.span)
+
+
+def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assumption:
+    """Return the assumption of one fact of a text; raise BadInputError when it cannot be assumed."""
+    fact = _with_org(fact)
+    written = f"{fact}."
+    signature = fact.signature
+    about_a_node = signature == ("kind", 3) and THING_ARGUMENT.check(fact.args[0]) is None
+    if signature in BELIEF_PREDICATES and (about_a_node or signature not in ENCODING_PREDICATES):
+        types = {fact.name: BELIEF_PREDICATES[signature].arguments}
+        problems = check_facts(source, [fact], types)
+        if problems:
+            raise BadInputError(problems)
+        atom = EQUIVALENTS[signature](fact) if signature in EQUIVALENTS else ""
+        seen_by_queries = () if signature == ("bound", 2) else (written,)
+        if atom:
+            (equivalent,) = parse_facts(source_from_bytes(source.file, f"{atom}.".encode()))
+            return _rule(_placed(_guarded(equivalent), fact), written, seen_by_queries, kb_files)
+        return Assumption(written, "", seen_by_queries, ())
+    complaints = [
+        check_facts(source, [fact], {fact.name: interface[signature]})
+        for interface in USER_RULE_INTERFACES.values()
+        if signature in interface
+    ]
+    if complaints and all(complaints):  # no encoding takes these arguments
+        raise BadInputError(complaints[0])
+    if signature not in INTERFACE_PREDICATES and signature not in INTERNAL_PREDICATES:
+        _require_own_predicate(source, fact, kb_files)
+    return _rule(_placed(_guarded(fact), fact), written, (), kb_files)
+
+
+def _require_own_predicate(source: Source, fact: Fact, kb_files: Sequence[str]) -> None:
+    """Raise BadInputError unless the user's rules name the predicate of a fact: nothing would read it."""
+    rules = read_rules(kb_files) if kb_files else None
+    named = set(rules.predicates) if rules else set()
+    if fact.signature in named:
+        return
+    known = named | INTERFACE_PREDICATES
+    forms = sorted(f"{name}/{arity}" for name, arity in known if name == fact.name)
+    hint = f"there is {', '.join(forms)}" if forms else did_you_mean(fact.name, {name for name, _ in known})
+    what = f"unknown predicate {fact.name}/{len(fact.args)}"
+    raise BadInputError([source.problem(fact.span, what, hint or "docs/reference/vocabulary.md lists all of them")])
+
+
+def _guarded(fact: Fact) -> str:
+    """Return a rule that states a fact as long as the things that it names are there.
+
+    Regions, candidates and parameters are such things: an encoding refuses what is derived of others, and they may
+    vanish with the next impression.
+    """
+    guards = []
+    for interface in USER_RULE_INTERFACES.values():
+        for slot, term in zip(interface.get(fact.signature, ()), fact.args, strict=False):
+            for (name, arity), at in DEFINING_FACTS.get(slot.name, ()):
+                if not isinstance(term, Number):
+                    guards.append(f"{name}({','.join(str(term) if n == at else '_' for n in range(arity))})")
+    return f"{fact} :- {', '.join(dict.fromkeys(guards))}." if guards else f"{fact}."
+
+
+def _placed(rule: str, fact: Fact) -> str:
+    """Return a rule at the line and column of a fact, so that messages about it name the place of the fact."""
+    return "\n" * (fact.span.line - 1) + " " * (fact.span.start - 1) + rule
+
+
+def _rule(text: str, written: str, facts: tuple[str, ...], kb_files: Sequence[str]) -> Assumption:
+    """Return the assumption of rules, tested together with the user's files; raise BadInputError for errors."""
+    own = source_from_bytes(ASSUMPTION_FILE, text.encode("utf-8", errors="surrogateescape"))
+    rules = read_tested_sources([*sources_of([Path(file) for file in kb_files]), own])
+    reaches = tuple(
+        name
+        for name in PREDICATES_BY_ENCODING
+        if name != QUERY_INTERFACE and any(one.source == own for one in rules.rules_reaching(name))
+    )
+    reaches = tuple(name for name in reaches if _states_something(name, own, rules.rules_reaching(name)))
+    return Assumption(written, text, facts, reaches)
+
+
+def _states_something(encoding: str, own: Source, reaching: Sequence[object]) -> bool:
+    """Return whether rules that an assumption adds to an encoding can change its answer.
+
+    They do when one of the encoding's own predicates occurs in any rule there: a fact of the user's own predicate, that
+    no other rule reads, changes nothing.
+    """
+    known = set(USER_RULE_INTERFACES[encoding])
+    atoms = {atom.signature for one in reaching for atom in (*one.heads, *one.body)}  # type: ignore[attr-defined]
+    return bool(known & atoms)

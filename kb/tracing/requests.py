@@ -1,0 +1,153 @@
+"""Requests about the answers of logic programs and the responses to them, both as JSON values."""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import clingo
+
+from kb.tracing.alternatives import weigh
+from kb.tracing.answers import GroundedProgram, TraceError, instances
+from kb.tracing.candidates import CandidateFacts, candidate_facts
+from kb.tracing.changes import least_change
+from kb.tracing.instrument import condition_infos, is_choice, literal_info
+from kb.tracing.syntax import JsonValues, ProgramPart, parsed
+
+
+def respond(request: JsonValues) -> JsonValues:
+    """Return the response to a request.
+
+    Parameters
+    ----------
+    request : "task" and what it needs. "parts" are the pieces of the program, each [file, line, text]; "facts" its
+        input facts, atoms as text; "answer" the shown atoms of its answer. The tasks:
+
+        - "statements": only the parts; what the program consists of, see `_statements`
+        - "trace": all instances of its rules that hold in the answer, see `_trace`
+        - "weigh": the costs of alternatives, with "heads" and "none" as of kb.tracing.alternatives.weigh
+        - "answer": the shown "atoms" of the best answer that holds "atom"; None when none does
+        - "candidates": the facts that might be given besides for "atom" to hold, where the atoms "known" hold now; the
+          attributes of kb.tracing.candidates.CandidateFacts by name
+        - "change": the least change with which "atom" holds, among "candidates" in the same form; the attributes of
+          kb.tracing.changes.FoundChange by name
+
+    Returns
+    -------
+    JSON values; {"failed": message} when the program or the answer is wrong.
+    """
+    parts = tuple(ProgramPart(file, line, text) for file, line, text in request["parts"])
+    try:
+        if request["task"] == "statements":
+            return _statements(parts)
+        grounded = _grounded(parts, tuple(request["facts"]))
+        if request["task"] == "trace":
+            return _trace(grounded, request["answer"])
+        if request["task"] == "answer":
+            found = grounded.best_answer([(clingo.parse_term(request["atom"]), True)])
+            return {"atoms": None if found is None else sorted(found.atoms)}
+        if request["task"] == "candidates":
+            return _candidates(grounded, request["atom"], request["known"])
+        if request["task"] == "change":
+            return _change(grounded, request["atom"], request["candidates"])
+        return weigh(grounded, request["answer"], request["heads"], request["none"])
+    except TraceError as error:
+        return {"failed": str(error)}
+
+
+def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> JsonValues:
+    """Return the facts that might be given besides for an atom to hold, as JSON values."""
+    facts, atoms = ([clingo.parse_term(text) for text in texts] for texts in (grounded.facts, known))
+    found = candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))
+    return {**found._asdict(), "facts": list(found.facts), "removable": list(found.removable)}
+
+
+def _change(grounded: GroundedProgram, atom: str, candidates: JsonValues) -> JsonValues:
+    """Return the least change with which an atom holds, as JSON values."""
+    facts, removable = tuple(candidates["facts"]), tuple(candidates["removable"])
+    given = CandidateFacts(facts, removable, candidates["by_choice"], candidates["cut"])
+    return least_change(grounded.program, grounded.facts, given, clingo.parse_term(atom))._asdict()
+
+
+@lru_cache(maxsize=8)
+def _grounded(parts: tuple[ProgramPart, ...], facts: tuple[str, ...]) -> GroundedProgram:
+    """Return a program grounded with its facts; the last few are kept."""
+    return GroundedProgram(parts, facts)
+
+
+def _statements(parts: tuple[ProgramPart, ...]) -> JsonValues:
+    """Return what a program consists of.
+
+    "statements": file, line, column, text, kind and variables of each rule, constraint and weak constraint. "units": of
+    each statement with one alternative of its pools the index of the statement, the names of its variables, what is
+    known of the literals of its body and of the conditions of its head (kb.tracing.instrument.literal_info), and
+    whether it is a choice. "shown", "declared": the predicates of answers, and those that `#defined` names, as [name,
+    number of arguments].
+    """
+    try:
+        program = parsed(parts)
+    except RuntimeError as error:
+        raise TraceError(f"the program cannot be read: {error}") from None
+    return {
+        "statements": [
+            {
+                "file": one.file,
+                "line": one.line,
+                "column": one.column,
+                "text": one.text,
+                "kind": one.kind,
+                "variables": list(one.variables),
+            }
+            for one in program.statements
+        ],
+        "units": [
+            {
+                "statement": unit.statement,
+                "names": list(unit.names),
+                "literals": [literal_info(one) for one in unit.node.body],
+                "conditions": [] if program.statements[unit.statement].kind == "weak" else condition_infos(unit.node),
+                "choice": is_choice(unit),
+            }
+            for unit in program.units
+        ],
+        "shown": sorted(map(list, program.shown)),
+        "declared": sorted(map(list, program.defined)),
+    }
+
+
+def _trace(grounded: GroundedProgram, answer: Sequence[str]) -> JsonValues:
+    """Return the atoms of an answer set and all instances of rules that hold in it.
+
+    "atoms": all atoms. "on": [unit, values, literals] of each instance; "heads": [unit, element, values, head,
+    condition] of each atom that an instance states or may choose; "elements": [unit, index of the literal, element,
+    values, tuple, condition] of each element of an aggregate or conditional literal. Literals are texts: of an atom, or
+    a list for the sides of a comparison and the bounds of an aggregate.
+    """
+    atoms = grounded.whole_answer(answer)
+    found: dict[str, list[Any]] = {"trace__on": [], "trace__head": [], "trace__element": []}
+    for symbol in sorted(instances(grounded.parts, atoms)):
+        unit, *rest = symbol.arguments
+        entry: list[Any]
+        if symbol.name == "trace__on":
+            entry = [_texts(rest[0]), _literals(rest[1])]
+        elif symbol.name == "trace__head":
+            entry = [rest[0].number, _texts(rest[1]), str(rest[2]), _literals(rest[3])]
+        else:
+            entry = [rest[0].number, rest[1].number, _texts(rest[2]), _literals(rest[3]), _literals(rest[4])]
+        found[symbol.name].append([unit.number, *entry])
+    return {
+        "atoms": sorted(map(str, atoms)),
+        "on": found["trace__on"],
+        "heads": found["trace__head"],
+        "elements": found["trace__element"],
+    }
+
+
+def _texts(values: clingo.Symbol) -> list[str]:
+    """Return the members of a tuple as texts."""
+    return list(map(str, values.arguments))
+
+
+def _literals(values: clingo.Symbol) -> list[Any]:
+    """Return literals as JSON values: an atom as text, the tuple of a comparison or an aggregate as a list of texts."""
+    pairs = ((one, one.type == clingo.SymbolType.Function and not one.name) for one in values.arguments)
+    return [_texts(one) if is_tuple else str(one) for one, is_tuple in pairs]

@@ -1,0 +1,328 @@
+"""Statements of logic programs, prepared for tracing: named places for anonymous variables, one alternative of a pool.
+
+A *unit* is a statement with one alternative of each of its pools. Its anonymous variables and intervals, as far as they
+stand in literals without negation, have names of their own, so that an instance of it says which atoms it used.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import clingo
+from clingo.ast import (
+    AST,
+    ASTType,
+    Comparison,
+    ComparisonOperator,
+    Guard,
+    Literal,
+    Sign,
+    SymbolicTerm,
+    Transformer,
+    Variable,
+    parse_string,
+)
+
+JsonValues = dict[str, Any]  # values by key, ready for JSON
+ANY_NAME = "any__"  # stands for an anonymous variable of a negated atom, which may have any value
+HIDDEN_PREFIX = "Some__"  # begins the names that anonymous variables and intervals get
+KEPT_NODES = (ASTType.Rule, ASTType.Minimize)  # the statements that are traced
+SIGNS = {
+    ComparisonOperator.Equal: "=",
+    ComparisonOperator.NotEqual: "!=",
+    ComparisonOperator.LessThan: "<",
+    ComparisonOperator.LessEqual: "<=",
+    ComparisonOperator.GreaterThan: ">",
+    ComparisonOperator.GreaterEqual: ">=",
+}
+FUNCTIONS = ("#count", "#sum", "#sum+", "#min", "#max")  # in the order of clingo's numbers of aggregate functions
+
+
+class ProgramPart(NamedTuple):
+    """A piece of a logic program.
+
+    Attributes
+    ----------
+    file : the name of the file that it comes from.
+    line : the line of that file with which it begins, from 1.
+    text : the piece itself, statements of the ASP language.
+    """
+
+    file: str
+    line: int
+    text: str
+
+
+class TracedStatement(NamedTuple):
+    """A rule, a constraint or a weak constraint of a program.
+
+    Attributes
+    ----------
+    file, line, column : where it begins; line and column from 1.
+    text : the statement as written, on one line.
+    kind : fact, rule, choice, disjunction, constraint or weak (a weak constraint).
+    variables : the names of its global variables, in the order of the text.
+    node : its syntax tree.
+    """
+
+    file: str
+    line: int
+    column: int
+    text: str
+    kind: str
+    variables: tuple[str, ...]
+    node: AST
+
+
+class Unit(NamedTuple):
+    """A statement with one alternative of each of its pools.
+
+    Attributes
+    ----------
+    statement : the index of its statement.
+    node : its syntax tree, in which hidden variables have names.
+    names : the names of its global variables, hidden ones included.
+    """
+
+    statement: int
+    node: AST
+    names: tuple[str, ...]
+
+
+class ParsedProgram(NamedTuple):
+    """A program taken apart.
+
+    Attributes
+    ----------
+    statements : the rules, constraints and weak constraints, in order.
+    units : the same with one alternative of each pool.
+    constants : the `#const` definitions as text.
+    defined : the predicates that `#defined` declares, (name, number of arguments).
+    shown : the predicates of the answer, likewise; empty when everything is shown.
+    """
+
+    statements: tuple[TracedStatement, ...]
+    units: tuple[Unit, ...]
+    constants: tuple[str, ...]
+    defined: frozenset[tuple[str, int]]
+    shown: frozenset[tuple[str, int]]
+
+
+@lru_cache(maxsize=64)
+def parsed(parts: tuple[ProgramPart, ...]) -> ParsedProgram:
+    """Return a program taken apart; the last ones are kept. RuntimeError when clingo cannot parse it."""
+    statements: list[TracedStatement] = []
+    constants: list[str] = []
+    defined: set[tuple[str, int]] = set()
+    shown: set[tuple[str, int]] = set()
+    for part in parts:
+        nodes: list[AST] = []
+        parse_string(part.text, nodes.append, logger=_ignore_message, message_limit=1)
+        lines = part.text.split("\n")
+        for node in nodes:
+            if node.ast_type in KEPT_NODES and str(node.location.begin.filename) == "<string>":
+                statements.append(_statement(part, lines, node))
+            elif node.ast_type == ASTType.Definition:
+                constants.append(str(node))
+            elif node.ast_type == ASTType.Defined:
+                defined.add((node.name, node.arity))
+            elif node.ast_type == ASTType.ShowSignature and node.name:
+                shown.add((node.name, node.arity))
+    units = tuple(unit for number, one in enumerate(statements) for unit in _units(number, one.node))
+    return ParsedProgram(tuple(statements), units, tuple(constants), frozenset(defined), frozenset(shown))
+
+
+def global_variables_of(node: AST) -> tuple[str, ...]:
+    """Return the names of the global variables of a statement, in the order of its text; `_` is none of them.
+
+    Variables that stand only in the elements of aggregates or choices or in conditional literals are local.
+    """
+    found: dict[str, None] = {}
+    if node.ast_type == ASTType.Minimize:
+        outer: list[AST] = [*node.body, node.weight, node.priority, *node.terms]
+    else:
+        head = [node.head] if node.head.ast_type == ASTType.Literal else _guards(node.head)
+        outer = [*head, *node.body]
+    for part in outer:
+        for inner in _outer_parts(part):
+            found |= dict.fromkeys(_variable_names(inner))
+    found.pop("_", None)
+    return tuple(found)
+
+
+def is_choice_head(head: AST) -> bool:
+    """Return whether a head is a choice, `{ ... }` or an aggregate with conditions, rather than an atom or atoms."""
+    return head.ast_type in (ASTType.Aggregate, ASTType.HeadAggregate)
+
+
+def head_elements(head: AST) -> list[tuple[AST, list[AST]]]:
+    """Return (literal, conditions) of each atom that a head may state; [] for the head of a constraint."""
+    if head.ast_type == ASTType.Literal:
+        return [] if head.atom.ast_type == ASTType.BooleanConstant else [(head, [])]
+    found = []
+    for element in head.elements:
+        inner = element.condition if head.ast_type == ASTType.HeadAggregate else element
+        found.append((inner.literal, list(inner.condition)))
+    return found
+
+
+def atom_text(literal: AST) -> str:
+    """Return the atom of a literal as a term of clingo, its anonymous variables replaced by `ANY_NAME`."""
+    return str(_AnyNamer().visit(literal.atom.symbol))
+
+
+def _statement(part: ProgramPart, lines: Sequence[str], node: AST) -> TracedStatement:
+    """Return a statement with its place, text, kind and variables; lines are those of its part."""
+    begin, end = node.location.begin, node.location.end
+    if begin.line == end.line:
+        text = lines[begin.line - 1][begin.column - 1 : end.column - 1]
+    else:
+        rows = [lines[begin.line - 1][begin.column - 1 :], *lines[begin.line : end.line - 1]]
+        text = " ".join(row.strip() for row in [*rows, lines[end.line - 1][: end.column - 1]])
+    kind = _kind(node)
+    return TracedStatement(
+        part.file, part.line + begin.line - 1, begin.column, text, kind, global_variables_of(node), node
+    )
+
+
+def _kind(node: AST) -> str:
+    """Return what a statement is: fact, rule, choice, disjunction, constraint or weak."""
+    if node.ast_type == ASTType.Minimize:
+        return "weak"
+    if is_choice_head(node.head):
+        return "choice"
+    if node.head.ast_type == ASTType.Disjunction:
+        return "disjunction"
+    if not head_elements(node.head):
+        return "constraint"
+    return "rule" if len(node.body) else "fact"
+
+
+def _units(number: int, node: AST) -> Iterator[Unit]:
+    """Yield the units of a statement, one for each combination of the alternatives of its pools."""
+    for one in node.unpool():
+        named = _HiddenNamer().statement(one)
+        yield Unit(number, named, global_variables_of(named))
+
+
+def _guards(head: AST) -> list[AST]:
+    """Return the terms that bound the number of atoms of a choice; [] for any other head."""
+    if not is_choice_head(head):
+        return []
+    return [guard.term for guard in (head.left_guard, head.right_guard) if guard is not None]
+
+
+def _outer_parts(part: AST) -> Iterator[AST]:
+    """Yield the parts of a literal in which its global variables stand."""
+    if part.ast_type == ASTType.ConditionalLiteral:
+        return
+    atom = part.atom if part.ast_type == ASTType.Literal else part
+    if atom.ast_type in (ASTType.BodyAggregate, ASTType.Aggregate):
+        yield from (guard.term for guard in (atom.left_guard, atom.right_guard) if guard is not None)
+    else:
+        yield part
+
+
+def _variable_names(node: AST) -> list[str]:
+    """Return the names of the variables in a part of a syntax tree, in order."""
+    collector = _VariableCollector()
+    collector.visit(node)
+    return collector.found
+
+
+def _ignore_message(_code: clingo.MessageCode, _message: str) -> None:
+    """Do nothing with a message of clingo's: a program that cannot be parsed raises RuntimeError besides."""
+
+
+class _VariableCollector(Transformer):
+    """Collects the names of variables in `found`; clingo calls the `visit` methods."""
+
+    def __init__(self) -> None:
+        self.found: list[str] = []
+
+    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Append the name of a variable to `found`; return the node."""
+        self.found.append(node.name)
+        return node
+
+
+class _AnyNamer(Transformer):
+    """Replaces anonymous variables by the name `ANY_NAME`; clingo calls the `visit` methods."""
+
+    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return `ANY_NAME` for an anonymous variable, any other variable as it is."""
+        if node.name == "_":
+            return SymbolicTerm(node.location, clingo.Function(ANY_NAME))
+        return node
+
+
+class _HiddenNamer(Transformer):
+    """Gives names to anonymous variables and to intervals of body literals; clingo calls the `visit` methods.
+
+    An interval becomes a variable with a comparison beside its literal. Negated atoms keep their anonymous variables.
+    """
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._comparisons: list[AST] = []
+
+    def statement(self, node: AST) -> AST:
+        """Return a statement whose hidden variables have names."""
+        body = self._conjunction(node.body)
+        if node.ast_type == ASTType.Minimize:
+            return node.update(body=body)
+        head = node.head
+        if head.ast_type in (ASTType.Aggregate, ASTType.Disjunction):
+            elements = [one.update(condition=self._conjunction(one.condition)) for one in head.elements]
+            head = head.update(elements=elements)
+        elif head.ast_type == ASTType.HeadAggregate:
+            elements = [
+                one.update(condition=one.condition.update(condition=self._conjunction(one.condition.condition)))
+                for one in head.elements
+            ]
+            head = head.update(elements=elements)
+        return node.update(head=head, body=body)
+
+    def visit_Literal(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a literal with named hidden variables; a negated atom keeps its anonymous variables."""
+        if node.atom.ast_type == ASTType.Comparison:
+            return node
+        if node.atom.ast_type == ASTType.SymbolicAtom and node.sign != Sign.NoSign:
+            return node
+        return node.update(**self.visit_children(node))
+
+    def visit_BodyAggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return an aggregate with named hidden variables in the conditions of its elements."""
+        return node.update(elements=[one.update(condition=self._conjunction(one.condition)) for one in node.elements])
+
+    def visit_Aggregate(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a set of conditional literals with named hidden variables in its literals and conditions."""
+        return node.update(elements=[self.visit(one) for one in node.elements])
+
+    def visit_ConditionalLiteral(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a conditional literal with named hidden variables in its condition; its literal stays."""
+        return node.update(condition=self._conjunction(node.condition))
+
+    def visit_Variable(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a variable with a new name for an anonymous one, any other one as it is."""
+        return self._new_variable(node) if node.name == "_" else node
+
+    def visit_Interval(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return a variable in the place of an interval, and note the comparison that gives it its values."""
+        variable = self._new_variable(node)
+        atom = Comparison(variable, [Guard(ComparisonOperator.Equal, node)])
+        self._comparisons.append(Literal(node.location, Sign.NoSign, atom))
+        return variable
+
+    def _conjunction(self, nodes: Iterable[AST]) -> list[AST]:
+        """Return the literals of a conjunction with named hidden variables, and comparisons for their intervals."""
+        outer, self._comparisons = self._comparisons, []
+        found = [self.visit(node) for node in nodes]
+        found += self._comparisons
+        self._comparisons = outer
+        return found
+
+    def _new_variable(self, node: AST) -> AST:
+        """Return a variable with a name that no other variable of the statement has, at the place of a node."""
+        self._count += 1
+        return Variable(node.location, f"{HIDDEN_PREFIX}{self._count}")

@@ -1,0 +1,94 @@
+"""The forms of what commands print under `--json`, and all forms by the names that `utak schema` gives them."""
+
+from kb.language.vocabulary import VERDICT_WORDS
+from simulator.episode.forms import AnyOf, Form, Keys, ListOf, NamesTo, Noted, Numeric, OneOf, OrNull, Whole
+from simulator.episode.wellformed import (
+    END,
+    FLAG,
+    HEADER,
+    OPTIONS,
+    RESULT_FORMS,
+    STEP,
+    STEP_NUMBER,
+    TEXT,
+)
+
+MAX_LENGTH = 1e12  # squares of a route; above every route on a table that can be read
+MAX_COUNT = 2**53  # of what is counted; JSON readers keep whole numbers exactly up to it
+OUTCOME_CODES = (0, 1, 65, 66, 70)  # exit codes of a scenario that was tested
+# `utak run --json`.
+RUN_OUTPUT = Keys({**RESULT_FORMS, "unmet": Noted("the facts of expect.lp that the truth does not meet", ListOf(TEXT))})
+CELL = AnyOf((TEXT, Whole(-(2**31), 2**31 - 1)), "a text or a whole number of 32 bits")
+# `utak query --json`.
+QUERY_OUTPUT = Keys(
+    {
+        "step": STEP_NUMBER,
+        "answer": OneOf(("bindings", "yes", "no", "don't know")),
+        "variables": ListOf(TEXT),
+        "rows": Noted("values of the variables: whole numbers, or terms as text", ListOf(ListOf(CELL))),
+        "more": Noted("whether rows were left out", FLAG),
+    }
+)
+# `utak routes --json`.
+ROUTES_OUTPUT = Keys(
+    {
+        "routes": ListOf(
+            Keys(
+                {
+                    "length": Numeric(0, MAX_LENGTH),
+                    "clearance": Numeric(0, MAX_LENGTH),
+                    "signature": ListOf(Whole(-MAX_COUNT, MAX_COUNT)),
+                    "points": ListOf(ListOf(Numeric(-MAX_LENGTH, MAX_LENGTH), 2, 2), 1),
+                }
+            )
+        )
+    }
+)
+SCORE = Keys({"earned": Numeric(0, MAX_COUNT), "possible": Numeric(0, MAX_COUNT)})
+# The options of a scenario that was tested.
+TRIAL_OPTIONS = Keys({**OPTIONS.forms, "kb": Noted("the names of the files of rules", ListOf(TEXT))})
+# One expectation of a scenario: `came` says what came instead, and is empty where it is met.
+EXPECTATION = Keys({"expected": TEXT, "met": FLAG, "came": TEXT, "points": Whole(0, MAX_COUNT)})
+# One scenario of `utak test --json`.
+TRIAL = Keys(
+    {
+        "scenario": TEXT,
+        "outcome": OneOf(("passed", "failed", "bad", "absent", "bug")),
+        "exit_code": OneOf(OUTCOME_CODES),
+        "error": TEXT,
+        "verdict": OrNull(OneOf(VERDICT_WORDS)),
+        "believed": OrNull(FLAG),
+        "achieved": OrNull(FLAG),
+        "steps": OrNull(STEP_NUMBER),
+        "reason": OrNull(TEXT),
+        "options": OrNull(TRIAL_OPTIONS),
+        "faults": ListOf(TEXT),
+        "points": OrNull(SCORE),
+        "weighed": Noted("whether the scenario's author weighed its expectations", FLAG),
+        "expectations": ListOf(EXPECTATION),
+        "last_steps": ListOf(Keys({"step": STEP_NUMBER, "action": TEXT, "why": TEXT})),
+        "command": Noted("the command that tries it again", TEXT),
+        "seconds": Numeric(0, MAX_LENGTH),
+    },
+    frozenset({"seconds"}),
+)
+# `utak test --json`.
+TEST_OUTPUT = Keys(
+    {
+        "scenarios": ListOf(TRIAL),
+        "counts": NamesTo(Whole(0, MAX_COUNT)),
+        "points": SCORE,
+        "exit_code": OneOf(OUTCOME_CODES),
+    }
+)
+# All forms by the names that `utak schema` gives them.
+NAMED_FORMS: dict[str, Form] = {
+    "header": Noted("the first line of an episode", HEADER),
+    "step": Noted("the line of a step of an episode", STEP),
+    "end": Noted("the last line of an episode", END),
+    "run": Noted("what `utak run --json` prints", RUN_OUTPUT),
+    "query": Noted("what `utak query --json` prints", QUERY_OUTPUT),
+    "routes": Noted("what `utak routes --json` prints", ROUTES_OUTPUT),
+    "test": Noted("what `utak test --json` prints", TEST_OUTPUT),
+}
+EPISODE_LINES = ("header", "step", "end")  # the names of the lines of an episode

@@ -1,0 +1,231 @@
+"""The changes of a scenario: what each is, and the scenario with it.
+
+A change is small and alone; several together are a tuple of changes. Places are (x, y) in squares, table frame.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from geometry.kernels.arrays import XY
+from kb.language.diagnostics import BadInputError
+from kb.language.terms import Fact, Symbol
+from kb.task.task import Task
+from planner.stages import CONSTRAINT_GOALS
+from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
+from simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
+from simulator.scenario.expectation import should_fail
+from simulator.scenario.scenario import Scenario
+from simulator.scenario.settings import Settings
+from simulator.world.world import World
+
+PLACE_EXPECTATIONS = ("inside", "near", "visits", "circles")  # what a thing or Utak must attain
+
+
+@dataclass(frozen=True)
+class Away:
+    """A thing is not there.
+
+    Attributes
+    ----------
+    name : its name in the world.
+    """
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Wider:
+    """A gap is wider, or a new door is made.
+
+    Attributes
+    ----------
+    gap : the gap as it is.
+    side : which of its walls gives way.
+    steps : by how many steps of `WIDTH_STEP` it is wider; at least 1.
+    """
+
+    gap: Gap
+    side: GapSide
+    steps: int
+
+    @property
+    def by(self) -> float:
+        """Return by how many squares it is wider."""
+        return self.steps * WIDTH_STEP
+
+    @property
+    def width(self) -> float:
+        """Return how wide it is then, in squares."""
+        return self.gap.width + self.by
+
+
+@dataclass(frozen=True)
+class Dropped:
+    """A goal or a constraint is not asked for.
+
+    Attributes
+    ----------
+    index : its number in goal.lp, from 0.
+    goal : the fact as text.
+    is_constraint : whether it is a constraint (not_through).
+    """
+
+    index: int
+    goal: str
+    is_constraint: bool
+
+
+@dataclass(frozen=True)
+class Led:
+    """The robot is led to a place first, by commands that are given to it, and then acts by itself.
+
+    Attributes
+    ----------
+    place : the place, on free floor.
+    what : what is to be seen from there, in words.
+    """
+
+    place: XY
+    what: str
+
+
+@dataclass(frozen=True)
+class MoreCommands:
+    """The robot may give more commands.
+
+    Attributes
+    ----------
+    max_steps : how many.
+    """
+
+    max_steps: int
+
+
+Fix = Away | Wider | Dropped | Led | MoreCommands
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A scenario with changes, ready to be run.
+
+    Attributes
+    ----------
+    scenario, settings : what is run. Its expectations are those that can be asked of it; None when none can.
+    led : the places to which the robot is led first.
+    """
+
+    scenario: Scenario
+    settings: Settings
+    led: tuple[XY, ...] = ()
+
+
+def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[Fix]) -> Variant | None:
+    """Return a scenario with all of some changes; None when they cannot be made.
+
+    They cannot when a gap cannot be widened so, when no goal is left, or when expect.lp wants something of a thing that
+    is away.
+    """
+    made = tuple(changes)
+    if not made:
+        return Variant(scenario, settings)
+    world: World | None = scenario.world
+    task: Task | None = scenario.task
+    away = {change.name for change in made if isinstance(change, Away)}
+    dropped = [change for change in made if isinstance(change, Dropped)]
+    assert world is not None
+    world = replace(
+        world,
+        movable=tuple(thing for thing in world.movable if thing.name not in away),
+        fixed=tuple(thing for thing in world.fixed if thing.name not in away),
+    )
+    for change in made:
+        if isinstance(change, Wider) and world is not None:
+            world = widened(world, change.gap, change.side, change.by)
+        elif isinstance(change, MoreCommands):
+            settings = replace(settings, max_steps=change.max_steps)
+    if dropped:
+        task = without_goals(scenario.task, {change.index for change in dropped})
+    if world is None or task is None or _is_wanted(scenario.expectations, away):
+        return None
+    slow = any(isinstance(change, Led | MoreCommands) for change in made)
+    conditions = _conditions(scenario, dropped, away, slow)
+    places = tuple(change.place for change in made if isinstance(change, Led))
+    return Variant(Scenario(world, task, conditions), settings, places)
+
+
+def without_goals(task: Task, indices: set[int]) -> Task | None:
+    """Return a task without some of its goals (numbers from 0); None when nothing is left to attain.
+
+    The next step of a sequence becomes the first one when the first one is left out.
+    """
+    left = [goal for index, goal in enumerate(task.goals) if index not in indices]
+    texts = [str(goal) for goal in left]
+    if texts and all(goal.name != "first" for goal in left):
+        for index, goal in enumerate(left):
+            if goal.name == "then" and all(_is_constraint(one) for one in left[:index]):
+                texts[index] = f"first({goal.args[0]})"
+    start = start_text(
+        {name: parameter.kind for name, parameter in task.parameters.items()},
+        [(claim.fact, claim.confidence) for claim in task.claims],
+    )
+    try:
+        return task_from_texts(start, "".join(f"{text}.\n" for text in texts))
+    except BadInputError:
+        return None
+
+
+def dropped_goals(task: Task) -> list[Dropped]:
+    """Return the change that drops each goal and each constraint, where something is left to attain then."""
+    changes = [Dropped(index, str(goal), _is_constraint(goal)) for index, goal in enumerate(task.goals)]
+    return [change for change in changes if without_goals(task, {change.index}) is not None]
+
+
+def _is_constraint(goal: Fact) -> bool:
+    """Return whether a goal is a constraint on the way."""
+    return goal.name in CONSTRAINT_GOALS
+
+
+def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
+    """Return whether expect.lp says where one of some things must be."""
+    return any(
+        fact.name in PLACE_EXPECTATIONS and str(fact.args[1 if fact.name == "circles" else 0]) in away
+        for fact in expectations or ()
+    )
+
+
+def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow: bool) -> tuple[Fact, ...] | None:
+    """Return what expect.lp asks of a changed scenario; None when nothing.
+
+    Left out are: `fails`, and beside it `unmoved` and `within`, which speak of the failure; `unmoved` of a thing that
+    is away; `within` when commands are added; and, when a goal for Utak or for things is dropped, where Utak or things
+    must be, because expect.lp speaks of all goals together.
+    """
+    if scenario.expectations is None:
+        return None
+    failing = should_fail(scenario.expectations)
+    subjects = {_is_utak(str(_goal(change.goal).args[0])) for change in dropped if not change.is_constraint}
+
+    def is_asked(fact: Fact) -> bool:
+        if fact.name == "fails" or (failing and fact.name in ("unmoved", "within")):
+            return False
+        if fact.name == "within":
+            return not slow
+        if fact.name == "unmoved":
+            return str(fact.args[0]) not in away
+        return _is_utak(str(fact.args[0])) not in subjects
+
+    kept = tuple(fact for fact in scenario.expectations if is_asked(fact))
+    return kept or None
+
+
+def _goal(text: str) -> Fact:
+    """Return the goal in a text, without first(...) and then(...)."""
+    (fact,) = facts_of([text])
+    inner = fact.args[0] if fact.name in ("first", "then") else fact
+    assert isinstance(inner, Symbol)
+    return inner
+
+
+def _is_utak(name: str) -> bool:
+    """Return whether a name is the robot's."""
+    return name == "utak"

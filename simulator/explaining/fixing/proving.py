@@ -1,0 +1,143 @@
+"""Runs of changed scenarios, each at most once, within a budget."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from simulator.episode.episode import EpisodeLog
+from simulator.explaining.fixing.bounds import refutation
+from simulator.explaining.fixing.changes import Fix, Variant, variant_of
+from simulator.explaining.fixing.leading import Leader
+from simulator.run.robots import make_robot
+from simulator.run.session import Result, RobotMaker, Session
+from simulator.scenario.scenario import Scenario
+from simulator.scenario.settings import Settings
+
+DEFAULT_RUNS = 40  # runs; a convention: some minutes
+
+
+class BudgetEndedError(Exception):
+    """No further run is allowed; the message says which bound was reached."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Bounds how much may be run.
+
+    Attributes
+    ----------
+    runs : how many runs at most, the unchanged one among them. The same number gives the same answer.
+    seconds : after how many seconds it ends at the latest; None for never. The answer then depends on the machine.
+    """
+
+    runs: int = DEFAULT_RUNS
+    seconds: float | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Holds how a changed scenario ended.
+
+    Attributes
+    ----------
+    works : whether the robot ended in `done`, and the expectations that can be asked hold.
+    result : the end of the run; None when the change cannot be made, or the robot could not be led.
+    refuted : the expectation that geometry refutes, so that nothing was run; "" otherwise.
+    led_commands : how many commands were given to lead it.
+    """
+
+    works: bool
+    result: Result | None
+    refuted: str = ""
+    led_commands: int = 0
+
+
+IMPOSSIBLE_CHANGE = Outcome(False, None)
+
+
+@dataclass
+class VariantProver:
+    """Runs a scenario with changes and remembers how it ended.
+
+    Attributes
+    ----------
+    scenario, settings : the scenario and the options without changes.
+    budget : how much may be run.
+    watch : called after every run with its number, its changes and its outcome.
+    make : makes the robot.
+    runs : how many runs there were.
+    commands : how many commands they took together.
+    """
+
+    scenario: Scenario
+    settings: Settings
+    budget: Budget
+    watch: Callable[[int, tuple[Fix, ...], Outcome], None] = lambda number, changes, outcome: None
+    make: RobotMaker = make_robot
+    runs: int = 0
+    commands: int = 0
+    _known: dict[tuple[Fix, ...], Outcome] = field(default_factory=dict)
+    _begun: float = field(default_factory=time.monotonic)
+
+    def variant(self, changes: tuple[Fix, ...]) -> Variant | None:
+        """Return the scenario with some changes; None when they cannot be made."""
+        return variant_of(self.scenario, self.settings, changes)
+
+    def outcome(self, changes: tuple[Fix, ...]) -> Outcome:
+        """Return how the scenario with some changes ends; it is run unless that is known.
+
+        Raises BudgetEndedError when no run is left.
+        """
+        if changes not in self._known:
+            variant = self.variant(changes)
+            refuted = "" if variant is None or not changes else refutation(variant.scenario)
+            if variant is None:
+                self._known[changes] = IMPOSSIBLE_CHANGE
+            elif refuted:
+                self._known[changes] = Outcome(False, None, refuted)
+            else:
+                self._known[changes] = self._run(changes, variant)
+        return self._known[changes]
+
+    def follows(self, changes: tuple[Fix, ...], outcome: Outcome) -> None:
+        """Keep how changes end that need no run of their own, because another run shows it."""
+        self._known[changes] = outcome
+
+    @property
+    def tried(self) -> dict[tuple[Fix, ...], Outcome]:
+        """Return all changes that were tried, with how they ended, in their order."""
+        return dict(self._known)
+
+    def _run(self, changes: tuple[Fix, ...], variant: Variant) -> Outcome:
+        """Run a scenario with changes."""
+        if self.runs >= self.budget.runs:
+            raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
+        self._check_time()
+        self.runs += 1
+        leader = Leader(variant.led[0], self.make) if variant.led else None
+        session = Session(
+            variant.scenario, variant.settings, self.make if leader is None else leader.make, EpisodeLog(None)
+        )
+        session.wake()
+        arrived = leader is None or leader.lead(session, self._after_step)
+        led = session.line["step"]
+        while arrived and not session.finished:
+            session.step()
+            self._after_step(session)
+        self.commands += session.line["step"]
+        outcome = Outcome(False, None, "", led)
+        if arrived:
+            result = session.end()
+            works = result.believed and result.verdict == "done" and result.achieved is not False
+            outcome = Outcome(works, result, "", led)
+        self.watch(self.runs, changes, outcome)
+        return outcome
+
+    def _after_step(self, session: Session) -> None:
+        """End the run when the time is up."""
+        self._check_time()
+
+    def _check_time(self) -> None:
+        """Raise BudgetEndedError when the time is up."""
+        if self.budget.seconds is not None and time.monotonic() - self._begun > self.budget.seconds:
+            raise BudgetEndedError(f"the budget of {self.budget.seconds:g} seconds ended")

@@ -1,0 +1,219 @@
+"""Questions about a run, answered with trees of reasons from what the robot recorded: never from the truth."""
+
+import re
+from collections.abc import Sequence
+
+from kb.evidence.absences import AbsenceExplainer
+from kb.evidence.atoms import atom_parts
+from kb.evidence.beliefs import FactExplainer, plain_fact
+from kb.evidence.cells import explain_cell
+from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
+from kb.evidence.proving import EncodingProver, prove_query_atom
+from kb.evidence.reason import Reason, ReasonKind
+from kb.evidence.record import MissingRecordError, Record
+from kb.explanation.programs import ExplanationError
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.language.reader import facts_from_text
+from kb.language.vocabulary import BELIEF_PREDICATES
+from simulator.episode.episode import Episode, EpisodeLine
+
+QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
+
+MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong than right
+
+
+class Questions:
+    """Answers questions about a run.
+
+    Parameters
+    ----------
+    header : the first line of the episode, which states the task.
+    lines : the lines of the steps so far, from step 0 on.
+    result : the end of the run; None while it goes on.
+    rule_files : the paths of the files with users' rules that took part.
+
+    Attributes
+    ----------
+    beliefs : explains the facts of the run.
+    """
+
+    def __init__(
+        self,
+        header: EpisodeLine,
+        lines: Sequence[EpisodeLine],
+        result: EpisodeLine | None = None,
+        rule_files: Sequence[str] = (),
+    ) -> None:
+        self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
+        self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
+        self._rule_files = tuple(rule_files)
+        self._absences = AbsenceExplainer(self.beliefs, rule_files)
+
+    @property
+    def last_step(self) -> int:
+        """The number of the last step."""
+        return len(self.beliefs.record.steps) - 1
+
+    def why(self, fact: str, step: int | None = None) -> Reason:
+        """Return the reason why a fact is believed, or why a goal or a verdict stands as it does.
+
+        Parameters
+        ----------
+        fact : a fact of the world model such as `shape(o1, square, 95)`, one of the goals, or `verdict(done)`. Names
+            with a capital letter and `_` stand for anything: the first fact that fits is explained.
+        step : the number of the step; None for the last one.
+
+        Raises
+        ------
+        BadInputError : the text is no fact, the fact is not believed then, or there is no such step.
+        """
+        at = self._checked(step)
+        wanted = _one_fact(fact)
+        name, _ = atom_parts(wanted)
+        try:
+            if name == "verdict":
+                return self._why_verdict(wanted)
+            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
+            if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
+                return explain_goal(self.beliefs, goal, at)
+            plain = plain_fact(wanted)
+            if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
+                return self._why_derived(plain, at)
+            return self.beliefs.explain(self._instance(wanted, at), at)
+        except (MissingRecordError, ExplanationError) as error:
+            raise _problem(fact, str(error)) from None
+
+    def why_not(self, fact: str, step: int | None = None) -> Reason:
+        """Return why a fact is not believed: the smallest set of facts that is missing or in the way.
+
+        Parameters
+        ----------
+        fact : a fact of the world model, or `verdict(done)`. A confidence may be a name with a capital letter: then the
+            question is why the fact is not believed with a confidence of at least MORE_LIKELY percent.
+        step : the number of the step; None for the last one.
+
+        Raises
+        ------
+        BadInputError : the text is no fact, the fact is believed, or there is no such step.
+        """
+        at = self._checked(step)
+        wanted = _one_fact(fact)
+        try:
+            if atom_parts(wanted)[0] == "verdict":
+                return self._why_not_verdict(wanted)
+            believed = self._instance(wanted, at)
+            if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
+                raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
+            return self._absences.explain(wanted, at)
+        except (MissingRecordError, ExplanationError) as error:
+            raise _problem(fact, str(error)) from None
+
+    def _why_not_verdict(self, wanted: str) -> Reason:
+        """Return why the verdict is another one, or why there is none."""
+        found = explain_verdict(self.beliefs, self._task)
+        if found is None:
+            below = tuple(explain_goal(self.beliefs, goal, self.last_step) for goal in self._task.goals)
+            because = "there is no verdict yet: the run goes on"
+            return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
+        if _fits(wanted, found.claim):
+            raise _problem(wanted, f"this is the verdict: {found.claim}; why tells the reason")
+        return Reason(f"not {wanted}", f"the verdict is {found.claim}", ReasonKind.NEGATION, found.source, (found,))
+
+    def why_cell(self, cell: int, step: int | None = None) -> Reason:
+        """Return what a cell of the impression of a step (None for the last one) is laid to; cells count from 0."""
+        try:
+            return explain_cell(self.beliefs, cell, self._checked(step))
+        except (MissingRecordError, ExplanationError) as error:
+            raise _problem(f"cell {cell}", str(error)) from None
+
+    def why_step(self, step: int | None = None) -> Reason:
+        """Return the reason of the command of a step (None for the last one): goals, facts, and what was not chosen."""
+        try:
+            return explain_command(self.beliefs, self._task, self._checked(step))
+        except (MissingRecordError, ExplanationError) as error:
+            raise _problem("step", str(error)) from None
+
+    def _why_derived(self, atom: str, step: int) -> Reason:
+        """Return the reason of an atom of a predicate that users' rules define, or of `object(N)`."""
+        facts = self.beliefs.record.steps[step].facts
+
+        def leaf(fact: str) -> Reason:
+            """Return the reason of a believed fact on which the atom rests."""
+            found = self.beliefs.reason(fact, step)
+            return found or Reason(fact, "it is assumed", ReasonKind.TASK, "what was assumed")
+
+        return prove_query_atom(facts, atom, leaf, self._rule_files)
+
+    def _why_verdict(self, wanted: str) -> Reason:
+        """Return the reason of the verdict; raise BadInputError when it is another one, or the run goes on."""
+        found = explain_verdict(self.beliefs, self._task)
+        if found is None:
+            raise _problem(wanted, "there is no verdict yet: the run goes on")
+        if not _fits(wanted, found.claim):
+            raise _problem(wanted, f"this is not the verdict: it is {found.claim}")
+        return found
+
+    def _instance(self, wanted: str, step: int) -> str:
+        """Return the first believed fact that fits a fact with variables; the fact itself when none does."""
+        plain = plain_fact(wanted)
+        return next((fact for fact in self.beliefs.record.steps[step].facts if _fits(plain, fact)), plain)
+
+    def _checked(self, step: int | None) -> int:
+        """Return the number of a step; raise BadInputError when there is no such step."""
+        if step is None:
+            return self.last_step
+        if not 0 <= step <= self.last_step:
+            raise _problem(f"step {step}", f"there is no step {step}: the last is {self.last_step}")
+        return step
+
+
+def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Questions:
+    """Return the questions about an episode that was read; rule_files : the files with users' rules of its run."""
+    return Questions(episode.header, episode.steps, episode.result, rule_files)
+
+
+def _fits(wanted: str, fact: str) -> bool:
+    """Return whether a fact is the wanted one; variables of the wanted one fit anything, each the same everywhere."""
+    (name, arguments), (other, values) = atom_parts(wanted), atom_parts(fact)
+    if name != other or len(arguments) != len(values):
+        return False
+    known: dict[str, str] = {}
+    for argument, value in zip(arguments, values, strict=True):
+        is_variable = argument[:1].isupper() and argument.isidentifier()
+        if argument != "_" and (known.setdefault(argument, value) if is_variable else argument) != value:
+            return False
+    return True
+
+
+def _is_weak(wanted: str, believed: str) -> bool:
+    """Return whether a question leaves the confidence open, and the fact is believed to be less likely than not."""
+    (name, arguments), (_, values) = atom_parts(wanted), atom_parts(believed)
+    declared = BELIEF_PREDICATES.get((name, len(arguments)))
+    is_open = declared is not None and declared.confident and QUESTION_VARIABLE.fullmatch(arguments[-1]) is not None
+    return is_open and int(values[-1]) < MORE_LIKELY
+
+
+def _one_fact(text: str) -> str:
+    """Return a fact without full stop and blanks; raise BadInputError when the text is no fact.
+
+    Variables are no terms of facts: the text is checked with names of the same length in their place.
+    """
+    written = text.strip().removesuffix(".").strip()
+    checked = QUESTION_VARIABLE.sub(lambda match: "v" * len(match[0]), written)
+    try:
+        found = facts_from_text(f"{checked}.", "why")
+    except BadInputError as bad:
+        first = bad.problems[0]
+        raise BadInputError([Problem("why", first.span, first.what, written, first.hint)]) from None
+    if len(found) != 1:
+        raise _problem(text, "one fact at a time")
+    name, arguments = atom_parts(written)
+    if QUESTION_VARIABLE.fullmatch(name):
+        raise _problem(text, "a fact begins with the name of its predicate, in small letters")
+    return f"{name}({','.join(arguments)})" if arguments else name
+
+
+def _problem(text: str, what: str) -> BadInputError:
+    """Return the error `what` about a question."""
+    line = text.split("\n")[0][:200]
+    return BadInputError([Problem("why", SourceSpan(1, 1, max(1, len(line))), what, line)])

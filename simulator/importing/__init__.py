@@ -1,0 +1,19 @@
+"""Worlds and tasks of other formats, made into scenarios (docs/importing.md).
+
+Modules in reading order:
+
+imported        what a reader returns, and the options it is given
+text_file       the text of a file of another format
+raster          worlds of cells: walls, objects and the robot as a picture or as outlines
+pushworld       PushWorld puzzles, .pwp
+sokoban         Sokoban levels, .xsb
+movingai_map    Moving AI maps, .map
+pgm             grey images, .pgm
+ros_yaml        the head of a ROS map, .yaml
+ros_map         ROS maps, .yaml with .pgm
+xml_tree        XML with places, without entities
+svg_path        outlines in SVG
+namosim         NAMOSIM scenarios, .svg
+
+Public names: `Imported`, `ImportOptions`, and `read` of each format.
+"""

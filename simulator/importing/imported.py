@@ -1,0 +1,128 @@
+"""The value that readers of other formats return, and the options that they are given."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+import shapely
+
+# Squares by which a thing may end beside its goal in expect.lp. A `pose` holds within a quarter of a square
+# (docs/files.md).
+GOAL_MARGIN = 0.3
+COLOUR_LETTERS = "acdefghijklmnopqrstuvwxyz"  # the colours of objects: all letters but b, which is the verge's
+
+
+@dataclass(frozen=True)
+class ImportOptions:
+    """Options of reading a file of another format.
+
+    Attributes
+    ----------
+    scale : squares for one cell of the source; below 1 only where docs/importing.md allows it. None for the default
+        of the format.
+    level : the number of the level in a file of several, from 1.
+    start : where the robot wakes (x, y), in the units of the source; None for the default of the format.
+    from_top : whether y of `start` counts from the north edge to the south.
+    unknown_is_floor : whether cells of which the source says nothing are floor; else they are verge.
+    untrusted : whether files beside the source must lie in its folder.
+    """
+
+    scale: Fraction | None = None
+    level: int = 1
+    start: tuple[float, float] | None = None
+    from_top: bool = False
+    unknown_is_floor: bool = False
+    untrusted: bool = False
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A scenario as it was read of a file of another format.
+
+    Attributes
+    ----------
+    title : what it is, in one line.
+    world_file : the name of its world's file, world.txt or world.lp.
+    world_text : the text of that file.
+    start, goal, expect : the facts of start.lp, goal.lp and expect.lp, each with its full stop; no `expect` for a task
+        whose end cannot be judged.
+    notes : what the scenario does not say as the source does, a sentence each.
+    """
+
+    title: str
+    world_file: str
+    world_text: str
+    start: tuple[str, ...]
+    goal: tuple[str, ...]
+    expect: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+class ObjectGoal(NamedTuple):
+    """An object that shall be brought elsewhere.
+
+    Attributes
+    ----------
+    name : its name in the world.
+    colour : its colour.
+    outline : shapely Polygon, where it lies at first; squares, table frame.
+    shift : how far it shall be brought (x, y), in squares of the table.
+    unique : whether it alone has its colour. Else nothing tells it from the others, and expect.lp leaves it out.
+    """
+
+    name: str
+    colour: str
+    outline: Any
+    shift: tuple[float, float]
+    unique: bool = True
+
+
+class TaskFacts(NamedTuple):
+    """The facts of a task: those of start.lp, of goal.lp and of expect.lp."""
+
+    start: tuple[str, ...]
+    goal: tuple[str, ...]
+    expect: tuple[str, ...]
+
+
+def task_of_objects(goals: Iterable[tuple[str, ObjectGoal]], utak: tuple[float, float]) -> TaskFacts:
+    """Return the facts of a task that brings objects to places, unturned.
+
+    Parameters
+    ----------
+    goals : the name of the parameter, and the object with its goal.
+    utak : where the robot wakes (x, y), squares, table frame; it faces north.
+
+    Returns
+    -------
+    The facts of start.lp, goal.lp and expect.lp.
+    """
+    start, goal, expect = [], [], []
+    for parameter, one in goals:
+        east, north = (
+            middle + shift - origin
+            for middle, shift, origin in zip(one.outline.centroid.coords[0], one.shift, utak, strict=True)
+        )
+        start.append(f"object({parameter}). colour({parameter}, {one.colour}).")
+        goal.append(f'pose({parameter}, "POINT ({decimal(east)} {decimal(north)})", 0).')
+        if one.unique:
+            there = shapely.transform(one.outline, lambda points, shift=one.shift: points + shift)
+            region = there.buffer(GOAL_MARGIN, join_style="mitre")
+            expect.append(f'inside({one.name}, "{region_text(region)}").')
+    return TaskFacts(tuple(start), tuple(goal), tuple(expect))
+
+
+def decimal(value: float) -> str:
+    """Return a coordinate with at most four decimals.
+
+    >>> decimal(-0.00001), decimal(2.5)
+    ('0', '2.5')
+    """
+    return f"{round(value, 4) + 0.0:.4f}".rstrip("0").rstrip(".")
+
+
+def region_text(region: Any) -> str:
+    """Return a shapely geometry as well-known text with at most six decimals, in squares."""
+    text: str = shapely.to_wkt(region, rounding_precision=6, trim=True)
+    return text

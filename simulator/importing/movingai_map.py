@@ -1,0 +1,101 @@
+"""Moving AI maps (.map) as scenarios: walls and floor, without objects and without a task."""
+
+from fractions import Fraction
+from math import floor
+from pathlib import Path
+
+from geometry.io.movingai import MapError, parse_map
+from geometry.kernels.arrays import Bools
+from kb.language.diagnostics import BadInputError, SourceSpan
+from kb.language.source_text import Source
+from simulator.importing.imported import Imported, ImportOptions
+from simulator.importing.raster import CellWorld, RasterCell, RasterError, roomy_place, scaled_walls, world_text
+from simulator.importing.text_file import read_raw, text_source
+
+DEFAULT_GOAL = "at(utak, corner(northeast))."  # the goal of a format that has none
+MAX_MAP_FILE_BYTES = 70_000_000  # bytes; derived: twice the text of the largest table with fourfold cells; a convention
+
+
+def read(path: Path | str, options: ImportOptions) -> Imported:
+    """Return the scenario of a Moving AI map.
+
+    Parameters
+    ----------
+    path : the file.
+    options : `scale`, `start` (in cells of the map) and `from_top` count.
+
+    Returns
+    -------
+    The scenario; its goal is the north-east corner.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : it is no map, or the robot cannot wake there.
+    """
+    raw = read_raw(path, MAX_MAP_FILE_BYTES, "a Moving AI map", options.untrusted)
+    source = text_source(path, raw)
+    try:
+        walls = ~parse_map(raw)
+    except MapError as error:
+        raise BadInputError([source.problem(SourceSpan(error.line, error.column, error.end), error.what)]) from None
+    start = options.start
+    if start is not None and options.from_top:
+        start = start[0], len(walls) - start[1]
+    return scenario_of_walls(source, "Moving AI map", walls, options.scale or Fraction(1), start)
+
+
+def scenario_of_walls(
+    source: Source,
+    title: str,
+    walls: Bools,
+    scale: Fraction,
+    start: tuple[float, float] | None,
+    notes: tuple[str, ...] = (),
+    offset: tuple[float, float] = (0.0, 0.0),
+) -> Imported:
+    """Return the scenario of walls and floor.
+
+    Parameters
+    ----------
+    source : the file, for messages.
+    title : what it is, in one line.
+    walls : (rows, columns) bool, row 0 in the south.
+    scale : squares for one cell; below 1, one square for several cells.
+    start : where the robot wakes (x, y), in cells from the south-west corner of the source; None for any roomy place.
+    notes : what the scenario does not say as the source does.
+    offset : the cells (x, y) of the source that `walls` leaves out in the west and in the south.
+
+    Returns
+    -------
+    The scenario; its goal is the north-east corner.
+
+    Raises
+    ------
+    BadInputError : there is no floor, the robot cannot wake there, or the table would be too large.
+    """
+    try:
+        squares = scaled_walls(walls, scale)
+        place = roomy_place(squares) if start is None else _square(source, squares, scale, start, offset)
+        if place is None:
+            raise BadInputError([source.problem(source.start(), f"the map has no floor at {scale} squares a cell")])
+        drawn = world_text(CellWorld(squares, (), place), 1)
+    except RasterError as error:
+        hint = "--scale 1/N makes one square of N x N cells"
+        raise BadInputError([source.problem(source.start(), str(error), hint)]) from None
+    return Imported(title, drawn.file, drawn.text, (), (DEFAULT_GOAL,), (), notes)
+
+
+def _square(
+    source: Source, squares: Bools, scale: Fraction, start: tuple[float, float], offset: tuple[float, float]
+) -> RasterCell:
+    """Return the square (column, row) of a place in cells; raise BadInputError when the robot cannot wake there."""
+    column, row = (floor((value - left) * scale) for value, left in zip(start, offset, strict=True))
+    if not (0 <= row < squares.shape[0] and 0 <= column < squares.shape[1]):
+        what = f"the start is not on the map, at ({start[0]:g}, {start[1]:g})"
+    elif squares[row, column]:
+        what = f"the start is no floor, at ({start[0]:g}, {start[1]:g})"
+    else:
+        return column, row
+    hint = "--start counts from the south-west corner; without it the robot wakes at a free place"
+    raise BadInputError([source.problem(source.start(), f"{what} in cells", hint)])

@@ -1,0 +1,249 @@
+"""Worlds of cells: walls, objects and the robot, drawn as a picture, or as outlines where that would be too large.
+
+Cells are (column, row), row 0 in the south.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import shapely
+
+from geometry.kernels.arrays import Bools
+from geometry.raster.components import components
+from kb.language.vocabulary import MAX_TABLE_SIDE
+from simulator.importing.imported import COLOUR_LETTERS, region_text
+from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
+from simulator.world.world import VERGE_COLOUR
+
+RasterCell = tuple[int, int]  # (column, row), row 0 in the south
+
+
+class RasterError(ValueError):
+    """A world of cells cannot be made; the message says why."""
+
+
+@dataclass(frozen=True)
+class CellWorld:
+    """A world of cells.
+
+    Attributes
+    ----------
+    walls : (rows, columns) bool, row 0 in the south.
+    objects : the cells of each movable object.
+    robot : the cell in which the robot wakes, in its middle.
+    """
+
+    walls: Bools
+    objects: tuple[frozenset[RasterCell], ...]
+    robot: RasterCell
+
+
+@dataclass(frozen=True)
+class WorldText:
+    """The world file of a scenario.
+
+    Attributes
+    ----------
+    file : its name, world.txt or world.lp.
+    text : its text.
+    names, colours : the name and the colour of each object, in the order of the objects.
+    outlines : their outlines, shapely Polygons, squares, table frame.
+    utak : where the robot wakes (x, y), squares, table frame.
+    """
+
+    file: str
+    text: str
+    names: tuple[str, ...]
+    colours: tuple[str, ...]
+    outlines: tuple[Any, ...]
+    utak: tuple[float, float]
+
+    def unique(self, index: int) -> bool:
+        """Return whether an object alone has its colour. index : its index in `names`."""
+        return self.colours.count(self.colours[index]) == 1
+
+
+def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
+    """Return the world file that states a world of cells.
+
+    Objects that share an edge have different colours, and as far as the letters reach all have.
+
+    Parameters
+    ----------
+    world : the world.
+    scale : the squares along each side of a cell, at least 1.
+    border : the squares of verge that are added on each side.
+
+    Returns
+    -------
+    A picture (world.txt) when the table has at most `MAX_PICTURE_SIDE` squares a side, else facts (world.lp).
+
+    Raises
+    ------
+    RasterError : the table would be larger than `MAX_TABLE_SIDE`.
+    """
+    check_size(world.walls.shape, Fraction(scale), border)
+    walls = np.pad(np.kron(world.walls, np.ones((scale, scale), bool)), border, constant_values=True)
+    column, row = world.robot
+    utak = (border + column * scale + scale // 2 + 0.5, border + row * scale + scale // 2 + 0.5)
+    colours = _colours(world.objects)
+    names = _names(world.objects, colours)
+    outlines = tuple(_outline(cells, scale, border) for cells in world.objects)
+    if max(walls.shape) > MAX_PICTURE_SIDE:
+        return WorldText("world.lp", _as_facts(walls, names, colours, outlines, utak), names, colours, outlines, utak)
+    letters = np.where(walls, VERGE_COLOUR, FLOOR_MARK)
+    for cells, colour in zip(world.objects, colours, strict=True):
+        for i, j in cells:
+            south, west = border + j * scale, border + i * scale
+            letters[south : south + scale, west : west + scale] = colour
+    letters[int(utak[1]), int(utak[0])] = UTAK_MARK
+    text = "".join("".join(letters_of_row) + "\n" for letters_of_row in letters[::-1].tolist())
+    return WorldText("world.txt", text, names, colours, outlines, utak)
+
+
+def check_size(shape: tuple[int, ...], scale: Fraction, border: int = 0) -> None:
+    """Raise RasterError when the table for cells would be too large.
+
+    Parameters
+    ----------
+    shape : rows and columns of the cells.
+    scale : the squares along each side of a cell.
+    border : the squares of verge that are added on each side.
+    """
+    side = max(shape) * scale + 2 * border
+    if side > MAX_TABLE_SIDE:
+        raise RasterError(f"the table would have {float(side):g} squares a side, more than {MAX_TABLE_SIDE}")
+
+
+def scaled_walls(walls: Bools, scale: Fraction) -> Bools:
+    """Return walls with larger or smaller cells, row 0 in the south.
+
+    Parameters
+    ----------
+    walls : (rows, columns) bool, row 0 in the south.
+    scale : N for N x N squares a cell, or 1/N for one square for N x N cells, which is wall when one of them is, or
+        when one would lie beyond the edge.
+
+    Returns
+    -------
+    (rows, columns) bool.
+
+    Raises
+    ------
+    RasterError : the table would be larger than `MAX_TABLE_SIDE`.
+    """
+    check_size(walls.shape, scale)
+    if scale >= 1:
+        larger: Bools = np.kron(walls, np.ones((int(scale), int(scale)), bool))
+        return larger
+    count = scale.denominator
+    rows, columns = (-(-side // count) * count for side in walls.shape)
+    whole = np.ones((rows, columns), bool)
+    whole[: walls.shape[0], : walls.shape[1]] = walls
+    blocks = whole.reshape(rows // count, count, columns // count, count)
+    smaller: Bools = np.asarray(blocks.any(axis=(1, 3)), bool)
+    return smaller
+
+
+def roomy_place(walls: Bools) -> RasterCell | None:
+    """Return the cell in which a robot wakes that may wake anywhere; None when all is wall.
+
+    It lies in the largest part of the floor, there in the south-west, and where its eight neighbours are floor if there
+    is such a cell.
+    """
+    parts = components(~walls)
+    if not parts.number:
+        return None
+    part = parts.labels == 1 + int(np.argmax(np.bincount(parts.labels.ravel())[1:]))
+    around = np.pad(part, 1)
+    roomy = part.copy()
+    for north in range(3):
+        for east in range(3):
+            roomy &= around[north : north + part.shape[0], east : east + part.shape[1]]
+    rows, columns = (roomy if roomy.any() else part).nonzero()
+    first = min(range(len(rows)), key=lambda n: (rows[n] + columns[n], columns[n]))
+    return int(columns[first]), int(rows[first])
+
+
+def connected_parts(cells: frozenset[RasterCell]) -> int:
+    """Return the number of edge-connected parts of a set of cells."""
+    left, parts = set(cells), 0
+    while left:
+        parts += 1
+        waiting = [left.pop()]
+        while waiting:
+            i, j = waiting.pop()
+            for other in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)):
+                if other in left:
+                    left.remove(other)
+                    waiting.append(other)
+    return parts
+
+
+def encloses_something(cells: frozenset[RasterCell]) -> bool:
+    """Return whether the outline of a set of edge-connected cells has a hole."""
+    return bool(_outline(cells, 1, 0).interiors)
+
+
+def _outline(cells: frozenset[RasterCell], scale: int, border: int) -> Any:
+    """Return the outline of edge-connected cells, a shapely Polygon in squares."""
+    corners = np.array(sorted(cells), float) * scale + border
+    return shapely.normalize(shapely.coverage_union_all(shapely.box(*corners.T, *(corners + scale).T)).simplify(0))
+
+
+def _colours(objects: Sequence[frozenset[RasterCell]]) -> tuple[str, ...]:
+    """Return the colour of each object: the letters in turn, and then the least used that no neighbour has.
+
+    Neighbours are objects that share an edge.
+    """
+    owner = {cell: number for number, cells in enumerate(objects) for cell in cells}
+    colours: list[str] = []
+    for number, cells in enumerate(objects):
+        touching = {
+            owner[other]
+            for i, j in cells
+            for other in ((i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1))
+            if owner.get(other, number) < number
+        }
+        taken = {colours[other] for other in touching}
+        used = Counter(colours)
+        free = [letter for letter in COLOUR_LETTERS if letter not in taken] or list(COLOUR_LETTERS)
+        colours.append(min(free, key=lambda letter: used[letter]))
+    return tuple(colours)
+
+
+def _names(objects: Sequence[frozenset[RasterCell]], colours: Sequence[str]) -> tuple[str, ...]:
+    """Return the names that a picture gives objects: colour and number, counted from the west, then from the south."""
+    names = [""] * len(objects)
+    counts: Counter[str] = Counter()
+    for number in sorted(range(len(objects)), key=lambda n: min(objects[n])):
+        counts[colours[number]] += 1
+        names[number] = f"{colours[number]}{counts[colours[number]]}"
+    return tuple(names)
+
+
+def _as_facts(
+    walls: Bools, names: Sequence[str], colours: Sequence[str], outlines: Sequence[Any], utak: tuple[float, float]
+) -> str:
+    """Return the text of world.lp. walls : (rows, columns) bool in squares, row 0 in the south."""
+    facts = [f"table({walls.shape[1]}, {walls.shape[0]}).", f'verge("{region_text(outline_of_mask(walls))}").']
+    facts += [
+        f'object({name}, {colour}, "{region_text(outline)}").'
+        for name, colour, outline in zip(names, colours, outlines, strict=True)
+    ]
+    return "\n".join([*facts, f'utak("POINT ({utak[0]:g} {utak[1]:g})", 0).', ""])
+
+
+def outline_of_mask(mask: Bools) -> Any:
+    """Return the outline of the True squares of a mask, a shapely Polygon or MultiPolygon.
+
+    mask : (rows, columns) bool, row 0 in the south; not all False.
+    """
+    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    rows, west = (edges == 1).nonzero()
+    east = (edges == -1).nonzero()[1]
+    return shapely.normalize(shapely.union_all(shapely.box(west, rows, east, rows + 1)).simplify(0))

@@ -1,0 +1,102 @@
+"""The loop of `utak repl`: statements are read and executed until `quit` or the end of the input."""
+
+from collections.abc import Mapping
+
+from kb.reasoning.query import QueryEngine
+from simulator.repl.commands import PROMPT_COMMANDS
+from simulator.repl.completion import CompletionWord, completions
+from simulator.repl.dialogue import Dialogue
+from simulator.repl.explaining import EXPLAINERS, Explainer
+from simulator.repl.printer import Printer, open_printer
+from simulator.repl.reading import History, LineReader, open_reader
+from simulator.repl.statements import StatementBuffer
+from simulator.run.live_story import LiveStory
+from simulator.run.recorded_story import RecordedStory
+
+
+def converse(
+    story: LiveStory | RecordedStory, engine: QueryEngine, explainers: Mapping[str, Explainer] = EXPLAINERS
+) -> None:
+    """Talk with the user of the standard streams about a story, until the input ends or they leave.
+
+    Parameters
+    ----------
+    story : a run, whose robot may sleep, or a recorded episode.
+    engine : answers queries.
+    explainers : the commands that explain, by name.
+
+    Raises
+    ------
+    StreamError : a standard stream is closed or cannot be used.
+    BrokenPipeError : the reader of the output went away.
+    """
+    printer, history = open_printer(), History()
+    dialogue = Dialogue(story, engine, printer, PROMPT_COMMANDS, explainers)
+    reader = open_reader(lambda text: complete(dialogue, text), history, lambda text: is_whole(dialogue, text))
+    greet(dialogue, printer)
+    read_and_obey(dialogue, reader, history)
+
+
+def greet(dialogue: Dialogue, printer: Printer) -> None:
+    """Print what this is, on a terminal."""
+    kind = "an episode" if isinstance(dialogue.story, RecordedStory) else "a run"
+    printer.note(f"{kind} at step {dialogue.story.at}; help lists what there is, ?- asks, Tab completes, quit leaves")
+
+
+def read_and_obey(dialogue: Dialogue, reader: LineReader, history: History | None = None) -> None:
+    """Read lines and execute the statements in them, until the input ends or one says to quit.
+
+    Ctrl-C at a terminal drops the statement that was begun.
+
+    history : remembers statements of a terminal; None to remember none.
+    """
+    buffer = StatementBuffer(dialogue.names)
+    while True:
+        try:
+            statements = _read(dialogue, reader, buffer)
+            for statement in buffer.finish() if statements is None else statements:
+                if reader.is_terminal and history is not None:
+                    history.append(statement)
+                if not dialogue.obey(statement):
+                    return
+            if statements is None:
+                return
+        except KeyboardInterrupt:
+            if not reader.is_terminal:
+                raise
+            buffer.clear()
+
+
+def _read(dialogue: Dialogue, reader: LineReader, buffer: StatementBuffer) -> list[str] | None:
+    """Return the statements that the next input completes; None at the end of the input."""
+    try:
+        lines = reader.read(dialogue.prompt, buffer.is_open).splitlines() or [""]
+    except EOFError:
+        if reader.is_terminal:
+            print()
+        return None
+    return [statement for line in lines for statement in buffer.feed(line)]
+
+
+def is_whole(dialogue: Dialogue, text: str) -> bool:
+    """Return whether a text is a whole statement, or ends in an empty line."""
+    buffer = StatementBuffer(dialogue.names)
+    for line in text.split("\n"):
+        buffer.feed(line)
+    return not buffer.is_open
+
+
+def complete(dialogue: Dialogue, text: str) -> tuple[str, list[CompletionWord]]:
+    """Return the word at the end of a text and what completes it: what is believed at this step is known by name.
+
+    The robot is not woken for that.
+    """
+    facts: list[str] = []
+    parameters: list[str] = []
+    try:
+        if dialogue.story.is_awake:
+            facts = list(dialogue.known_facts())
+        parameters = list(dialogue.story.conditions.task.parameters)
+    except Exception:
+        pass
+    return completions(text, dialogue.names, facts, parameters)

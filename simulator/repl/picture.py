@@ -1,0 +1,236 @@
+"""The believed map as a picture in characters, drawn from the facts of the world model alone."""
+
+import math
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from geometry.kernels.arrays import Bools, Floats
+from kb.world.model import FACT_UNITS_PER_SQUARE
+from simulator.scenario.picture import FLOOR_MARK, UTAK_MARK
+
+VERGE_MARK, DOOR_MARK, UNSEEN_MARK = "#", "=", " "
+OBJECT_MARKS = "ABCDEFGHIJKLMNOPQRSTVWXYZ"  # without U, which is Utak; further objects have the last mark
+OTHER_MARK = "*"
+MIN_THING_CONFIDENCE = 50  # percent: below it an object is more likely a wall, and drawn by a small letter
+MAX_PICTURE_COLUMNS = 512  # characters in a row where no terminal bounds it; a convention
+MAX_PICTURE_CELLS = 400_000  # characters of a picture; a convention
+LABEL_EVERY = 5  # rows and columns between two labels of the axes
+# Styles of the characters, in the words of `rich`.
+STYLES: Mapping[str, str] = {
+    UTAK_MARK: "bold white on blue", VERGE_MARK: "bright_black", FLOOR_MARK: "green", DOOR_MARK: "bold cyan",
+    **dict.fromkeys(OBJECT_MARKS + OTHER_MARK, "bold yellow"),
+    **dict.fromkeys(OBJECT_MARKS.lower(), "yellow"),
+}  # fmt: skip
+_Row = tuple[str, ...]
+
+
+class BeliefPicture(NamedTuple):
+    """The believed map.
+
+    Attributes
+    ----------
+    rows : the lines of the picture with the labels of its axes, the north first.
+    legend : lines that say what its marks are, its unit and its frame.
+    """
+
+    rows: tuple[str, ...]
+    legend: tuple[str, ...]
+
+
+class _Facts:
+    """The facts of a world model by predicate; arguments are texts."""
+
+    def __init__(self, facts: Iterable[str]) -> None:
+        self._rows: dict[str, list[_Row]] = defaultdict(list)
+        for fact in facts:
+            name, _, inner = fact.strip().removesuffix(".").partition("(")
+            self._rows[name].append(tuple(part.strip() for part in inner.removesuffix(")").split(",")))
+
+    def rows(self, name: str, arity: int) -> list[_Row]:
+        """Return the arguments of all facts of a predicate."""
+        return [row for row in self._rows.get(name, ()) if len(row) == arity]
+
+    def about(self, name: str, arity: int, thing: str) -> list[_Row]:
+        """Return the arguments of the facts of a predicate that begin with a thing."""
+        return [row for row in self.rows(name, arity) if row[0] == thing]
+
+    def numbers(self, name: str, arity: int, words: int) -> Iterator[tuple[_Row, list[int]]]:
+        """Yield of each fact of a predicate its first arguments as text and the others as integers.
+
+        Facts whose other arguments are no integers are left out.
+        """
+        for row in self.rows(name, arity):
+            try:
+                yield row[:words], [int(part) for part in row[words:]]
+            except ValueError:
+                continue
+
+
+class _Grid(NamedTuple):
+    """The characters' squares: `west` and `south` of the whole in hundredths, `unit` hundredths a side."""
+
+    west: int
+    south: int
+    unit: int
+    columns: int
+    rows: int
+
+    def cell(self, east: float, north: float) -> tuple[int, int] | None:
+        """Return (row, column), row 0 in the south, of a point in hundredths; None for one outside."""
+        row, column = math.floor((north - self.south) / self.unit), math.floor((east - self.west) / self.unit)
+        return (row, column) if 0 <= row < self.rows and 0 <= column < self.columns else None
+
+
+def draw_belief(facts: Iterable[str], width: int | None = None) -> BeliefPicture:
+    """Return the believed map: floor, verge, objects, doors and Utak; what was not seen is blank.
+
+    Parameters
+    ----------
+    facts : the facts of the world model, with full stops.
+    width : the greatest number of characters in a line; None for MAX_PICTURE_COLUMNS and the labels. A wider map is
+        drawn with several squares to a character.
+
+    Returns
+    -------
+    The picture and its legend. Without outlines in the facts, the picture has no rows.
+    """
+    known = _Facts(facts)
+    rings: dict[str, list[list[int]]] = defaultdict(list)
+    for (node,), (_, *ends) in known.numbers("segment", 7, 1):
+        rings[node].append(ends[:4])
+    if not rings:
+        return BeliefPicture((), ("nothing that could be drawn is believed",))
+    marks = _marks_of_objects(known)
+    grid = _grid(rings, width)
+    cells = np.full((grid.rows, grid.columns), UNSEEN_MARK, dtype="U1")
+    order = ["floor", "verge", *sorted(marks, key=_number)]
+    for node in order:
+        if node in rings:
+            mark = {"floor": FLOOR_MARK, "verge": VERGE_MARK}.get(node) or marks[node]
+            cells[_inside(np.array(rings[node], dtype=float), grid)] = mark
+    for (node,), (east, north) in known.numbers("offset", 3, 1):
+        if node in marks and (cell := grid.cell(east, north)) is not None and cells[cell] in (FLOOR_MARK, VERGE_MARK):
+            cells[cell] = marks[node]
+    for _, ends in known.numbers("threshold", 5, 1):
+        for cell in _line(ends, grid):
+            if cells[cell] in (FLOOR_MARK, UNSEEN_MARK):
+                cells[cell] = DOOR_MARK
+    place = next((ends for (node,), ends in known.numbers("offset", 3, 1) if node == "org"), None)
+    if place is not None and (cell := grid.cell(*place)) is not None:
+        cells[cell] = UTAK_MARK
+    return BeliefPicture(tuple(_labelled(cells, grid)), tuple(_legend(known, marks, place, grid)))
+
+
+def _number(node: str) -> tuple[int, str]:
+    """Return a key that sorts objects by their number."""
+    digits = node[1:]
+    return (int(digits) if digits.isascii() and digits.isdigit() and len(digits) < 10 else 0), node
+
+
+def _marks_of_objects(known: _Facts) -> dict[str, str]:
+    """Return the letter of each object; a small one for what is more likely a wall."""
+    sure = {node: share for (node, kind), (share,) in known.numbers("kind", 3, 2) if kind == "object"}
+    found = {}
+    for number, node in enumerate(sorted(sure, key=_number)):
+        mark = OBJECT_MARKS[number] if number < len(OBJECT_MARKS) else OTHER_MARK
+        found[node] = mark if sure[node] >= MIN_THING_CONFIDENCE else mark.lower()
+    return found
+
+
+def _grid(rings: Mapping[str, list[list[int]]], width: int | None) -> _Grid:
+    """Return the grid of characters that covers all outlines; its lines run along most walls."""
+    ends = np.array([segment for node in rings.values() for segment in node], dtype=np.int64)
+    points = np.concatenate([ends[:, :2], ends[:, 2:]])
+    (west, south), (east, north) = points.min(0).tolist(), points.max(0).tolist()
+    label = 7
+    columns = MAX_PICTURE_COLUMNS if width is None else max(10, min(width - label, MAX_PICTURE_COLUMNS))
+    span_east, span_north = max(1, east - west) / FACT_UNITS_PER_SQUARE, max(1, north - south) / FACT_UNITS_PER_SQUARE
+    squares = max(
+        1, math.ceil((span_east + 1) / columns), math.ceil(math.sqrt(span_east * span_north / MAX_PICTURE_CELLS))
+    )
+    unit = FACT_UNITS_PER_SQUARE * squares
+    remainders = [Counter((points[:, axis] % FACT_UNITS_PER_SQUARE).tolist()).most_common(1)[0][0] for axis in (0, 1)]
+    west, south = (
+        least - (least - remainder) % FACT_UNITS_PER_SQUARE
+        for least, remainder in zip((west, south), remainders, strict=True)
+    )
+    return _Grid(west, south, unit, max(1, math.ceil((east - west) / unit)), max(1, math.ceil((north - south) / unit)))
+
+
+def _inside(segments: Floats, grid: _Grid) -> Bools:
+    """Return which characters' middles lie within rings of segments, by crossings: (rows, columns) bool.
+
+    segments : (n, 4) east, north of both ends, in hundredths of squares.
+    """
+    inside = np.zeros((grid.rows, grid.columns), dtype=bool)
+    middles = grid.west + grid.unit * (np.arange(grid.columns) + 0.5)
+    e1, n1, e2, n2 = segments.T
+    low, high = np.minimum(n1, n2), np.maximum(n1, n2)
+    for row in range(grid.rows):
+        north = grid.south + grid.unit * (row + 0.5)
+        crossed = (low <= north) & (north < high)
+        if crossed.any():
+            share = (north - n1[crossed]) / (n2[crossed] - n1[crossed])
+            at = np.sort(e1[crossed] + share * (e2[crossed] - e1[crossed]))
+            inside[row] = np.searchsorted(at, middles) % 2 == 1
+    return inside
+
+
+def _line(ends: Sequence[int], grid: _Grid) -> Iterator[tuple[int, int]]:
+    """Yield the characters (row, column) that a straight line passes."""
+    e1, n1, e2, n2 = ends
+    count = min(MAX_PICTURE_COLUMNS * 4, 2 + int(4 * math.dist((e1, n1), (e2, n2)) / grid.unit))
+    for part in range(1, count):
+        share = part / count
+        cell = grid.cell(e1 + share * (e2 - e1), n1 + share * (n2 - n1))
+        if cell is not None:
+            yield cell
+
+
+def _labelled(cells: npt.NDArray[np.str_], grid: _Grid) -> Iterator[str]:
+    """Yield the lines of a picture, the north first, each with the north of its middle; then the axis to the east."""
+    for row in reversed(range(grid.rows)):
+        north = (grid.south + grid.unit * (row + 0.5)) / FACT_UNITS_PER_SQUARE
+        label = f"{north:6.10g} " if row % LABEL_EVERY == 0 else " " * 7
+        yield (f"{label[:7]}" + "".join(cells[row])).rstrip()
+    ticks, axis = [" "] * (grid.columns + 12), " " * 7
+    for column in range(0, grid.columns, 2 * LABEL_EVERY):
+        east = (grid.west + grid.unit * (column + 0.5)) / FACT_UNITS_PER_SQUARE
+        text = f"|{east:.10g}"[: 2 * LABEL_EVERY - 1]
+        ticks[column : column + len(text)] = text
+    yield (axis + "".join(ticks)).rstrip()
+
+
+def _legend(known: _Facts, marks: Mapping[str, str], place: Sequence[int] | None, grid: _Grid) -> Iterator[str]:
+    """Yield the lines that say what the marks are, the unit and the frame."""
+    if place is not None:
+        east, north = (value / FACT_UNITS_PER_SQUARE for value in place)
+        rooms = "".join(f", in {room}" for _, room in known.about("in", 2, "org"))
+        yield f"{UTAK_MARK} the robot (utak, org in facts): east {east:g}, north {north:g}{rooms}"
+    for node in sorted(marks, key=_number):
+        yield f"{marks[node]} {node}: {', '.join(_said_of(known, node))}"
+    for (door,) in known.rows("door", 1):
+        wide = "".join(
+            f", {int(w) / FACT_UNITS_PER_SQUARE:g} wide" for _, w in known.about("width", 2, door) if w.isdigit()
+        )
+        sides = next((f" between {a} and {b}" for _, a, b in known.about("connects", 3, door)), "")
+        yield f"{DOOR_MARK} {door}: a door{sides}{wide}"
+    side = grid.unit // FACT_UNITS_PER_SQUARE
+    yield f"{FLOOR_MARK} floor, {VERGE_MARK} verge (walls), blank: not seen; a small letter: rather a wall than a thing"
+    yield f"one character is {side} x {side} square{'s' * (side > 1)}; up is north, the way the robot faced on waking"
+    yield "numbers are squares to the east and north of where it woke; facts have hundredths of squares"
+
+
+def _said_of(known: _Facts, node: str) -> Iterator[str]:
+    """Yield what is believed about an object, for the legend."""
+    yield from (f"an object {share} %" for _, kind, share in known.about("kind", 3, node) if kind == "object")
+    yield from (f"{shape} {share} %" for _, shape, share in known.about("shape", 3, node))
+    yield from (f"colour {colour}" for _, colour, _ in known.about("colour", 3, node))
+    yield from (f"in {room}" for _, room in known.about("in", 2, node))
+    if known.about("held", 1, node):
+        yield "in hand"
+    yield from (f"meant by {name}" for name, meant in known.rows("bound", 2) if meant == node)

@@ -1,0 +1,141 @@
+"""Lines become statements: a command is a line, a query goes on to its full stop."""
+
+import re
+from collections.abc import Collection
+
+MAX_STATEMENT_CHARACTERS = 20_000  # a longer statement is ended, and then refused; a convention
+QUERY_SIGN, MORE_SIGN = "?-", ";"
+FACT_COMMANDS = frozenset({"assume", "retract", "goal", "since", "why", "whynot"})  # they take facts or rules
+# The beginning of a query without `?-`: an atom, perhaps negated; an aggregate; or a variable that is compared.
+QUERY_START = re.compile(r"(not\s+)*(-?_*[a-z]\w*\s*\(|#\w+\s*\{|[A-Z]\w*\s*[=<>!])")
+OPEN_END = re.compile(r"(,|;|:|:-|=|<|>|\|)$")  # a fact command goes on after such an end
+
+
+def is_query(text: str, commands: Collection[str]) -> bool:
+    """Return whether a statement that begins with this text is a query.
+
+    Parameters
+    ----------
+    text : the first line of the statement.
+    commands : the names of all commands. `goal(X)` is a query, `goal at(utak,x)` a command.
+    """
+    text = text.lstrip()
+    if text.startswith(QUERY_SIGN):
+        return True
+    word = re.match(r"[a-z]+", text)
+    if word is not None and word[0] in commands and not text[word.end() :].startswith("("):
+        return False
+    return QUERY_START.match(text) is not None
+
+
+def without_comment(line: str) -> str:
+    """Return a line without the comment at its end; a `%` within quotes begins none.
+
+    >>> without_comment('X = "5%".  % a share')
+    'X = "5%".'
+    """
+    quoted = False
+    for at, char in enumerate(line):
+        if char == '"' and (at == 0 or line[at - 1] != "\\"):
+            quoted = not quoted
+        elif char == "%" and not quoted:
+            return line[:at].rstrip()
+    return line.rstrip()
+
+
+def query_end(text: str) -> int:
+    """Return the index behind the full stop that ends a query; -1 when there is none.
+
+    A full stop is no part of `..`, stands outside quotes, and is followed by a blank or by nothing.
+
+    >>> query_end("X = 1..3, room(R). help")
+    18
+    """
+    quoted = False
+    for at, char in enumerate(text):
+        if char == '"' and (at == 0 or text[at - 1] != "\\"):
+            quoted = not quoted
+        elif char == "." and not quoted and text[at - 1 : at] != "." and not text[at + 1 : at + 2].strip():
+            return at + 1
+    return -1
+
+
+def has_open_end(text: str) -> bool:
+    """Return whether a fact or rule goes on behind a text: a bracket or a quotation is open, or more must follow."""
+    quoted, depth, before = False, 0, ""
+    for char in text:
+        if char == '"' and before != "\\":
+            quoted = not quoted
+        elif not quoted:
+            depth += (char in "({[") - (char in ")}]")
+        before = char
+    stripped = text.rstrip()
+    rule_goes_on = ":-" in stripped and not stripped.endswith(".")
+    return quoted or depth > 0 or rule_goes_on or OPEN_END.search(stripped) is not None
+
+
+class StatementBuffer:
+    """Collects lines until they are statements.
+
+    Parameters
+    ----------
+    commands : the names of all commands.
+    """
+
+    def __init__(self, commands: Collection[str]) -> None:
+        self._commands = commands
+        self._text = ""
+        self._is_query = False
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a statement was begun and goes on."""
+        return bool(self._text)
+
+    def clear(self) -> None:
+        """Forget the statement that was begun."""
+        self._text = ""
+
+    def finish(self) -> list[str]:
+        """Return the statement that was begun, as if it ended here; [] for none."""
+        text, self._text = self._text.strip(), ""
+        return [text] if text else []
+
+    def feed(self, line: str) -> list[str]:
+        """Take a line and return the statements that it completes, in order.
+
+        An empty line, and a line that begins with `?-`, end a statement that was begun. So does a command, where the
+        statement needs nothing more to be one.
+        """
+        line = line.rstrip("\r\n")
+        done: list[str] = []
+        if self.is_open and (not line.strip() or line.lstrip().startswith(QUERY_SIGN) or self._is_left(line)):
+            done = self.finish()
+        if not self.is_open:
+            if not line.strip() or line.lstrip().startswith("%"):
+                return done
+            self._is_query = is_query(line, self._commands)
+            word = re.split(r"[\s.(]", line.strip(), maxsplit=1)[0]
+            if not self._is_query and word not in FACT_COMMANDS:
+                return [*done, line.strip()]
+        self._text += ("\n" if self._text else "") + without_comment(line)
+        return done + self._completed()
+
+    def _is_left(self, line: str) -> bool:
+        """Return whether a line is a command, while the query that was begun is whole but for its full stop."""
+        word = re.match(r"[a-z]+", line)
+        command = word is not None and word[0] in self._commands and not is_query(line, self._commands)
+        return command and not has_open_end(self._text)
+
+    def _completed(self) -> list[str]:
+        """Return the statements that the text holds; keep the rest, if it goes on."""
+        if len(self._text) > MAX_STATEMENT_CHARACTERS:
+            return self.finish()
+        if not self._is_query:
+            return [] if has_open_end(self._text) else self.finish()
+        end = query_end(self._text)
+        if end < 0:
+            return []
+        query, rest = self._text[:end].strip(), self._text[end:].strip()
+        self._text = ""
+        return [query, *(self.feed(rest) if rest else [])]

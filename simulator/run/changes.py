@@ -1,0 +1,140 @@
+"""Changes of a run from outside: assumptions made and taken back, and other goals, each from a step on."""
+
+import shutil
+import tempfile
+import weakref
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
+from kb.language.source_text import source_from_bytes
+from kb.reasoning.assumptions import ASSUMPTION_FILE, Assumption, canonical_facts, read_assumptions
+from kb.task.task import Task, task_with_goals
+from simulator.episode.episode import EpisodeLine
+
+CHANGE_KINDS = ("assume", "retract", "goal")  # as commands of `utak repl` and episodes name them
+
+
+@dataclass(frozen=True)
+class Change:
+    """One change of a run.
+
+    Attributes
+    ----------
+    step : the step from which it counts: the impression of this step is interpreted with it.
+    kind : assume, retract or goal.
+    text : what is assumed, taken back or wanted, as written, in one line.
+    """
+
+    step: int
+    kind: str
+    text: str
+
+    @property
+    def entry(self) -> EpisodeLine:
+        """The change as an episode's header states it, such as {"step": 3, "assume": "shape(o1,square,90)."}."""
+        return {"step": self.step, self.kind: self.text}
+
+
+class RunConditions(NamedTuple):
+    """The conditions that count at a step besides the scenario.
+
+    Attributes
+    ----------
+    assumptions : what is assumed, in the order in which it was assumed.
+    task : the task; its goals may be others than those of the scenario.
+    is_changed_task : whether the goals are others than those of the scenario.
+    """
+
+    assumptions: tuple[Assumption, ...]
+    task: Task
+    is_changed_task: bool = False
+
+
+def changed_conditions(before: RunConditions, change: Change, kb_files: Sequence[str]) -> RunConditions:
+    """Return the conditions after a change.
+
+    Parameters
+    ----------
+    before : the conditions before it.
+    change : the change.
+    kb_files : the paths of the user's rule files.
+
+    Returns
+    -------
+    The new conditions.
+
+    Raises
+    ------
+    BadInputError : the text of the change has errors, is assumed already, or is not assumed.
+    """
+    if change.kind == "goal":
+        source = source_from_bytes("goal", _ended(change.text).encode("utf-8", errors="surrogateescape"))
+        return before._replace(task=task_with_goals(before.task, source), is_changed_task=True)
+    if change.kind == "retract":
+        return before._replace(assumptions=_without(before.assumptions, change.text))
+    assumptions = before.assumptions
+    for new in read_assumptions(change.text, kb_files):
+        if any(old.written == new.written for old in assumptions):
+            raise _problem(ASSUMPTION_FILE, new.written, f"this is assumed already: {new.written}")
+        assumptions = (*assumptions, new)
+    return before._replace(assumptions=assumptions)
+
+
+def _ended(text: str) -> str:
+    """Return a text with a full stop at its end; an empty text stays empty."""
+    text = text.strip()
+    return text if not text or text.endswith(".") else f"{text}."
+
+
+def _without(assumptions: tuple[Assumption, ...], text: str) -> tuple[Assumption, ...]:
+    """Return the assumptions without those that a text names; raise BadInputError when it names none of them."""
+    whole = " ".join(_ended(text).split())
+    if any(one.written == whole for one in assumptions):
+        return tuple(one for one in assumptions if one.written != whole)
+    if not assumptions:
+        raise _problem("retract", whole, "nothing is assumed here")
+    named = canonical_facts(text, "retract")
+    written = {one.written for one in assumptions}
+    for fact in named:
+        if fact not in written:
+            hint = did_you_mean(fact, written) or f"assumed: {' '.join(sorted(written))}"
+            raise _problem("retract", whole, f"this is not assumed: {fact}", hint)
+    return tuple(one for one in assumptions if one.written not in named)
+
+
+def _problem(file: str, text: str, what: str, hint: str = "") -> BadInputError:
+    """Return, not raise, the error `what` about a text of one line."""
+    return BadInputError([Problem(file, SourceSpan(1, 1, max(1, len(text))), what, text, hint)])
+
+
+class AssumedRules:
+    """Rule files of assumptions, for the encodings: they lie in a folder of their own that ends with this object."""
+
+    def __init__(self) -> None:
+        self._folder: Path | None = None
+        self._paths: dict[str, str] = {}  # by the text of the rule
+
+    def files(self, assumptions: Sequence[Assumption]) -> tuple[str, ...]:
+        """Return the paths of the files that state some assumptions; those that reach queries alone need none."""
+        return tuple(self._file(one.rule) for one in assumptions if one.rule)
+
+    def _file(self, rule: str) -> str:
+        """Return the path of the file with a rule; it is written when it is asked for the first time."""
+        if self._folder is None:
+            self._folder = Path(tempfile.mkdtemp(prefix="utak-assumed-"))
+            weakref.finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        if rule not in self._paths:
+            path = self._folder / f"{len(self._paths)}.lp"
+            path.write_text(f"{rule}\n")
+            self._paths[rule] = str(path)
+        return self._paths[rule]
+
+    def named_as_typed(self, bad: BadInputError) -> BadInputError:
+        """Return an error with the problems of these files told of an assumption, not of a file."""
+        own = set(self._paths.values())
+        return BadInputError(
+            problem._replace(file=ASSUMPTION_FILE) if problem.file in own else problem for problem in bad.problems
+        )

@@ -1,0 +1,81 @@
+"""The outcome of each expectation of a test: met or not, what came instead, and the points."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from kb.language.terms import Fact
+from simulator.scenario.expectation import weights_of
+
+
+class ExpectationOutcome(NamedTuple):
+    """One expectation and what came of it.
+
+    Attributes
+    ----------
+    expected : the fact as text.
+    came : what came instead, in words; '' when the expectation is met.
+    points : the points that it is worth.
+    """
+
+    expected: str
+    came: str
+    points: int
+
+    @property
+    def met(self) -> bool:
+        """Whether the expectation is met."""
+        return not self.came
+
+    @property
+    def entry(self) -> dict[str, str | int | bool]:
+        """The outcome as values of JSON."""
+        return {"expected": self.expected, "met": self.met, "came": self.came, "points": self.points}
+
+
+class PointScore(NamedTuple):
+    """Points: those earned and those that could be.
+
+    Attributes
+    ----------
+    earned : the points of the expectations that are met.
+    possible : the points of all expectations.
+    """
+
+    earned: int
+    possible: int
+
+    def __str__(self) -> str:
+        """Return the points in words."""
+        return f"{self.earned} of {self.possible} point{'s' * (self.possible != 1)}"
+
+
+def judge_expectations(
+    expectations: Sequence[Fact], missed: Mapping[Fact, str], believed: bool, reason: str
+) -> tuple[ExpectationOutcome, ...]:
+    """Return the outcome of each tested expectation of expect.lp, in the order of the file.
+
+    Parameters
+    ----------
+    expectations : the facts of expect.lp.
+    missed : what came instead of each unmet expectation; `fails` is judged here.
+    believed : whether the robot believes that the task is done.
+    reason : the reason of its verdict.
+
+    Returns
+    -------
+    The outcomes. Where `fails` is expected, only it, `verdict(V)` and expectations with a weight are tested.
+    """
+    told = dict(missed)
+    for fact in expectations:
+        if fact.name == "fails" and believed:
+            told[fact] = "Utak believes that an impossible task is done"
+        elif fact.name == "fails" and not reason:
+            told[fact] = "Utak gives no reason"
+    return tuple(
+        ExpectationOutcome(str(fact), told.get(fact, ""), points) for fact, points in weights_of(expectations).items()
+    )
+
+
+def score(outcomes: Sequence[ExpectationOutcome]) -> PointScore:
+    """Return the points of some outcomes."""
+    return PointScore(sum(one.points for one in outcomes if one.met), sum(one.points for one in outcomes))

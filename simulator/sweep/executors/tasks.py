@@ -1,0 +1,82 @@
+"""A task, its outcome, and what an executor is. Tasks and outcomes are JSON values, so they can travel."""
+
+import importlib
+import json
+import time
+import traceback
+from collections.abc import Callable, Generator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from kb.language.diagnostics import BadInputError, CannotOpenError
+
+# How a task can fail: it took too long, its process ended, or it raised an exception.
+TOO_LONG, DIED, RAISED = "time", "died", "error"
+MAX_REASON_LENGTH = 500  # characters of a failure's reason; a convention
+
+
+class WorkerTask(NamedTuple):
+    """A call of a function by its name.
+
+    Attributes
+    ----------
+    function : "module:name"; the function takes one JSON value and returns one. Lists arrive as lists, not as tuples.
+    argument : that JSON value.
+    seconds : the limit of wall-clock time; None for no limit.
+    """
+
+    function: str
+    argument: Any
+    seconds: float | None = None
+
+
+class TaskOutcome(NamedTuple):
+    """The end of a task.
+
+    Attributes
+    ----------
+    value : what the function returned; None when the task failed.
+    failure : "" or how it failed: `TOO_LONG`, `DIED` or `RAISED`.
+    reason : why it failed, in words; "" when it did not.
+    seconds : the wall-clock time that it took.
+    """
+
+    value: Any
+    failure: str = ""
+    reason: str = ""
+    seconds: float = 0.0
+
+
+# Carries tasks out and yields (index of the task, outcome) as they end, in any order, each task once. Closing the
+# iterator ends what is under way.
+Executor = Callable[[Sequence[WorkerTask]], Generator[tuple[int, TaskOutcome], None, None]]
+
+
+def named_function(name: str) -> Callable[[Any], Any]:
+    """Return the function "module:name"; raise ImportError or AttributeError when there is none."""
+    module, _, inner = name.partition(":")
+    found: Callable[[Any], Any] = getattr(importlib.import_module(module), inner)
+    return found
+
+
+def carry_out(task: WorkerTask) -> TaskOutcome:
+    """Call the function of a task in this process, without a limit of time, and return the outcome.
+
+    An exception of the function, or a value that is no JSON, is an outcome that failed.
+    """
+    begun = time.monotonic()
+    try:
+        value = named_function(task.function)(task.argument)
+        json.dumps(value)
+    except Exception as error:
+        return TaskOutcome(None, RAISED, reason_of(error), time.monotonic() - begun)
+    return TaskOutcome(value, seconds=time.monotonic() - begun)
+
+
+def reason_of(error: Exception) -> str:
+    """Return an exception in words, with the file and line where it was raised."""
+    if isinstance(error, BadInputError | CannotOpenError):
+        return str(error)[:MAX_REASON_LENGTH]
+    frames = traceback.extract_tb(error.__traceback__)
+    where = f" ({Path(frames[-1].filename).name}:{frames[-1].lineno})" if frames else ""
+    return f"{type(error).__name__}: {error}"[:MAX_REASON_LENGTH] + where

@@ -1,0 +1,74 @@
+"""One run on a worker: the texts of its files and its options come in, its result goes out. All are JSON values."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+from kb.language.diagnostics import BadInputError, CannotOpenError
+from simulator.episode.episode import EpisodeLog
+from simulator.run.robots import make_robot
+from simulator.run.session import RobotMaker, Session
+from simulator.run.trial import faults_of
+from simulator.run.warming import warm
+from simulator.scenario.expectation import expects_verdict
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
+from simulator.sweep.contents import written
+
+
+def prepare(argument: dict[str, Any]) -> None:
+    """Compile the geometry kernels and load the robot, so that no run waits for them.
+
+    argument : `carrying`, whether tasks move objects, and `paths`, the path-finder.
+    """
+    from planner.cycle import Robot  # noqa: F401 (loading it takes time)
+
+    warm(argument["carrying"], argument["paths"])
+
+
+def run_one(argument: dict[str, Any], make: RobotMaker = make_robot) -> dict[str, Any]:
+    """Run the robot once and return the result.
+
+    Parameters
+    ----------
+    argument : `files` and `rules`, lists of [name, text]; `seed`, `noise`, `paths`, `max_steps` and `pull` as in
+        `Settings`.
+    make : makes the robot.
+
+    Returns
+    -------
+    `result`: believed, achieved, verdict, reason, steps and unmet; `passed`: whether expect.lp is met as `utak test`
+    wants it, None without expect.lp.
+
+    Raises
+    ------
+    CannotOpenError, BadInputError : a file is damaged; names in messages are those of the files alone.
+    """
+    rules = [(f"rules{number}-{Path(name).name}", text) for number, (name, text) in enumerate(argument["rules"])]
+    with written([*argument["files"], *rules]) as folder:
+        try:
+            return _ran(folder, [name for name, _ in rules], argument, make)
+        except BadInputError as bad:
+            problems = [problem._replace(file=_short(problem.file, folder)) for problem in bad.problems]
+            raise BadInputError(problems) from bad
+        except CannotOpenError as absent:
+            raise CannotOpenError(_short(absent.path, folder), absent.why) from absent
+
+
+def _ran(folder: Path, rules: list[str], argument: dict[str, Any], make: RobotMaker) -> dict[str, Any]:
+    """Run the robot in the scenario of a folder."""
+    scenario = read_scenario(folder)
+    options = {name: argument[name] for name in ("seed", "noise", "paths", "max_steps", "pull")}
+    settings = Settings(**options, kb_files=tuple(str(folder / name) for name in rules))
+    result = Session(scenario, settings, make, EpisodeLog(None)).run()
+    expectations = scenario.expectations
+    passed = None
+    if expectations is not None:
+        passed = not list(faults_of(result, result.outcomes, expects_verdict(expectations)))
+    entry = {**result.line["result"], "unmet": list(result.unmet)}
+    return {"result": entry, "passed": passed}
+
+
+def _short(path: str, folder: Path) -> str:
+    """Return a path without the temporary folder, which has another name on every worker."""
+    return path.replace(f"{folder}{os.sep}", "").replace(str(folder), "the scenario")

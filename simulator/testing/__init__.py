@@ -1,0 +1,13 @@
+"""Scenarios as tests: what `utak test` and the plugin of pytest (utak_pytest.py) run and say.
+
+Modules in reading order:
+
+record   one scenario, tried: its outcome as JSON values, whatever is wrong with it
+suite    all scenarios of a command line: finding, choosing and trying them, in one process or in several
+worker   the process that tries scenarios for another one
+handle   the handle of such a process
+wording  records as text: lines, summaries and reports of failures
+junit    records as JUnit XML
+
+Public names: `Wish`, `try_scenario`, `WorkerHandle`, `failure_report`, `as_junit`.
+"""

@@ -1,0 +1,118 @@
+"""One scenario, tried: its outcome as JSON values, whatever is wrong with it."""
+
+import shlex
+from collections.abc import Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+from simulator.episode.episode import EpisodeLine
+from simulator.run.trial import ScenarioTrial, run_trial
+from simulator.scenario.untrusted import refuse_outside_links
+from simulator.terminal import exits
+from simulator.terminal.action_in_words import describe
+from simulator.terminal.outcome import outcome_of
+
+TrialRecord = dict[str, Any]  # one scenario of `utak test --json` (docs/testing.md)
+OUTCOME_NAMES = {  # by exit code: the word for the outcome of a scenario
+    exits.SUCCESS: "passed",
+    exits.NOT_REACHED: "failed",
+    exits.BAD_INPUT: "bad",
+    exits.CANNOT_OPEN: "absent",
+    exits.OUR_BUG: "bug",
+}
+
+
+class Wish(NamedTuple):
+    """A scenario that is to be tried.
+
+    Attributes
+    ----------
+    folder : the scenario.
+    root : the folder in which it was found.
+    given : fields of `Settings` by name that the user gave; they win over those of trial.lp.
+    kb_files : files of rules, in addition to those of trial.lp.
+    untrusted : whether links that lead out of the scenario are refused.
+    timed : whether the record says how long it took.
+    """
+
+    folder: str
+    root: str
+    given: Mapping[str, Any]
+    kb_files: tuple[str, ...] = ()
+    untrusted: bool = False
+    timed: bool = False
+
+
+def try_scenario(wish: Wish) -> TrialRecord:
+    """Return the record of a scenario that was tried; errors end up in it.
+
+    A failing output stream and Ctrl-C are raised; with UTAK_DEBUG set, unexpected exceptions, too.
+    """
+    trials: list[ScenarioTrial] = []
+    began = perf_counter()
+    code, error = outcome_of(_run, wish, trials)
+    seconds = perf_counter() - began
+    record = without_run(wish, code, error) if not trials else _record(wish, code, trials[0])
+    return record | {"seconds": round(seconds, 3)} if wish.timed else record
+
+
+def _run(wish: Wish, trials: list[ScenarioTrial]) -> int:
+    """Run the scenario, append its trial to `trials` and return the exit code."""
+    if wish.untrusted:
+        refuse_outside_links(wish.folder, wish.root)
+    trials.append(run_trial(Path(wish.folder), wish.given, wish.kb_files))
+    return exits.SUCCESS if trials[0].passed else exits.NOT_REACHED
+
+
+def repeating_command(wish: Wish) -> str:
+    """Return the command that tries a scenario again, as a POSIX shell reads it."""
+    words = ["utak", "test", wish.folder]
+    for name, value in wish.given.items():
+        words += ["--no-pull"] if name == "pull" else [f"--{name.replace('_', '-')}", str(value)]
+    for path in wish.kb_files:
+        words += ["--kb", path]
+    return shlex.join(words + ["--untrusted"] * wish.untrusted)
+
+
+def without_run(wish: Wish, code: int, error: str) -> TrialRecord:
+    """Return the record of a scenario that was not run to its end, with the message that says why."""
+    return {
+        "scenario": wish.folder,
+        "outcome": OUTCOME_NAMES[code],
+        "exit_code": code,
+        "error": error,
+        "verdict": None,
+        "believed": None,
+        "achieved": None,
+        "steps": None,
+        "reason": None,
+        "options": None,
+        "faults": [],
+        "points": None,
+        "weighed": False,
+        "expectations": [],
+        "last_steps": [],
+        "command": repeating_command(wish),
+    }
+
+
+def _record(wish: Wish, code: int, trial: ScenarioTrial) -> TrialRecord:
+    """Return the record of a scenario that was run."""
+    settings = trial.settings
+    names = ("seed", "noise", "paths", "max_steps", "pull")
+    return without_run(wish, code, "") | {
+        **{name: getattr(trial.result, name) for name in ("believed", "achieved", "steps", "reason")},
+        "verdict": str(trial.result.verdict),
+        "options": {**{name: getattr(settings, name) for name in names}, "kb": list(settings.kb_files)},
+        "faults": list(trial.faults),
+        "points": trial.score._asdict(),
+        "weighed": trial.weighed,
+        "expectations": [one.entry for one in trial.outcomes],
+        "last_steps": [_step_entry(line) for line in trial.last_steps],
+    }
+
+
+def _step_entry(line: EpisodeLine) -> dict[str, Any]:
+    """Return a step in words: its number, its action and the reason of that."""
+    return {"step": line["step"], "action": describe(line["action"]), "why": line["why"]}

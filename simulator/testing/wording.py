@@ -1,0 +1,100 @@
+"""Records of tried scenarios as text: lines, summaries and reports of failures."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from simulator.scenario.points import PointScore
+from simulator.terminal import exits
+from simulator.terminal.streams import escape_controls
+from simulator.testing.record import OUTCOME_NAMES, TrialRecord
+
+TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the word in the summary
+    exits.SUCCESS: ("ok", "passed"),
+    exits.NOT_REACHED: ("FAILED", "failed"),
+    exits.BAD_INPUT: ("BAD", "bad"),
+    exits.CANNOT_OPEN: ("ABSENT", "cannot be opened"),
+    exits.OUR_BUG: ("BUG", "ended by a bug of ours"),
+}
+
+
+def outcome_line(record: TrialRecord) -> str:
+    """Return the line about one scenario: the outcome, the points where its author weighed them, and the reasons."""
+    word, folder = TEST_OUTCOME_WORDS[record["exit_code"]][0], _flat(record["scenario"])
+    if record["verdict"] is None:
+        return f"{word} {folder}: see above"
+    points = f"{_points(record)}: " if record["weighed"] else ""
+    return f"{word} {folder}: {points}{_flat(_message(record))}"
+
+
+def _points(record: TrialRecord) -> PointScore:
+    """Return the points of a record that has some."""
+    return PointScore(**record["points"])
+
+
+def _message(record: TrialRecord) -> str:
+    """Return the reasons why a scenario failed, and its end."""
+    return "; ".join([*record["faults"], f"{record['verdict']} in {record['steps']} steps: {record['reason']}"])
+
+
+def summary_line(records: Sequence[TrialRecord]) -> str:
+    """Return how many scenarios passed, what became of the others, and the points where authors weighed them."""
+    counts = Counter(record["exit_code"] for record in records)
+    others = "".join(
+        f", {counts[code]} {words[1]}"
+        for code, words in TEST_OUTCOME_WORDS.items()
+        if code != exits.SUCCESS and counts[code]
+    )
+    total = total_score(records)
+    points = f"; {total}" if any(record["weighed"] for record in records) else ""
+    return f"{counts[exits.SUCCESS]} of {counts.total()} passed{others}{points}"
+
+
+def total_score(records: Sequence[TrialRecord]) -> PointScore:
+    """Return the points of all scenarios together. One that could not be run has none that are known."""
+    scores = [_points(record) for record in records if record["points"] is not None]
+    return PointScore(sum(one.earned for one in scores), sum(one.possible for one in scores))
+
+
+def as_object(records: Sequence[TrialRecord]) -> dict[str, Any]:
+    """Return the one object of `utak test --json`: all records, counts of outcomes, all points, exit code."""
+    counts = Counter(record["outcome"] for record in records)
+    return {
+        "scenarios": list(records),
+        "counts": {name: counts[name] for name in OUTCOME_NAMES.values()},
+        "points": total_score(records)._asdict(),
+        "exit_code": exits.worst(record["exit_code"] for record in records),
+    }
+
+
+def failure_report(record: TrialRecord) -> str:
+    """Return why a scenario failed: what was expected, what came, the last steps and the command that repeats it."""
+    return escape_controls("\n".join(_report_lines(record)))
+
+
+def _report_lines(record: TrialRecord) -> Iterator[str]:
+    """Yield the lines of the report of a failure."""
+    if record["error"]:
+        yield record["error"]
+    if record["verdict"] is not None:
+        points = f", {_points(record)}" if record["weighed"] else ""
+        yield f"the scenario did not end as expected{points}"
+        for one in record["expectations"]:
+            worth = f"  ({one['points']} point{'s' * (one['points'] != 1)})" if record["weighed"] else ""
+            yield f"  {'met' if one['met'] else 'NOT MET'}: {one['expected']}{worth}"
+            if not one["met"]:
+                yield f"    what came: {one['came']}"
+        for fault in record["faults"]:
+            if not fault.startswith("not met: "):
+                yield f"  {fault}"
+        yield f"the robot's verdict: {record['verdict']} after {record['steps']} steps: {_flat(record['reason'])}"
+        if record["last_steps"]:
+            yield "its last steps:"
+        for step in record["last_steps"]:
+            yield f"  step {step['step']}: {step['action']}: {_flat(step['why'])}"
+    yield f"repeat it: {record['command']}"
+
+
+def _flat(text: str) -> str:
+    """Return a text on one line, harmless for terminals."""
+    return escape_controls(text, lines=False)

@@ -1,0 +1,163 @@
+"""Why facts are believed: every reason is confirmed by checks that share no code with what made it."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import clingo
+import pytest
+
+from benchmarks.harness.reasons import complaints, covers
+from kb.evidence.reason import Depth, Reason, ReasonKind
+from kb.language.diagnostics import BadInputError
+from simulator.cli.main import main
+from simulator.episode.episode import read_episode
+from simulator.explaining.questions import Questions, questions_of_episode
+
+ROOT = Path(__file__).resolve().parent.parent.parent.parent
+RUNS = [("go_next_room_askew", "0"), ("push_l_tight_door", "0"), ("push_square_next_room", "0.05")]
+STRIDE = 7  # every seventh fact of a step is explained here; benchmarks.episodes.explanations explains all
+
+
+@pytest.fixture(scope="module", params=RUNS, ids=lambda run: f"{run[0]}-{run[1]}")
+def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Questions, list[Any]]:
+    name, noise = request.param
+    log = tmp_path_factory.mktemp("reasons") / f"{name}.jsonl"
+    options = ["--noise", noise, "--seed", "5", "--max-steps", "12", "--log", str(log)]
+    assert main(["run", str(ROOT / "examples" / name), *options]) in (0, 1, 75)
+    episode = read_episode(log)
+    return questions_of_episode(episode), list(episode.steps)
+
+
+def test_every_fact_rests_on_cells_or_witnesses(run: tuple[Questions, list[Any]]) -> None:
+    questions, lines = run
+    names = set()
+    for line in lines:
+        for fact in line["belief"]["facts"][line["step"] % STRIDE :: STRIDE]:
+            tree = questions.why(fact, line["step"]).as_dict()
+            assert tree["claim"] == fact.removesuffix(".")
+            assert list(complaints(lines, tree)) == [], (line["step"], fact)
+            names.add(fact.partition("(")[0])
+    assert {"kind", "offset", "segment", "shape", "rect"} <= names
+
+
+def test_cells_cover_the_squares_that_they_are_said_to_show(run: tuple[Questions, list[Any]]) -> None:
+    questions, lines = run
+    step, checked = len(lines) - 1, 0
+    for fact in lines[step]["belief"]["facts"]:
+        if not re.match(r"(segment|kind)\(o\d", fact):
+            continue
+        leaf = next(r for r in questions.why(fact, step).walk() if r.kind == ReasonKind.CELLS)
+        for impression, cell, _, square in leaf.data["cells"]:
+            assert covers(lines, step, impression, cell, square), (fact, impression, cell, square)
+            checked += 1
+    assert checked or not re.search(r"kind\(o\d", "".join(lines[step]["belief"]["facts"]))
+
+
+def test_all_160_cells_are_accounted_for(run: tuple[Questions, list[Any]]) -> None:
+    questions, lines = run
+    line = lines[-1]
+    for cell in range(160):
+        tree = questions.why_cell(cell, line["step"]).as_dict()
+        assert list(complaints(lines, tree)) == []
+        word = {"p": "predicted", "e": "explained", "n": "noise"}[line["belief"]["status"][cell]]
+        assert tree["because"].startswith(word)
+
+
+def test_every_command_and_the_verdict_have_a_reason(run: tuple[Questions, list[Any]]) -> None:
+    questions, lines = run
+    for line in lines[1:]:
+        tree = questions.why_step(line["step"]).as_dict()
+        assert list(complaints(lines, tree)) == []
+        assert tree["because"] == line["why"]
+        assert tree["rests_on"]
+    verdict = questions.why("verdict(V)")
+    assert list(complaints(lines, verdict.as_dict())) == []
+    assert verdict.rests_on
+
+
+def test_a_variable_stands_for_anything(run: tuple[Questions, list[Any]]) -> None:
+    questions, _ = run
+    assert questions.why("kind(utak, K, _)").claim == "kind(org,utak,100)"
+
+
+@pytest.mark.parametrize(
+    "fact", ["", "shape(", "shape(o1, square", "a. b", "offset(org, 1)", "-kind(o1,object,95)", "verdict(7)", '"', "X"]
+)
+def test_what_is_no_believed_fact_is_refused_with_its_place(run: tuple[Questions, list[Any]], fact: str) -> None:
+    with pytest.raises(BadInputError, match="why:1:"):
+        run[0].why(fact)
+
+
+def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
+    questions, lines = run
+    with pytest.raises(BadInputError, match="there is no step"):
+        questions.why("node(org)", len(lines))
+    with pytest.raises(BadInputError, match="there is no cell"):
+        questions.why_cell(160)
+
+
+def test_depths_show_more_and_more(run: tuple[Questions, list[Any]]) -> None:
+    reason = run[0].why("offset(utak, E, N)")
+    short, mid, long = (reason.text(depth) for depth in (Depth.SHORT, Depth.MID, Depth.LONG))
+    assert "\n" not in short
+    assert mid.startswith(short)
+    assert len(mid) <= len(long)
+
+
+def test_what_stands_twice_is_written_once() -> None:
+    leaf = Reason("a", "seen", ReasonKind.CELLS)
+    tree = Reason("c", "both", ReasonKind.RULE, rests_on=(leaf, Reason("b", "by a", ReasonKind.RULE, rests_on=(leaf,))))
+    assert tree.text(Depth.LONG).splitlines() == ["c: both", "  a: seen", "  b: by a", "    a (as above)"]
+
+
+def test_an_episode_without_a_record_says_so(run: tuple[Questions, list[Any]]) -> None:
+    _, lines = run
+    old = json.loads(json.dumps(lines))
+    for line in old:
+        for key in ("solved", "status", "origin", "regions", "moved", "map_from"):
+            line["belief"].pop(key)
+    questions = Questions({"task": {"goals": ["at(utak,x)"]}}, old)
+    with pytest.raises(BadInputError, match="older version"):
+        questions.why("kind(floor, floor, C)")
+
+
+def test_what_is_missing_makes_a_fact_hold(run: tuple[Questions, list[Any]]) -> None:
+    """A change that whynot names makes plain clingo derive the atom; without any member of it, it does not."""
+    questions, lines = run
+    step = len(lines) - 1
+    objects = [
+        fact.removesuffix(".") for fact in lines[step]["belief"]["facts"] if re.match(r"kind\(o\d+,object", fact)
+    ]
+    for fact in objects[:2]:
+        node = fact[len("kind(") : fact.index(",")]
+        reason = questions.why_not(f"shape({node}, disc, 98)", step)
+        if not reason.data["found"] or reason.data["partial"] or "atom" not in reason.data:
+            continue
+        call = next(c for c in reversed(questions.beliefs.record.decisions(step)) if c.encoding == "shapes")
+        missing, in_way = set(reason.data["missing"]), set(reason.data["in_way"])
+        changed = set(call.facts) - in_way | missing
+        assert derives("shapes", changed, reason.data["atom"])
+        for one in missing:
+            assert not derives("shapes", changed - {one}, reason.data["atom"])
+        for one in in_way:
+            assert not derives("shapes", changed | {one}, reason.data["atom"])
+
+
+def derives(encoding: str, facts: set[str], atom: str) -> bool:
+    """Return whether the answer of an encoding to some facts holds an atom."""
+    control = clingo.Control(["--warn=none"])
+    control.load(str(next(ROOT.glob(f"*/asp/{encoding}.lp"))))
+    control.add("base", [], "".join(f"{fact}.\n" for fact in facts))
+    control.ground([("base", [])])
+    found: list[str] = []
+    control.solve(on_model=lambda model: found.extend(map(str, model.symbols(shown=True))))
+    return atom in found
+
+
+def test_what_is_believed_has_no_reason_to_be_absent(run: tuple[Questions, list[Any]]) -> None:
+    with pytest.raises(BadInputError, match="is believed"):
+        run[0].why_not("kind(org, utak, C)")
+    assert run[0].why_not("node(o99)").kind == ReasonKind.NEGATION
+    assert run[0].why_not("verdict(nonsense)").rests_on

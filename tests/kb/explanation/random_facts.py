@@ -1,0 +1,90 @@
+"""Random input facts of each encoding, over few constants, so that rules meet each other."""
+
+from itertools import product
+from pathlib import Path
+
+from hypothesis import strategies as st
+
+from tests.encoding_cases import ENCODINGS
+
+BY_NAME = {path.stem: path for path in ENCODINGS}
+HOW = ("predicted", "blocked", "slipped", "turned", "misled", "smaller", "larger", "stuck")
+EXPLANATIONS, REGIONS, NODES, THINGS, NUMBERS = (1, 2, 3), ("a", "b", "c"), ("n1", "n2"), ("x", "y"), (1, 2, 3)
+CLASSES, PROPERTIES, VALUES = ("square", "brick", "disc"), ("shape", "colour"), ("square", "g")
+KINDS, PLACES, LEVELS, WAYS = ("attain", "explore", "pass", "settle"), ("g", "h"), (0, 1, 2), ("clear", "aside")
+# By encoding: of each input predicate the values of its arguments.
+INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
+    "accommodation": {
+        "explanation": (EXPLANATIONS, HOW, (0, 1), (0, 1, 2)), "unlikely": (EXPLANATIONS, (3, 12)),
+        "odd": (EXPLANATIONS,), "crooked": (EXPLANATIONS, (4, 9)), "stands": (), "met": (EXPLANATIONS,),
+        "off_middle": (), "trust": ((2, 9),), "slips": (), "proven": (), "clear": (), "uneven": (), "unchanged": (),
+    },
+    "corners": {"convex": (NUMBERS, (0, 50, 100), (-50, 0, 100))},
+    "interpretation": {
+        "region": (REGIONS, ("zero", "nonzero"), (90, 100)), "rim": (REGIONS,), "own": (REGIONS,),
+        "surrounds": (REGIONS, REGIONS), "extent": (REGIONS, (3, 14, 30)), "mass": (REGIONS, (10, 40)),
+        "touched": (REGIONS, ("b", "g")),
+    },
+    "reconciliation": {
+        "wanted": (THINGS,), "named": (THINGS,), "claim": (THINGS, PROPERTIES, VALUES, (40, 100)),
+        "candidate": (NODES, (15, 60, 95)), "has": (NODES, PROPERTIES, VALUES, (30, 99)),
+        "settled": (NODES, PROPERTIES), "distance": (NODES, (3, 9)), "bound_before": (THINGS, NODES),
+        "carried": (THINGS,), "fixed": (NODES,), "moved": (NODES,), "may_be": (NODES, PROPERTIES, VALUES),
+    },
+    "rooms": {"neck": (NUMBERS, (50, 100), (100, 150, 300), (100, 300), (0, 90))},
+    "shapes": {
+        "fit": (("o1", "o2"), CLASSES, (0, 1, 2, 4), NUMBERS), "open_squares": (("o1", "o2"), (0, 4, 40)),
+        "full_squares": (("o1", "o2"), (9, 12)),
+    },
+    "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,)},
+    "boldness": {
+        "plan": (NUMBERS, (3, 4, 8)), "hopes": (NUMBERS,), "askew": (NUMBERS,), "short": (NUMBERS,),
+        "aside": (NUMBERS,),
+    },
+    "routes": {
+        "route": (NUMBERS, (40, 60), (5, 20), (0, 30)), "through": (NUMBERS, ("d1", "d2")),
+        "not_through": (("d1", "d2"),), "last": (NUMBERS,),
+    },
+    "transport": {
+        "option": (PLACES, LEVELS, WAYS, (20, 90)), "refuted": (PLACES, LEVELS, WAYS),
+        "undecided": (PLACES, LEVELS, WAYS), "hopeless": (), "last": (PLACES,),
+    },
+}  # fmt: skip
+# By encoding: shown predicates, with the values of their arguments.
+ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
+    "accommodation": {"chosen": (EXPLANATIONS,)},
+    "corners": {"furthest": (("northeast", "southwest"), NUMBERS)},
+    "interpretation": {
+        "kind": (REGIONS, ("utak", "floor", "verge", "object"), (48, 92, 95, 99, 100)),
+        "hidden_passage": (REGIONS, REGIONS),
+    },
+    "reconciliation": {
+        "bind": (THINGS, NODES), "hypothesised": (THINGS,), "doubtful": (THINGS, NODES), "unmovable": (THINGS, NODES),
+    },
+    "rooms": {"door": (NUMBERS, (90,)), "opening": (NUMBERS,)},
+    "shapes": {"shape": (("o1",), (*CLASSES, "polygon"), (2, 30, 62, 74, 98, 99))},
+    "aims": {"choose": (NUMBERS,)},
+    "boldness": {"take": (NUMBERS,)},
+    "routes": {"choose": (NUMBERS,)},
+    "transport": {"try": (PLACES, LEVELS, WAYS)},
+}  # fmt: skip
+
+
+def atoms_over(predicates: dict[str, tuple[tuple[object, ...], ...]]) -> list[str]:
+    """Return all atoms of some predicates, as clingo writes them."""
+    found = []
+    for name, options in predicates.items():
+        for values in product(*options):
+            found.append(f"{name}({','.join(map(str, values))})" if values else name)
+    return found
+
+
+def random_facts(encoding: str, size: int) -> st.SearchStrategy[list[str]]:
+    """Return a strategy for input facts of an encoding: each predicate is as likely as any other."""
+    by_predicate = [st.sampled_from(atoms_over({name: options})) for name, options in INPUTS[encoding].items()]
+    return st.lists(st.one_of(by_predicate), max_size=size, unique=True).map(sorted)
+
+
+def encoding_path(name: str) -> Path:
+    """Return the path of an encoding."""
+    return BY_NAME[name]

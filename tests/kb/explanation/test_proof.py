@@ -1,0 +1,203 @@
+"""Proofs of what encodings decide: each is checked by clingo, node by node."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.explanation.programs import ExplanationError
+from kb.explanation.proof import explain_decision
+from kb.explanation.rendering import proof_as_dict, proof_dict, render
+from kb.explanation.values import ProofNode
+from kb.language.diagnostics import BadInputError
+from kb.language.reader import facts_from_text
+from tests.encoding_cases import ENCODINGS, Case, cases_of
+from tests.kb.explanation.proof_checker import Decision, best_decisions, faults, faults_of_rivals
+from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts
+
+CASES = [pytest.param(e, case, id=f"{e.stem}: {case.title}") for e in ENCODINGS for case in cases_of(e)]
+
+# Decisions of real runs: [encoding, facts, answer], from `solved` of episodes of examples/go_northeast_rooms,
+# go_to_square_unseen, go_next_room_hidden_door, push_square_blocked_door, and push_square_next_room with noise 0.1.
+RECORDED = json.loads((Path(__file__).parent / "recorded.json").read_text())
+
+
+def checked(decision: Decision, atom: str) -> ProofNode:
+    """Return the proof of an atom after a check of all that it says."""
+    facts = [str(fact) for fact in facts_from_text(decision.facts)]
+    root = explain_decision(decision.encoding.stem, facts, sorted(decision.shown), atom).root
+    assert root.claim == atom
+    assert faults(decision, root) == []
+    for node in root.walk():
+        assert faults_of_rivals(decision, node) == []
+    return root
+
+
+@pytest.mark.parametrize(("encoding", "case"), CASES)
+def test_proofs_of_the_cases_are_right(encoding, case: Case) -> None:
+    for decision in best_decisions(encoding, case.facts)[:1]:
+        for atom in sorted(decision.shown)[:2]:
+            checked(decision, atom)
+
+
+@pytest.mark.parametrize("number", range(len(RECORDED)), ids=lambda number: f"{number}-{RECORDED[number][0]}")
+def test_proofs_of_recorded_decisions_are_right(number: int) -> None:
+    name, facts, answer = RECORDED[number]
+    best = best_decisions(encoding_path(name), "\n".join(f"{fact}." for fact in facts))
+    (decision,) = (one for one in best if one.shown == set(answer))
+    for atom in answer[:2]:
+        checked(decision, atom)
+
+
+@pytest.mark.parametrize("name", sorted(INPUTS))
+@given(data=st.data())
+@settings(max_examples=8, deadline=None)
+def test_proofs_of_random_answers_are_right(name: str, data: st.DataObject) -> None:
+    facts = data.draw(random_facts(name, 12))
+    decisions = best_decisions(encoding_path(name), "\n".join(f"{fact}." for fact in facts))
+    for decision in decisions[:1]:
+        if decision.atoms:
+            checked(decision, data.draw(st.sampled_from(sorted(decision.atoms))))
+
+
+FACTS = ["region(a,zero,100)", "region(b,nonzero,90)", "surrounds(a,b)", "mass(b,20)"]
+ANSWER = ["kind(a,floor,100)", "kind(b,object,45)"]
+
+
+def test_a_proof_tells_rule_values_and_facts() -> None:
+    root = explain_decision("interpretation", FACTS, ANSWER, "kind(b,object,45)").root
+    assert root.instance is not None
+    assert dict(root.instance.values) == {"R": "b", "N": "20"}
+    assert root.instance.rule.file == "kb/asp/interpretation.lp"
+    assert "only 2 squares of it are expected to be occupied" in root.sentence
+    assert {node.claim for node in root.walk() if node.kind == "given"} == set(FACTS)
+    assert [node.words for node in root.walk() if node.claim == "not own(b)"] == [
+        "region b is not known to be the robot's own square"
+    ]
+
+
+def test_an_atom_that_is_not_shown_has_a_proof_too() -> None:
+    assert explain_decision("interpretation", FACTS, ANSWER, "isolated(b)").root.kind == "derived"
+
+
+def test_facts_may_have_full_stops() -> None:
+    dotted = [f"{fact}." for fact in FACTS]
+    plain = explain_decision("interpretation", FACTS, ANSWER, "isolated(b)")
+    assert explain_decision("interpretation", dotted, [f"{a}." for a in ANSWER], "isolated(b).") == plain
+
+
+def test_a_conditional_literal_shows_all_its_cases() -> None:
+    facts = ["fit(o1,square,0,1)", "fit(o1,brick,1,2)", "fit(o1,disc,2,3)", "open_squares(o1,0)", "full_squares(o1,9)"]
+    (decision,) = best_decisions(encoding_path("shapes"), "\n".join(f"{fact}." for fact in facts))
+    (node,) = (
+        node for node in checked(decision, "ahead(o1,1)").walk() if node.kind == "each" and "behind" in node.claim
+    )
+    assert [child.claim for child in node.children] == ["1 <= 1", "1 <= 2"]
+
+
+def test_a_greatest_value_shows_what_it_is_the_greatest_of() -> None:
+    facts = "convex(1,0,0). convex(2,100,50). convex(3,50,50)."
+    (decision,) = best_decisions(encoding_path("corners"), facts)
+    root = checked(decision, "furthest(northeast,2)")
+    assert "the greatest of 0, 100, 150 is 150" in {node.words for node in root.walk()}
+
+
+def test_a_choice_tells_what_others_would_cost() -> None:
+    facts = ["plan(1,5)", "plan(2,3)", "plan(3,7)", "hopes(2)", "askew(2)"]
+    root = explain_decision("boldness", facts, ["take(1)"], "take(1)").root
+    dearer, forbidden = root.rivals
+    assert (dearer.atom, dearer.verdict, dearer.level, dearer.difference) == ("take(3)", "dearer", 1, 2)
+    assert (forbidden.atom, forbidden.verdict) == ("take(2)", "forbidden")
+    (constraint,) = forbidden.forbidden_by
+    assert constraint.rule.kind == "constraint" and constraint.sentence in forbidden.sentence
+    assert "Plan 3 takes about 7 commands" in dearer.sentence
+
+
+def test_a_choice_of_none_is_a_rival_too() -> None:
+    root = explain_decision("transport", ["option(g,0,clear,50)"], ["try(g,0,clear)"], "try(g,0,clear)").root
+    (none,) = root.rivals
+    assert (none.atom, none.level, none.difference) == ("", 3, 1)
+
+
+def test_an_atom_that_does_not_hold_has_no_proof() -> None:
+    with pytest.raises(ExplanationError, match=r"kind\(b,floor,100\) does not hold"):
+        explain_decision("interpretation", FACTS, ANSWER, "kind(b,floor,100)")
+
+
+def test_an_answer_that_is_none_is_an_error() -> None:
+    with pytest.raises(ExplanationError, match="no answer of this program"):
+        explain_decision("interpretation", FACTS, ["kind(b,object,95)"], "kind(b,object,95)")
+    with pytest.raises(ExplanationError, match="no answer of this program"):
+        explain_decision("interpretation", FACTS, ["kind(a,floor,100)"], "kind(a,floor,100)")
+
+
+def test_an_unknown_encoding_is_an_error() -> None:
+    for name in ("nonsense", "../asp/rooms", ""):
+        with pytest.raises(ExplanationError, match="there is no encoding"):
+            explain_decision(name, [], [], "p")
+
+
+@pytest.mark.parametrize("text", ["p(X)", "p :- q", "größe(a)", "p(99999999999)", "", '#include "x"', "p. q"])
+def test_what_is_no_fact_never_reaches_clingo(text: str) -> None:
+    with pytest.raises((BadInputError, ValueError)):
+        explain_decision("rooms", [], [], text)
+    with pytest.raises((BadInputError, ExplanationError)):
+        explain_decision("rooms", [text], ["door(1,9)"], "door(1,9)")
+
+
+def test_the_three_depths_go_deeper_each() -> None:
+    proof = explain_decision("interpretation", FACTS, ANSWER, "kind(b,object,45)")
+    short, mid, long = (render(proof, depth) for depth in ("short", "mid", "long"))
+    assert "\n" not in short and proof.root.sentence in short
+    assert len(short) < len(mid) <= len(long)
+    assert "isolated(b)" in mid and "surrounds(a,b)" in long
+    with pytest.raises(KeyError):
+        render(proof, "deep")
+
+
+def test_a_proof_as_dictionary_has_each_part_once() -> None:
+    facts = [f"convex({n},{n},{n})" for n in range(6)]
+    (decision,) = best_decisions(encoding_path("corners"), "\n".join(f"{fact}." for fact in facts))
+    proof = explain_decision("corners", facts, sorted(decision.shown), "furthest(northeast,5)")
+    whole = proof_as_dict(proof)
+    assert set(whole) == {"encoding", "proof"}
+
+    def visit(node: dict) -> list[dict]:
+        return [node, *(inner for child in node["children"] for inner in visit(child))]
+
+    listed = [node["claim"] for node in visit(whole["proof"]) if node["children"]]
+    assert len(listed) == len(set(listed))
+    assert any(node["again"] for node in visit(whole["proof"]))
+    assert proof_dict(proof.root, 0)["children"] == []
+    assert len(visit(proof_dict(proof.root, 1))) == 1 + len(proof.root.children)
+
+
+def test_the_checker_finds_a_wrong_leaf_and_a_wrong_child() -> None:
+    (decision,) = best_decisions(encoding_path("interpretation"), " ".join(f"{fact}." for fact in FACTS))
+    root = explain_decision("interpretation", FACTS, ANSWER, "kind(b,object,45)").root
+    assert faults(decision, ProofNode("given", "mass(b,21)", "x"))
+    assert faults(decision, ProofNode("absent", "not region(b,_,_)", "x"))
+    assert faults(decision, ProofNode("comparison", "31 < 30", "x"))
+    fewer = ProofNode("derived", root.claim, root.words, root.instance, root.children[1:])
+    assert any("does not follow" in fault for fault in faults(decision, fewer))
+    inner = ProofNode("derived", root.claim, root.words, root.instance, (root, *root.children))
+    assert any("rests on itself" in fault for fault in faults(decision, inner))
+
+
+def test_the_checker_finds_a_wrong_cost() -> None:
+    facts = ["plan(1,5)", "plan(2,6)"]
+    (decision,) = best_decisions(encoding_path("boldness"), " ".join(f"{fact}." for fact in facts))
+    root = explain_decision("boldness", facts, ["take(1)"], "take(1)").root
+    (rival,) = root.rivals
+
+    for wrong in (replace(rival, difference=9), replace(rival, verdict="forbidden"), replace(rival, prices=())):
+        assert faults_of_rivals(decision, replace(root, rivals=(wrong,)))
+
+
+def test_no_proof_says_false() -> None:
+    for encoding in ENCODINGS:
+        assert not re.search(r'%! .*"[^"]*\bfalse\b', encoding.read_text())

@@ -1,0 +1,166 @@
+"""Changes that make an atom hold: each is tried, each part of it, and on small models each smaller one."""
+
+import re
+from itertools import combinations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kb.explanation.programs import ExplanationError
+from kb.explanation.rendering import absence_as_dict, render
+from kb.explanation.values import Absence
+from kb.explanation.whynot import explain_absence
+from tests.kb.explanation.proof_checker import best_decisions, faults, holds_somewhere
+from tests.kb.explanation.random_facts import ANSWERS, INPUTS, atoms_over, encoding_path, random_facts
+
+
+def text_of(facts: list[str] | set[str]) -> str:
+    return "\n".join(f"{fact}." for fact in sorted(facts))
+
+
+def absence(name: str, facts: list[str], atom: str) -> Absence:
+    """Return why an atom does not hold in a best answer, after a check that the change works and none of it is idle."""
+    path = encoding_path(name)
+    decisions = best_decisions(path, text_of(facts))
+    found = explain_absence(name, facts, sorted(decisions[0].shown) if decisions else None, atom)
+    if found.found:
+        assert set(found.in_way) <= set(facts) and not set(found.missing) & set(facts)
+        change = [*found.missing, *found.in_way]
+        assert holds_somewhere(path, text_of(changed(facts, change)), atom)
+        for size in range(len(change)):
+            for fewer in combinations(change, size):
+                assert not holds_somewhere(path, text_of(changed(facts, list(fewer))), atom), fewer
+    if found.proof is not None and not found.missing:
+        rest = text_of(changed(facts, list(found.in_way)))
+        decision = next(one for one in best_decisions(path, rest) if atom in one.atoms)
+        assert faults(decision, found.proof.root) == []
+    return found
+
+
+def arguments_of(atom: str) -> list[str]:
+    return atom.partition("(")[2].removesuffix(")").split(",") if "(" in atom else []
+
+
+def changed(facts: list[str], change: list[str]) -> set[str]:
+    """Return the facts after a change: those in it that are given are taken away, the others are added."""
+    return set(facts) ^ set(change)
+
+
+def smaller_changes(name: str, facts: list[str], atom: str, size: int) -> list[tuple[str, ...]]:
+    """Return the changes of fewer facts with which an atom holds, over constants that are known.
+
+    Names may stand in the facts, the atom or the encoding; numbers at the same place of a fact, or first in the atom.
+    """
+    names = set(re.findall(r"[a-z]\w*", " ".join([*facts, atom, encoding_path(name).read_text()])))
+    numbers = {(fact.split("(")[0], at, one) for fact in facts for at, one in enumerate(arguments_of(fact))}
+
+    def is_known(fact: str) -> bool:
+        predicate, parts = fact.split("(")[0], arguments_of(fact)
+        first = arguments_of(atom)[:1]
+        return all(
+            one in names or (predicate, at, one) in numbers or (at == 0 and [one] == first)
+            for at, one in enumerate(parts)
+        )
+
+    universe = [fact for fact in atoms_over(INPUTS[name]) if is_known(fact)]
+    options = sorted({*facts, *universe})
+    return [
+        change
+        for fewer in range(size)
+        for change in combinations(options, fewer)
+        if holds_somewhere(encoding_path(name), text_of(changed(facts, list(change))), atom)
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(INPUTS))
+@given(data=st.data())
+@settings(max_examples=3, deadline=None)
+def test_changes_of_random_facts_are_least(name: str, data: st.DataObject) -> None:
+    facts = data.draw(random_facts(name, 7))
+    decisions = best_decisions(encoding_path(name), text_of(facts))
+    holding = decisions[0].shown if decisions else frozenset()
+    atom = data.draw(st.sampled_from([one for one in atoms_over(ANSWERS[name]) if one not in holding]))
+    found = absence(name, facts, atom)
+    if found.found and not found.partial:
+        size = min(2, len(found.missing) + len(found.in_way))
+        assert smaller_changes(name, facts, atom, size) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "facts", "atom", "missing", "in_way"),
+    [
+        ("interpretation", ["region(a,zero,100)", "region(b,nonzero,90)", "surrounds(a,b)", "mass(b,20)"],
+         "kind(b,object,95)", ("mass(b,30)",), ()),
+        ("interpretation", ["region(a,zero,100)", "region(b,nonzero,90)"], "isolated(b)", ("surrounds(a,b)",), ()),
+        ("interpretation", ["region(a,nonzero,100)"], "kind(a,verge,72)", ("extent(a,8)",), ()),
+        ("interpretation", ["region(a,zero,80)", "own(a)"], "kind(a,floor,90)", ("region(a,zero,90)",), ()),
+        ("rooms", ["neck(1,100,150,300,90)"], "door(1,90)", ("neck(1,75,150,300,90)",), ()),
+        ("corners", ["convex(1,10,10)", "convex(2,20,5)"], "furthest(northeast,1)", (), ("convex(2,20,5)",)),
+        ("boldness", ["plan(1,5)", "plan(2,3)", "hopes(2)", "askew(2)"], "take(2)", (), ("askew(2)",)),
+        ("aims", ["aim(1,explore,50)", "aim(2,pass,10)", "aim(3,attain,9)"], "choose(1)", (),
+         ("aim(2,pass,10)", "aim(3,attain,9)")),
+        ("transport", ["option(g,0,clear,50)", "refuted(g,0,clear)"], "try(g,0,clear)", (), ("refuted(g,0,clear)",)),
+        ("accommodation", ["explanation(1,blocked,0,1)", "explanation(2,slipped,0,2)"], "chosen(2)", (),
+         ("explanation(1,blocked,0,1)",)),
+        ("interpretation", ["region(a,nonzero,100)"], "own(a)", ("own(a)",), ()),
+    ],
+)  # fmt: skip
+def test_changes_are_as_expected(name, facts, atom, missing, in_way) -> None:
+    found = absence(name, facts, atom)
+    assert found.found and (not found.partial or name == "aims")  # too many costs of aims are candidates
+    assert (len(found.missing), len(found.in_way)) == (len(missing), len(in_way))
+    assert (found.missing, found.in_way) == (missing, in_way) or name == "boldness"
+
+
+def test_a_number_that_a_comparison_needs_is_found_although_it_is_not_known() -> None:
+    found = absence("interpretation", ["region(a,nonzero,100)", "extent(a,3)"], "kind(a,verge,95)")
+    assert found.missing == ("extent(a,25)",)
+    assert "given is extent(a,3)" in found.sentence
+
+
+def test_a_choice_is_held_against_the_answer() -> None:
+    found = absence("boldness", ["plan(1,5)", "plan(2,9)"], "take(2)")
+    assert found.rival is not None
+    assert (found.rival.level, found.rival.difference) == (1, 4)
+    assert found.in_way == ("plan(1,5)",)
+    assert found.rival.sentence in render(found, "mid")
+
+
+def test_what_no_rule_derives_has_no_change() -> None:
+    found = absence("interpretation", ["region(a,zero,100)"], "kind(a,nonsense,3)")
+    assert not found.found and (found.missing, found.in_way) == ((), ())
+    assert "no change" in found.sentence
+    assert not explain_absence("interpretation", [], [], "unheard(of)").found
+
+
+def test_where_there_was_no_answer_the_cause_is_found() -> None:
+    facts = ["plan(1,5)", "hopes(1)", "askew(1)"]
+    assert best_decisions(encoding_path("boldness"), text_of(facts)) == []
+    found = explain_absence("boldness", facts, None, "take(1)")
+    assert found.found and len(found.in_way) == 1 and not found.missing
+
+
+def test_another_answer_of_the_same_cost_needs_no_change() -> None:
+    facts = ["wanted(x)", "candidate(n1,95)", "candidate(n2,95)"]
+    decisions = best_decisions(encoding_path("reconciliation"), text_of(facts))
+    assert len(decisions) > 1
+    other = next(iter(decisions[1].shown - decisions[0].shown))
+    found = explain_absence("reconciliation", facts, sorted(decisions[0].shown), other)
+    assert found.found and (found.missing, found.in_way) == ((), ())
+    assert "costs the same" in found.sentence
+
+
+def test_an_atom_that_holds_is_not_absent() -> None:
+    with pytest.raises(ExplanationError, match="holds in this answer"):
+        explain_absence("interpretation", ["region(a,zero,100)"], ["kind(a,floor,100)"], "kind(a,floor,100)")
+
+
+def test_facts_of_the_change_are_marked_as_assumed() -> None:
+    found = absence("interpretation", ["region(a,zero,100)", "region(b,nonzero,90)"], "isolated(b)")
+    assert found.proof is not None
+    assert {node.claim: node.kind for node in found.proof.root.walk()}["surrounds(a,b)"] == "assumed"
+    assert "region a surrounds region b (assumed)" in render(found, "long")
+    whole = absence_as_dict(found)
+    assert (whole["missing"], whole["in_way"], whole["partial"]) == (["surrounds(a,b)"], [], False)
+    assert "\n" not in render(found, "short")

@@ -1,0 +1,87 @@
+"""The plan of a sweep: ranges of seeds, names of scenarios, the order of runs, and what the header tells apart."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from simulator.scenario.settings import Settings
+from simulator.sweep.contents import ScenarioContents, names_of, read_contents, written
+from simulator.sweep.plan import SweepPlan, SweepRun, parse_seeds, written_seeds
+
+ONE = ScenarioContents("one", (("world.txt", "U"), ("goal.lp", "x")))
+TWO = ScenarioContents("two", (("world.txt", "U."), ("goal.lp", "x")))
+PLAN = SweepPlan((ONE, TWO), ((3, 5), (9, 10)), (0.1, 0.0))
+
+
+@given(st.lists(st.integers(0, 2**63 - 1), min_size=1, max_size=6, unique=True))
+def test_seeds_are_read_as_written(seeds: list[int]) -> None:
+    ranges = parse_seeds(",".join(map(str, seeds)))
+    assert [seed for first, end in ranges for seed in range(first, end)] == seeds
+    assert parse_seeds(written_seeds(ranges)) == ranges
+
+
+@pytest.mark.parametrize(
+    "text", ["", ":", "1:", ":2", "1:1", "2:1", "-1:2", "1:2:3", "a", "1,,2", "1.5", "\u0661", "0:5,4", "1" * 30]
+)
+def test_other_seeds_are_refused_with_a_reason(text: str) -> None:
+    with pytest.raises(ValueError, match="seed"):
+        parse_seeds(text)
+
+
+def test_the_greatest_seed_is_one_that_a_run_takes() -> None:
+    assert parse_seeds(f"{2**63 - 1}") == ((2**63 - 1, 2**63),)
+    with pytest.raises(ValueError, match="below"):
+        parse_seeds(f"0:{2**63 + 1}")
+
+
+def test_runs_are_ordered_by_scenario_noise_and_seed() -> None:
+    assert len(PLAN.runs) == PLAN.size == 12
+    assert PLAN.runs[:4] == tuple(SweepRun("one", *rest) for rest in [(0.1, 3), (0.1, 4), (0.1, 9), (0.0, 3)])
+    assert PLAN.runs[6] == SweepRun("two", 0.1, 3)
+
+
+def test_a_task_carries_the_texts_of_its_scenario() -> None:
+    plan = replace(PLAN, settings=Settings(paths="grid", pull=False), rules=(("r.lp", "a."),), seconds=7.0)
+    task = plan.task(SweepRun("two", 0.1, 9))
+    assert task.argument["files"] == [["world.txt", "U."], ["goal.lp", "x"]]
+    assert task.argument["rules"] == [["r.lp", "a."]]
+    assert (task.argument["paths"], task.argument["pull"], task.argument["seed"], task.seconds) == ("grid", False, 9, 7)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"scenarios": (TWO,)},
+        {"scenarios": (ONE._replace(files=(("world.txt", "U"), ("goal.lp", "y"))), TWO)},
+        {"seeds": ((3, 5),)},
+        {"noises": (0.0, 0.1)},
+        {"settings": Settings(max_steps=3)},
+        {"rules": (("r.lp", "a."),)},
+        {"seconds": 1.0},
+    ],
+)
+def test_the_header_tells_sweeps_apart(change: dict[str, object]) -> None:
+    assert replace(PLAN, **change).header != PLAN.header  # type: ignore[arg-type]
+
+
+def test_the_header_does_not_depend_on_what_has_no_meaning_for_a_sweep() -> None:
+    assert replace(PLAN, settings=Settings(seed=5, noise=0.5, kb_files=("x",))).header == PLAN.header
+
+
+def test_names_are_as_short_as_they_can_be() -> None:
+    paths = ["/a/go", "/b/go", "/b/come", "/c/b/go"]
+    assert names_of([Path(path) for path in paths]) == ["a/go", "/b/go", "come", "c/b/go"]
+
+
+def test_contents_survive_their_journey(tmp_path: Path) -> None:
+    (tmp_path / "goal.lp").write_bytes(b"at(utak, x).\r\n% \ttext\n")
+    (tmp_path / "other.txt").write_text("not a file of a scenario")
+    contents = read_contents(tmp_path, "name")
+    assert [name for name, _ in contents.files] == ["goal.lp"]
+    with written(contents.files) as folder:
+        assert (folder / "goal.lp").read_bytes() == (tmp_path / "goal.lp").read_bytes()
+        assert read_contents(folder, "name").digest == contents.digest
+    assert not folder.exists()

@@ -1,0 +1,209 @@
+"""Pictures of the table and of what is believed, as SVG without scripts, fonts or files from elsewhere.
+
+Points are (x, y) in squares, x to the east and y to the north.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from typing import Any, NamedTuple
+
+from geometry.motion.se2 import direction
+from kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
+from kb.world.model import FACT_UNITS_PER_SQUARE
+from simulator.world.world import VERGE_COLOUR, World
+
+PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
+MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention
+LETTER_HUES = {"r": 0, "o": 30, "y": 55, "g": 120, "c": 180, "t": 175, "a": 210, "p": 285, "v": 270, "m": 315}
+BELIEVED_COLOUR, BELIEVED_THING_COLOUR = "#1f6fc4", "#c8322b"  # of floor and verge, and of objects
+
+Point = Sequence[float]
+
+
+class PlacedFrame(NamedTuple):
+    """The place of the robot frame on a picture.
+
+    Attributes
+    ----------
+    x, y : its origin, in squares of the picture's frame.
+    degrees : its rotation, counter-clockwise positive.
+    """
+
+    x: float
+    y: float
+    degrees: float
+
+    def place(self, east: float, north: float) -> tuple[float, float]:
+        """Return a point of the robot frame in the picture's frame, in squares."""
+        cosine, sine = direction(self.degrees)
+        return self.x + east * cosine - north * sine, self.y + east * sine + north * cosine
+
+
+class Canvas:
+    """A picture that is drawn part by part.
+
+    Parameters
+    ----------
+    west, south, east, north : what is shown, in squares.
+    """
+
+    def __init__(self, west: float, south: float, east: float, north: float) -> None:
+        self._west, self._north = west, north
+        width, height = max(east - west, 1.0), max(north - south, 1.0)
+        self._scale = min(PIXELS_PER_SQUARE, MAX_PICTURE_PIXELS / max(width, height))
+        self._size = width * self._scale, height * self._scale
+        self._parts: list[str] = []
+
+    def polygons(self, rings: Iterable[Sequence[Point]], style: str, title: str = "") -> None:
+        """Draw closed rings as one area; what lies in an even number of them is left out."""
+        data = " ".join("M" + " L".join(self._text(x, y) for x, y in ring) + "Z" for ring in rings)
+        tip = f"<title>{escape(title)}</title>" if title else ""
+        if data:
+            self._parts.append(f'<path fill-rule="evenodd" style="{style}" d="{data}">{tip}</path>')
+
+    def lines(self, points: Sequence[Point], style: str) -> None:
+        """Draw a line through points."""
+        data = " ".join(self._text(x, y).replace(" ", ",") for x, y in points)
+        self._parts.append(f'<polyline style="fill:none;{style}" points="{data}"/>')
+
+    def disc(self, x: float, y: float, radius: float, style: str) -> None:
+        """Draw a disc; its radius is in squares."""
+        px, py = self._text(x, y).split(" ")
+        self._parts.append(f'<circle cx="{px}" cy="{py}" r="{radius * self._scale:.1f}" style="{style}"/>')
+
+    def word(self, x: float, y: float, text: str) -> None:
+        """Write a word about a point."""
+        px, py = self._text(x, y).split(" ")
+        style = "font:11px sans-serif;text-anchor:middle;dominant-baseline:middle"
+        self._parts.append(f'<text x="{px}" y="{py}" style="{style}">{escape(text)}</text>')
+
+    def svg(self) -> str:
+        """Return the picture."""
+        width, height = self._size
+        size = f'width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.1f} {height:.1f}"'
+        ground = '<rect width="100%" height="100%" fill="#fff"/>'
+        return f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{ground}{"".join(self._parts)}</svg>'
+
+    def _text(self, x: float, y: float) -> str:
+        """Return a point in pixels, as SVG writes it."""
+        return f"{(x - self._west) * self._scale:.1f} {(self._north - y) * self._scale:.1f}"
+
+
+def table_svg(
+    world: World,
+    polygons: Mapping[str, Any] | None = None,
+    utak: Point | None = None,
+    held: str | None = None,
+    step: Mapping[str, Any] | None = None,
+    track: Sequence[Point] = (),
+) -> str:
+    """Return a picture of the table as it is, and upon it what is sensed and believed.
+
+    Parameters
+    ----------
+    world : World
+        The table at the start.
+    polygons : mapping of str to shapely Polygon, optional
+        The outlines of movable things by name, table frame; those at the start if None.
+    utak : (x, y), optional
+        Where the robot is, table frame; where it wakes if None.
+    held : str, optional
+        The name of the thing in hand.
+    step : mapping, optional
+        The line of an episode, whose retina and belief are drawn; None for the table alone.
+    track : sequence of (x, y)
+        Where the robot has been, table frame.
+    """
+    canvas = Canvas(0, 0, world.width, world.height)
+    now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
+    canvas.polygons(_rings(world.verge), f"fill:{letter_fill(VERGE_COLOUR)}")
+    for thing in world.fixed:
+        canvas.polygons(_rings(thing.polygon), f"fill:{letter_fill(thing.colour)};stroke:#444", f"{thing.name} (fixed)")
+    for thing in world.movable:
+        edge = "stroke:#000;stroke-width:2" if thing.name == held else "stroke:#777"
+        canvas.polygons(_rings(now[thing.name]), f"fill:{letter_fill(thing.colour)};{edge}", thing.name)
+    x, y = world.utak if utak is None else (utak[0], utak[1])
+    if step is not None:
+        _draw_retina(canvas, (x, y), world.heading, step["retina"])
+        _draw_segments(canvas, PlacedFrame(*world.utak, world.heading), step["belief"].get("facts", ()))
+    if len(track) > 1:
+        canvas.lines(track, "stroke:#2a7;stroke-width:1.5;stroke-dasharray:3 3")
+    canvas.disc(x, y, 0.45, "fill:#2a7;stroke:#fff")
+    return canvas.svg()
+
+
+def belief_svg(facts: Sequence[str], place: Point) -> str:
+    """Return a picture of what is believed alone, in the robot frame.
+
+    Parameters
+    ----------
+    facts : sequence of str
+        The facts of the world model.
+    place : (east, north)
+        Where the robot believes it is, squares.
+    """
+    ends = [(east, north) for _, start, end, _ in segments(facts) for east, north in (start, end)] or [(0.0, 0.0)]
+    east, north = ([float(value) for value in values] for values in zip(*ends, (place[0], place[1]), strict=True))
+    canvas = Canvas(min(east) - 1, min(north) - 1, max(east) + 1, max(north) + 1)
+    _draw_segments(canvas, PlacedFrame(0.0, 0.0, 0.0), facts)
+    for name, (w, s, e, n) in rectangles(facts).items():
+        if name not in ("floor", "verge"):
+            canvas.word((w + e) / 2, (s + n) / 2, name)
+    canvas.disc(place[0], place[1], 0.45, "fill:#2a7;stroke:#fff")
+    return canvas.svg()
+
+
+def letter_fill(letter: str) -> str:
+    """Return the colour with which things of a colour letter are drawn; verge is grey."""
+    if letter == VERGE_COLOUR:
+        return "#d4d4d4"
+    hue = LETTER_HUES.get(letter, (ord(letter) - ord("a")) * 360 // 26)
+    return f"hsl({hue},45%,78%)"
+
+
+def segments(facts: Iterable[str]) -> list[tuple[str, tuple[float, float], tuple[float, float], int]]:
+    """Return name, start, end (squares, robot frame) and confidence (percent) of each segment/7 among facts."""
+    found = []
+    for fact in facts:
+        if fact.startswith("segment("):
+            name, _, *numbers = fact[len("segment(") :].rstrip(".)").split(",")
+            e1, n1, e2, n2 = (int(number) / FACT_UNITS_PER_SQUARE for number in numbers[:4])
+            found.append((name, (e1, n1), (e2, n2), int(numbers[4])))
+    return found
+
+
+def rectangles(facts: Iterable[str]) -> dict[str, tuple[float, float, float, float]]:
+    """Return west, south, east and north (squares, robot frame) of each rect/5 among facts, by the name of its node."""
+    found = {}
+    for fact in facts:
+        if fact.startswith("rect("):
+            name, *numbers = fact[len("rect(") :].rstrip(".)").split(",")
+            w, s, e, n = (int(number) / FACT_UNITS_PER_SQUARE for number in numbers)
+            found[name] = (w, s, e, n)
+    return found
+
+
+def _rings(shape: Any) -> list[Sequence[Point]]:
+    """Return all rings of a shapely Polygon or MultiPolygon."""
+    parts = [part for part in getattr(shape, "geoms", [shape]) if not part.is_empty]
+    return [list(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
+
+
+def _draw_retina(canvas: Canvas, utak: Point, heading: float, levels: Sequence[int]) -> None:
+    """Draw the fields of the retina that show something; the darker, the more of them is occupied."""
+    pose = PlacedFrame(math.floor(utak[0]) + 0.5, math.floor(utak[1]) + 0.5, heading)
+    for (east, north, side), level in zip(FIELDS, levels, strict=True):
+        if level:
+            corners = [(east, north), (east + side, north), (east + side, north + side), (east, north + side)]
+            ring = [pose.place(e - 0.5, n - 0.5) for e, n in corners]
+            style = f"fill:#333;fill-opacity:{0.4 * level / MAX_GRAY_LEVEL:.2f};stroke:#999;stroke-width:.3"
+            canvas.polygons([ring], style)
+
+
+def _draw_segments(canvas: Canvas, pose: PlacedFrame, facts: Iterable[str]) -> None:
+    """Draw the boundaries that are believed; the stronger, the surer."""
+    for name, start, end, confidence in segments(facts):
+        colour = BELIEVED_COLOUR if name in ("floor", "verge") else BELIEVED_THING_COLOUR
+        style = f"stroke:{colour};stroke-width:2;stroke-opacity:{0.2 + confidence / 125:.2f}"
+        canvas.lines([pose.place(*start), pose.place(*end)], style)

@@ -1,0 +1,137 @@
+"""The forms of actions: as a dictionary, as a box of numbers, or as one number."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from gymnasium import spaces
+
+from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+
+ACTION_KINDS = ("move", "push", "turn", "grasp", "release")  # by the number of `do`
+HALF_TURN = 180.0  # degrees: the greatest turn in one action; a convention
+STEP_TURNS = (90.0, -90.0, 15.0, -15.0)  # degrees: the turns of discrete actions; a convention
+# The squares of a discrete move in each direction, (east, north), clockwise from north.
+STEP_VECTORS = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
+
+
+class ActionForm(NamedTuple):
+    """A way to write actions.
+
+    Attributes
+    ----------
+    space : the space of one action.
+    command : returns the command that an action stands for.
+    commands : returns the commands of a batch of actions, as `gymnasium.vector.utils.batch_space` lays them out.
+    """
+
+    space: spaces.Space[Any]
+    command: Callable[[Any], Command]
+    commands: Callable[[Any], list[Command]]
+
+
+def action_form(name: str, stride: float) -> ActionForm:
+    """Return a way to write actions by its name.
+
+    Parameters
+    ----------
+    name : str
+        "dict", "box" or "discrete".
+    stride : float
+        The greatest way east and north of a move or a push in one action, squares; not used for "discrete".
+
+    Raises
+    ------
+    ValueError
+        There is no such way, or the stride is not above 0.
+    """
+    if not 0.0 < stride < math.inf:
+        raise ValueError(f"stride must be above 0 and finite, not {stride}")
+    forms = {"dict": _dictionaries, "box": _boxes, "discrete": _numbers}
+    if name not in forms:
+        raise ValueError(f"no such form of actions: {name!r}; one of {', '.join(forms)} is meant")
+    return forms[name](stride)
+
+
+def _dictionaries(stride: float) -> ActionForm:
+    """Return the form of actions as dictionaries: `do`, and the parameters of all commands.
+
+    The way is east and north as parts of the stride, the turn a part of half a turn: Gymnasium asks for numbers from -1
+    to 1.
+    """
+    space = spaces.Dict(
+        {
+            "do": spaces.Discrete(len(ACTION_KINDS)),
+            "way": spaces.Box(-1.0, 1.0, (2,), np.float32),
+            "turn": spaces.Box(-1.0, 1.0, (1,), np.float32),
+            "direction": spaces.Discrete(len(DIRECTIONS)),
+        }
+    )
+
+    def one(do: int, way: Sequence[float], turn: Sequence[float], direction: int) -> Command:
+        return _command(do, stride * way[0], stride * way[1], HALF_TURN * turn[0], direction)
+
+    def command(action: Any) -> Command:
+        way, turn = np.asarray(action["way"]).tolist(), np.asarray(action["turn"]).tolist()
+        return one(int(action["do"]), way, turn, int(action["direction"]))
+
+    def commands(actions: Any) -> list[Command]:
+        columns = [np.asarray(actions[key]).tolist() for key in ("do", "way", "turn", "direction")]
+        return [one(*values) for values in zip(*columns, strict=True)]
+
+    return ActionForm(space, command, commands)
+
+
+def _boxes(stride: float) -> ActionForm:
+    """Return the form of actions as 8 numbers from -1 to 1: five preferences, east, north and a turn.
+
+    The greatest preference says what is done. East and north are parts of the stride, and the compass point nearest to
+    them is the direction of a grasp. The turn is a part of half a turn.
+    """
+    space = spaces.Box(-1.0, 1.0, (len(ACTION_KINDS) + 3,), np.float32)
+
+    def one(numbers: Sequence[float]) -> Command:
+        kinds, (east, north, turn) = numbers[: len(ACTION_KINDS)], numbers[len(ACTION_KINDS) :]
+        do = max(range(len(ACTION_KINDS)), key=lambda kind: kinds[kind])
+        direction = round(math.degrees(math.atan2(east, north)) / 45.0) % len(DIRECTIONS) if do == 3 else 0
+        return _command(do, stride * east, stride * north, HALF_TURN * turn, direction)
+
+    return ActionForm(
+        space,
+        lambda action: one(np.asarray(action).tolist()),
+        lambda actions: [one(numbers) for numbers in np.asarray(actions).tolist()],
+    )
+
+
+def _numbers(stride: float) -> ActionForm:
+    """Return the form of actions as one number: steps and pushes of one square, four turns, grasps, and the release."""
+    known: list[Command] = [
+        *(Move(float(east), float(north)) for east, north in STEP_VECTORS),
+        *(Push(float(east), float(north)) for east, north in STEP_VECTORS),
+        *(Turn(degrees) for degrees in STEP_TURNS),
+        *(Grasp(direction) for direction in DIRECTIONS),
+        Release(),
+    ]
+
+    def command(action: Any) -> Command:
+        if not 0 <= action < len(known):
+            raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action}")
+        return known[int(action)]
+
+    return ActionForm(spaces.Discrete(len(known)), command, lambda actions: [command(action) for action in actions])
+
+
+def _command(do: int, east: float, north: float, degrees: float, direction: int) -> Command:
+    """Return the command of a kind, by its number in ACTION_KINDS."""
+    if do == 0:
+        return Move(east, north)
+    if do == 1:
+        return Push(east, north)
+    if do == 2:
+        return Turn(degrees)
+    if do == 3:
+        return Grasp(DIRECTIONS[direction])
+    if do == 4:
+        return Release()
+    raise ValueError(f"`do` is a number from 0 to {len(ACTION_KINDS) - 1}, not {do}")

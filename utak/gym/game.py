@@ -1,0 +1,113 @@
+"""A table that is played on: commands, rewards, and the end of a play. Knows nothing of Gymnasium's classes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.body import Command
+from simulator.run.embodiment import carry_out
+from simulator.scenario.scenario import Scenario as ScenarioContent
+from simulator.world.physics import Tabletop
+from utak.gym.progress import ExpectationProgress, time_limit
+from utak.scenario import Scenario
+
+REWARDS = ("progress", "sparse", None)
+Scenarios = Scenario | Path | str | Sequence[Scenario | Path | str]
+
+
+class Rules(NamedTuple):
+    """The rules of a game.
+
+    Attributes
+    ----------
+    reward : "progress", "sparse" or None.
+    max_steps : the number of commands after which a play is cut off.
+    noise : how much motions are disturbed, 0 to 1.
+    """
+
+    reward: str | None = "progress"
+    max_steps: int = 200
+    noise: float = 0.0
+
+
+class Outcome(NamedTuple):
+    """The outcome of a command.
+
+    Attributes
+    ----------
+    reward : as the rules say.
+    terminated : whether all that is expected holds.
+    truncated : whether the commands are used up.
+    """
+
+    reward: float
+    terminated: bool
+    truncated: bool
+
+
+class Game:
+    """A table that is played on, one play after the other.
+
+    Parameters
+    ----------
+    scenario : the table and what is expected.
+    rules : the rewards and limits.
+
+    Attributes
+    ----------
+    table : the table.
+    steps : the number of commands in this play.
+    progress : what is achieved.
+
+    Raises
+    ------
+    ValueError : rewards are wanted where nothing is expected, or where failure is expected; or a rule is out of range.
+    """
+
+    def __init__(self, scenario: ScenarioContent, rules: Rules) -> None:
+        self._expectations = scenario.expectations or ()
+        self._world, self._reward = scenario.world, rules.reward
+        if rules.reward not in REWARDS:
+            raise ValueError(f"no such reward: {rules.reward!r}; one of 'progress', 'sparse' and None is meant")
+        if rules.max_steps < 1:
+            raise ValueError(f"max_steps must be 1 or greater, not {rules.max_steps}")
+        if rules.reward is not None and not self._expectations:
+            raise ValueError("the scenario has no expect.lp, which says what is rewarded; or give reward=None")
+        if rules.reward is not None and any(fact.name == "fails" for fact in self._expectations):
+            raise ValueError("the scenario expects failure, which no command achieves; give reward=None to play on it")
+        limit = time_limit(self._expectations) if rules.reward is not None else None
+        self._most = rules.max_steps if limit is None else min(rules.max_steps, max(limit, 1))
+        self.table = Tabletop(scenario.world, rules.noise)
+        self.begin(0)
+
+    def begin(self, seed: int) -> None:
+        """Put everything back to the start, and begin randomness anew with a seed."""
+        self.table.restart(seed)
+        self.steps = 0
+        self.progress = ExpectationProgress(self._expectations if self._reward is not None else (), self._world)
+        self._see()
+
+    def play(self, command: Command) -> Outcome:
+        """Execute a command and return what comes of it."""
+        before = self.progress.share
+        carry_out(self.table, command)
+        self.steps += 1
+        if self._reward is None:
+            return Outcome(0.0, False, self.steps >= self._most)
+        self._see()
+        achieved = self.progress.achieved
+        reward = self.progress.share - before if self._reward == "progress" else float(achieved)
+        return Outcome(reward, achieved, not achieved and self.steps >= self._most)
+
+    def _see(self) -> None:
+        """Let the progress take in the present state."""
+        self.progress.see(self.steps, self.table.utak, self.table.polygons)
+
+
+def games(scenarios: Scenarios, rules: Rules) -> list[Game]:
+    """Return a game for each scenario, read from its folder where a path is given."""
+    several = [scenarios] if isinstance(scenarios, Scenario | Path | str) else list(scenarios)
+    if not several:
+        raise ValueError("at least one scenario is needed")
+    contents = [one if isinstance(one, Scenario) else Scenario.read(one) for one in several]
+    return [Game(one.content, rules) for one in contents]

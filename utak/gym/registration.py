@@ -1,0 +1,24 @@
+"""Registration with Gymnasium: which environments there are, and where their classes lie."""
+
+ENVIRONMENT_ID = "utak/Tabletop-v0"
+WANTED = "the environment needs Gymnasium: pip install 'utak[gym]'"
+
+
+def register_environments() -> None:
+    """Make `utak/Tabletop-v0` known to Gymnasium; nothing happens when it is known already.
+
+    Raises
+    ------
+    ImportError
+        Gymnasium is not installed.
+    """
+    try:
+        from gymnasium.envs.registration import register, registry
+    except ImportError as missing:
+        raise ImportError(WANTED) from missing
+    if ENVIRONMENT_ID not in registry:
+        register(
+            ENVIRONMENT_ID,
+            entry_point="utak.gym.environment:TabletopEnv",
+            vector_entry_point="utak.gym.vector:TabletopVectorEnv",
+        )

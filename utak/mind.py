@@ -1,0 +1,215 @@
+"""Another mind in the same body: it gets impressions, gives commands, and is judged like the robot's own mind."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
+from kb.task.task import Task
+from planner.decision import Decision
+from simulator.run.session import RobotProtocol
+from simulator.scenario.settings import Settings
+
+VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
+MIND_COMMANDS = (Move, Push, Turn, Grasp, Release)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The verdict of a mind at the end of a task.
+
+    Attributes
+    ----------
+    kind : str
+        "done" when every goal holds, "impossible" when no plan exists, "possible_if" when one exists under a condition
+        that cannot be settled, "limit" when the mind gives up.
+    reason : str
+        Why, in words.
+    """
+
+    kind: str
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError unless the kind is one of the four."""
+        if self.kind not in VERDICT_KINDS:
+            raise ValueError(f"no such verdict: {self.kind!r}; one of {', '.join(VERDICT_KINDS)} is meant")
+
+
+class Mind:
+    """A mind for Utak's body; derive from it and give `step` a body of its own.
+
+    It sees what the robot sees, and nothing else: the task once, then one impression after each command. Use it with
+    `utak.Run(scenario, mind=Mine)`.
+
+    Examples
+    --------
+    >>> class Northward(Mind):
+    ...     def step(self, impression):
+    ...         ahead = impression.touch[0]  # the colour of the square to the north
+    ...         return Move(0, 1) if ahead is None else Verdict("limit", f"{ahead} is ahead")
+    """
+
+    def begin(self, task: Task) -> None:
+        """Take in the task before the first impression; nothing by default.
+
+        Parameters
+        ----------
+        task : Task
+            `goals`, `parameters` and `claims`, as start.lp and goal.lp state them.
+        """
+
+    def step(self, impression: Impression) -> Command | Verdict:
+        """Return the next command, or the verdict that ends the run.
+
+        Parameters
+        ----------
+        impression : Impression
+            What is sensed now: `retina`, 160 gray levels, and `touch`, the colours of the 8 adjacent squares clockwise
+            from north, in the robot frame. The first one is that of waking.
+
+        Returns
+        -------
+        Move, Push, Turn, Grasp, Release or Verdict
+            Lengths in squares, angles in degrees, counter-clockwise positive, directions in the robot frame.
+        """
+        raise TypeError(f"{type(self).__name__} has no method step(impression)")
+
+    def facts(self) -> Iterable[str]:
+        """Return what the mind believes now, as facts with full stops; none by default.
+
+        They are recorded, so that questions can be asked about them (docs/reference/vocabulary.md has the predicates).
+        """
+        return ()
+
+
+@dataclass(frozen=True)
+class MindReport:
+    """The report of a mind after an impression, as sessions take it.
+
+    Attributes
+    ----------
+    command : the command before the impression; None on waking.
+    impression : what the body returned.
+    belief : what the mind believes, as JSON values.
+    why : the reason of the command.
+    """
+
+    command: Command | None
+    impression: Impression
+    belief: dict[str, Any]
+    why: str
+
+
+@dataclass(frozen=True)
+class MindVerdict:
+    """The verdict of a mind, as sessions take it.
+
+    Attributes
+    ----------
+    believed : whether the mind believes that the task is done.
+    verdict : the kind of the verdict.
+    reason : why, in words.
+    """
+
+    believed: bool
+    verdict: str
+    reason: str
+
+
+class MindRobot:
+    """A robot whose mind is a `Mind`; satisfies the protocol of `simulator.run.session`.
+
+    Parameters
+    ----------
+    body : what senses and acts.
+    task : what the mind shall do.
+    settings : the options of the run; its `max_steps` limits the commands.
+    mind : the mind, which has not begun.
+    """
+
+    def __init__(self, body: Body, task: Task, settings: Settings, mind: Mind) -> None:
+        self.mind = mind
+        self._body, self._task, self._most = body, task, settings.max_steps
+        self._last: Impression | None = None  # the newest impression
+        self._next: Command | Verdict = Verdict("limit", "the robot has not been woken yet")
+        self._steps = 0
+        mind.begin(task)
+
+    def wake(self) -> MindReport:
+        """Take the first impression and return the report on it."""
+        return self._report(None, self._body.wake())
+
+    def step(self) -> MindReport:
+        """Give the command that the mind has chosen, and return the report on the impression after it."""
+        if isinstance(self._next, Verdict):
+            raise ValueError("the run is finished")
+        command, self._steps = self._next, self._steps + 1
+        return self._report(command, self._body.act(command))
+
+    @property
+    def finished(self) -> bool:
+        """Whether the mind has given a verdict, or the commands are used up."""
+        return isinstance(self._next, Verdict)
+
+    @property
+    def verdict(self) -> MindVerdict:
+        """The verdict at the end."""
+        found = self._next if isinstance(self._next, Verdict) else Verdict("limit", "the run was not finished")
+        return MindVerdict(found.kind == "done", found.kind, found.reason)
+
+    def redirect(self, task: Task, settings: Settings) -> None:
+        """Go on with another task or other options; a mind that had ended is asked again.
+
+        The mind begins with the task when it is another one. Its answer to the newest impression counts from now on.
+        """
+        before, self._task, self._most = self._task, task, settings.max_steps
+        if task != before:
+            self.mind.begin(task)
+        if self._last is not None and (task != before or self.finished):
+            self._next = self._asked(self._last)
+
+    @property
+    def decision(self) -> Decision:
+        """The next command with its reason; without a command at the end."""
+        if isinstance(self._next, Verdict):
+            return Decision(None, self._next.reason)
+        return Decision(self._next, f"{type(self.mind).__name__} chose it")
+
+    def _asked(self, impression: Impression) -> Command | Verdict:
+        """Return what the mind answers to an impression: a command, or the verdict; also when commands are used up."""
+        chosen = self.mind.step(impression)
+        if not isinstance(chosen, (*MIND_COMMANDS, Verdict)):
+            kinds = ", ".join(kind.__name__ for kind in (*MIND_COMMANDS, Verdict))
+            raise TypeError(f"{type(self.mind).__name__}.step must return one of {kinds}, not {chosen!r}")
+        if not isinstance(chosen, Verdict) and self._steps >= self._most:
+            chosen = Verdict("limit", f"not done after {self._steps} commands")
+        return chosen
+
+    def _report(self, command: Command | None, impression: Impression) -> MindReport:
+        """Ask the mind for the next command, and return the report."""
+        self._next, self._last = self._asked(impression), impression
+        name = type(self.mind).__name__
+        facts = [str(fact) for fact in self.mind.facts()]
+        return MindReport(command, impression, {"facts": facts}, f"{name} {'wakes' if command is None else 'chose it'}")
+
+
+def redirect_mind(robot: RobotProtocol, task: Task, settings: Settings) -> None:
+    """Let a robot with another mind go on with another task or other options."""
+    assert isinstance(robot, MindRobot)
+    robot.redirect(task, settings)
+
+
+def mind_maker(mind: Callable[[], Mind]) -> Callable[[Body, Task, Settings], MindRobot]:
+    """Return what makes a robot with a new mind for a body, a task and the options of a run.
+
+    mind : a class derived from `Mind`, or a function without arguments that returns a new mind.
+    """
+
+    def make(body: Body, task: Task, settings: Settings) -> MindRobot:
+        made = mind()
+        if not isinstance(made, Mind):
+            raise TypeError(f"mind must make a utak.Mind, not {made!r}")
+        return MindRobot(body, task, settings, made)
+
+    return make

@@ -1,0 +1,125 @@
+"""The plugin of pytest for Utak: scenario folders are collected as tests (docs/testing.md).
+
+A folder with an expect.lp and another file of a scenario is one test. It is run by a process of its own, which is
+started with the first scenario that is run. So this module is all that pytest loads, packages of the user's may bear
+the names of ours, and nothing that pytest does to this process, such as turning warnings into errors, changes a run.
+"""
+
+import importlib.util
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from utak_command import PROJECT_FOLDER
+
+EXPECTATION_FILE = "expect.lp"  # the file that stands for a scenario's test
+# The other files of a scenario: at least one lies beside expect.lp. Missing ones are reported by the test.
+OTHER_FILES = ("world.lp", "world.txt", "start.lp", "goal.lp")
+MARKER = "utak"  # every scenario's test bears it
+# The options by their fields in the settings of a run: name on the command line, type and help.
+OPTIONS = {
+    "seed": ("--utak-seed", int, "N", "seed of all randomness in scenarios"),
+    "noise": ("--utak-noise", float, "S", "how much motions are disturbed in scenarios, 0 to 1"),
+    "max_steps": ("--utak-max-steps", int, "N", "give up a scenario after so many commands"),
+}
+HANDLE_FILE = Path(PROJECT_FOLDER) / "simulator" / "testing" / "handle.py"  # loaded by its place: see above
+# Where pytest's configuration keeps the module of that file, and the handle of the process.
+HANDLE_KEY = pytest.StashKey[tuple[ModuleType, Any]]()
+GREATEST = {"seed": 2**63 - 1, "noise": 1.0, "max_steps": 1_000_000}  # values of the options, as for `utak run`
+
+
+class ScenarioFailedError(Exception):
+    """A scenario did not end as expected, or could not be run; the message is the report."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the options and the settings of ini files."""
+    group = parser.getgroup("utak", "scenarios of Utak")
+    for name, (option, kind, value, what) in OPTIONS.items():
+        group.addoption(option, dest=f"utak_{name}", type=kind, metavar=value, default=None, help=what)
+    group.addoption("--no-utak", dest="utak_off", action="store_true", help="collect no scenarios")
+    parser.addini("utak_scenarios", "whether scenario folders are collected as tests", type="bool", default=True)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the marker and check the options."""
+    config.addinivalue_line("markers", f"{MARKER}: a scenario folder of Utak, run and compared with its expect.lp")
+    for name, greatest in GREATEST.items():
+        value = config.getoption(f"utak_{name}")
+        if value is not None and not 0 <= value <= greatest:
+            raise pytest.UsageError(f"{OPTIONS[name][0]} must be from 0 to {greatest:g}, not {value:g}")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
+    """Return the collector of an expect.lp beside other files of a scenario; None for every other file."""
+    if file_path.name != EXPECTATION_FILE or not any((file_path.parent / name).exists() for name in OTHER_FILES):
+        return None
+    if parent.config.getoption("utak_off") or not parent.config.getini("utak_scenarios"):
+        return None
+    file: ScenarioFile = ScenarioFile.from_parent(parent, path=file_path)
+    return file
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """End the process that runs scenarios."""
+    kept = config.stash.get(HANDLE_KEY, None)
+    if kept is not None:
+        kept[1].close()
+
+
+def _handle(config: pytest.Config, start: str) -> tuple[ModuleType, Any]:
+    """Return the module of the handle and the handle of the process that runs scenarios, made once a session."""
+    if HANDLE_KEY not in config.stash:
+        spec = importlib.util.spec_from_file_location("utak_pytest_handle", HANDLE_FILE)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        config.stash[HANDLE_KEY] = module, module.WorkerHandle(start)
+    return config.stash[HANDLE_KEY]
+
+
+class ScenarioFile(pytest.File):
+    """The expect.lp of a scenario: it stands for one test."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """Yield the test of this scenario."""
+        yield ScenarioItem.from_parent(self, name=self.path.parent.name)
+
+
+class ScenarioItem(pytest.Item):
+    """One scenario, run and compared with its expect.lp."""
+
+    def __init__(self, **given: Any) -> None:
+        """Make the test and mark it as a scenario's."""
+        super().__init__(**given)
+        self.add_marker(MARKER)
+
+    def runtest(self) -> None:
+        """Run the robot in the scenario; raise ScenarioFailedError when it does not end as expected."""
+        options = {name: self.config.getoption(f"utak_{name}") for name in OPTIONS}
+        given = {name: value for name, value in options.items() if value is not None}
+        start = self.config.invocation_params.dir
+        folder = str(self.path.parent.relative_to(start) if self.path.is_relative_to(start) else self.path.parent)
+        module, handle = _handle(self.config, str(start))
+        try:
+            record = handle.ask({"folder": folder, "root": folder, "given": given})
+        except module.WorkerEndedError as ended:
+            raise ScenarioFailedError(f"{folder}: this is a bug of ours: {ended}") from None
+        if record["points"] is not None:
+            self.user_properties += [(f"points_{name}", value) for name, value in record["points"].items()]
+        if record["exit_code"]:
+            raise ScenarioFailedError(record["report"])
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Return the report of a scenario's failure, without a traceback."""
+        if isinstance(excinfo.value, ScenarioFailedError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int | None, str]:
+        """Return the file of the test, no line, and its name."""
+        return self.path, None, f"scenario {self.name}"
