@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 from replay_episodes import hostile, same
-from simulator.replay.events import episode_events
 
 from benchmarks.harness.browser import CHROMIUM, Browser
 from simulator.episode.episode import Episode
+from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import NO_HTML, kept_line, slim
 from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE
 from simulator.replay.page import replay_page
