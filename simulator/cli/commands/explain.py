@@ -112,9 +112,12 @@ def _fix(options: argparse.Namespace) -> int:
     from simulator.explaining.fixing.recorded import recorded_run
     from simulator.explaining.fixing.report import is_repeated, report_text, report_values
     from simulator.explaining.fixing.search import find_fixes
+    from simulator.explaining.fixing.writing import require_empty_folder
 
     rules = [str(Path(path).absolute()) for path in options.kb]
     run = recorded_run(options.episode, read_episode(options.episode), rules)
+    if options.write is not None:
+        require_empty_folder(options.write)
     budget = Budget(DEFAULT_RUNS if options.runs is None else options.runs, options.seconds)
     report = find_fixes(run, budget, _progress_printer(run, budget))
     if options.json:

@@ -1,4 +1,4 @@
-"""Bounds by geometry alone: proofs that no run can succeed, and the widths from which on a gap is worth a run.
+"""Proofs by geometry alone: that no run can succeed, and that a thing cannot pass a gap.
 
 The robot, and all that can be moved beside the thing in question, are left out: what is impossible without them is
 impossible with them.

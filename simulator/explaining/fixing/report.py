@@ -39,7 +39,7 @@ def report_values(report: FixReport) -> dict[str, Any]:
     before = report.before
     return {
         "before": None if before is None else before.line["result"],
-        "repeated": is_repeated(report),
+        "repeated": None if before is None else is_repeated(report),
         "needless": report.is_needless,
         "fixes": [
             {

@@ -106,8 +106,10 @@ def test_wrong_usage(options: list[str], closed: Path, capsys: pytest.CaptureFix
     assert capsys.readouterr().out == ""
 
 
-def test_what_cannot_be_opened_or_read(tmp_path: Path) -> None:
+def test_what_cannot_be_opened_or_read(closed: Path, tmp_path: Path) -> None:
     assert main(["explain", str(tmp_path / "none"), "--fix"]) == 66
+    assert main(["explain", str(closed), "--fix", "--write", str(closed.parent)]) == 66
+    assert main(["explain", str(closed), "--fix", "--write", str(closed)]) == 66
     (tmp_path / "bad").write_text("{}\n")
     assert main(["explain", str(tmp_path / "bad"), "--fix"]) == 65
 

@@ -75,8 +75,8 @@ def test_a_door_in_a_wall_askew_is_measured_and_widened(degrees: float, steps: i
 def test_only_the_verge_gives_way() -> None:
     post = Thing("p", "p", shapely.box(11, 6, 13, 9))
     world = World(24, 14, rooms(4, 9).verge, (), (post,), (4.5, 4.5), 0)
-    (gap,) = passages_of(world)
-    assert gap.width == 2
+    gap, between_walls = passages_of(world)
+    assert (gap.width, between_walls.width) == (2, 5)
     north = GapSide.LEFT if gap.along[1] > 0 else GapSide.RIGHT
     south = GapSide.RIGHT if north == GapSide.LEFT else GapSide.LEFT
     assert widened(world, gap, north, 1.0) is None
