@@ -1,7 +1,7 @@
 """Which cells of which impressions show a square, as believed at some step."""
 
 from collections.abc import Iterable, Sequence
-from functools import cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -37,7 +37,7 @@ class Sighting(NamedTuple):
         return f"cell {self.cell} of impression {self.impression} ({size}) shows level {self.level} of 7"
 
 
-@cache
+@lru_cache(maxsize=128)
 def cells_by_offset(angle: int) -> Ints:
     """Return the number of the cell over each offset from the robot's own square: (51, 51) int32, -1 for none.
 

@@ -14,11 +14,13 @@ from kb.body import DIRECTIONS
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record, RecordedStep
 from kb.evidence.sightings import most_telling, sightings
+from kb.language.vocabulary import MAX_TABLE_SIDE
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 
 SHOWN_CELLS = 4  # cells that one reason names at most, the most telling ones; a convention
 SAMPLED_SQUARES = 12  # squares of an outline or a line at which cells are looked up, at most; a convention
 UNITS_PER_SQUARE = 100.0  # facts count hundredths of squares
+MAX_OUTLINE_SIDE = 2 * MAX_TABLE_SIDE  # squares: a map may reach as far beyond the table as it is long; a convention
 OUTLINE_ROUNDING = 0.02  # squares: an outline in facts, in a turned frame, may reach over its squares by so much
 
 
@@ -121,7 +123,7 @@ def line_squares(step: RecordedStep, start: XY, end: XY, aside: float) -> list[S
     if length == 0:
         return [(math.floor(x0), math.floor(y0))]
     left = -(y1 - y0) / length * aside, (x1 - x0) / length * aside
-    count = max(1, math.ceil(length))
+    count = max(1, math.ceil(min(length, MAX_OUTLINE_SIDE)))
     parts = [(number + 0.5) / count for number in range(count)]
     points = [(x0 + part * (x1 - x0) + left[0], y0 + part * (y1 - y0) + left[1]) for part in parts]
     return list(dict.fromkeys((math.floor(x), math.floor(y)) for x, y in points))
@@ -157,6 +159,8 @@ def _node_squares(facts: tuple[str, ...], angle: int, origin: XY, node: str) -> 
         return ()
     west, south = math.floor(shape.bounds[0] + 1e-6), math.floor(shape.bounds[1] + 1e-6)
     east, north = math.ceil(shape.bounds[2] - 1e-6), math.ceil(shape.bounds[3] - 1e-6)
+    if max(east - west, north - south) > MAX_OUTLINE_SIDE:
+        raise ValueError(f"the outline of {node} is longer than {MAX_OUTLINE_SIDE} squares")
     moved = shapely.affinity.translate(shape, -west, -south)
     rows, columns = np.nonzero(covered_squares(moved, max(1, east - west), max(1, north - south)))
     return tuple((west + int(column), south + int(row)) for row, column in zip(rows, columns, strict=True))

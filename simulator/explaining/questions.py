@@ -1,7 +1,9 @@
 """Questions about a run, answered with trees of reasons from what the robot recorded: never from the truth."""
 
+import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from kb.evidence.absences import AbsenceExplainer
 from kb.evidence.atoms import atom_parts
@@ -70,7 +72,7 @@ class Questions:
         at = self._checked(step)
         wanted = _one_fact(fact)
         name, _ = atom_parts(wanted)
-        try:
+        with _refusing_damage(fact):
             if name == "verdict":
                 return self._why_verdict(wanted)
             goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
@@ -80,8 +82,6 @@ class Questions:
             if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
                 return self._why_derived(plain, at)
             return self.beliefs.explain(self._instance(wanted, at), at)
-        except (MissingRecordError, ExplanationError) as error:
-            raise _problem(fact, str(error)) from None
 
     def why_not(self, fact: str, step: int | None = None) -> Reason:
         """Return why a fact is not believed: the smallest set of facts that is missing or in the way.
@@ -98,15 +98,13 @@ class Questions:
         """
         at = self._checked(step)
         wanted = _one_fact(fact)
-        try:
+        with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
                 return self._why_not_verdict(wanted)
             believed = self._instance(wanted, at)
             if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
-        except (MissingRecordError, ExplanationError) as error:
-            raise _problem(fact, str(error)) from None
 
     def _why_not_verdict(self, wanted: str) -> Reason:
         """Return why the verdict is another one, or why there is none."""
@@ -121,17 +119,13 @@ class Questions:
 
     def why_cell(self, cell: int, step: int | None = None) -> Reason:
         """Return what a cell of the impression of a step (None for the last one) is laid to; cells count from 0."""
-        try:
+        with _refusing_damage(f"cell {cell}"):
             return explain_cell(self.beliefs, cell, self._checked(step))
-        except (MissingRecordError, ExplanationError) as error:
-            raise _problem(f"cell {cell}", str(error)) from None
 
     def why_step(self, step: int | None = None) -> Reason:
         """Return the reason of the command of a step (None for the last one): goals, facts, and what was not chosen."""
-        try:
+        with _refusing_damage("step"):
             return explain_command(self.beliefs, self._task, self._checked(step))
-        except (MissingRecordError, ExplanationError) as error:
-            raise _problem("step", str(error)) from None
 
     def _why_derived(self, atom: str, step: int) -> Reason:
         """Return the reason of an atom of a predicate that users' rules define, or of `object(N)`."""
@@ -170,6 +164,26 @@ class Questions:
 def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Questions:
     """Return the questions about an episode that was read; rule_files : the files with users' rules of its run."""
     return Questions(episode.header, episode.steps, episode.result, rule_files)
+
+
+@contextmanager
+def _refusing_damage(question: str) -> Iterator[None]:
+    """Turn what an episode cannot tell into BadInputError, in a `with` block.
+
+    An episode of somebody else's may have values that are each well formed and do not fit together: a decision that is
+    none, a region that is not there, more places than impressions. Explaining then ends in an exception of Python.
+
+    question : what was asked, for the message.
+    """
+    try:
+        yield
+    except (MissingRecordError, ExplanationError) as error:
+        raise _problem(question, str(error)) from None
+    except (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, AssertionError, RuntimeError) as error:
+        if os.environ.get("UTAK_DEBUG"):
+            raise
+        what = f"the episode's record does not fit together, so this cannot be explained ({type(error).__name__})"
+        raise _problem(question, what) from None
 
 
 def _fits(wanted: str, fact: str) -> bool:
