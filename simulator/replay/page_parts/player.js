@@ -28,6 +28,7 @@ function startPlayer(episode) {
     panel("changes-panel", () => changesPanel(at));
     panel("reasons-panel", () => reasonsPanel(at));
     list();
+    byId("status").textContent = "";
     byId("slider").value = state.step;
     byId("slider").setAttribute("aria-valuetext", `step ${state.step} of ${last}, ${actionInWords(line.action)}`);
     byId("step").textContent = `${state.step} / ${last}`;

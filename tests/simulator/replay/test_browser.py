@@ -186,7 +186,7 @@ def test_a_field_of_the_retina_is_explained(browser: Browser, page: Path, carrie
 
 
 def test_speed(browser: Browser, page: Path) -> None:
-    """The time of the processor is meant, and the best of three: benchmarks/replay.py measures long episodes."""
+    """The time of the processor is meant, the best of three; benchmarks/episodes/replay.py measures long episodes."""
     first, seeks = [], []
     for _ in range(3):
         browser.open(page)
