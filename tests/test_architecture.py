@@ -105,6 +105,23 @@ def test_the_law_fires_when_it_is_broken(law: Law, tmp_path: Path) -> None:
     assert named in "\n".join(found)
 
 
+@pytest.mark.parametrize(
+    ("name", "program"),
+    [
+        ("utak/run.py", "import gymnasium\n"),
+        ("simulator/play.py", "def f():\n    from gymnasium import Env\n"),
+        ("simulator/face.py", "def f():\n    import utak\n"),
+        ("utak/gym/__init__.py", "def f():\n    pass\n"),
+    ],
+)
+def test_the_face_for_python_keeps_to_itself(name: str, program: str, tmp_path: Path) -> None:
+    (tmp_path / name).parent.mkdir(parents=True)
+    (tmp_path / name).write_text(program)
+    found = [*laws.others_used(tmp_path), *laws.package_imports(tmp_path), *laws.code_in_fronts(tmp_path)]
+    assert len(found) == 1
+    assert found[0].startswith(name)
+
+
 def planted_tests(root: Path, program: str) -> list[str]:
     """Return what patches globals in a small house whose only test is a program."""
     for name in ("kb/a.py", "kb/task/room.py", "benchmarks/run.py", "utak_command.py", "tests/test_a.py"):

@@ -26,7 +26,7 @@ BAIT = (
     "json", "clingo", "resource", "numpy", "shapely", "numba", "networkx", "queue", "threading", "ctypes", "select",
     "subprocess", "runpy", "sitecustomize", "usercustomize", "readline", "cffi", "llvmlite", "difflib", "fcntl",
 )  # fmt: skip
-PACKAGES = ("kb", "planner", "geometry", "simulator")
+PACKAGES = ("kb", "planner", "geometry", "simulator", "utak")
 WORLD = "bbbbbbbb\nb......b\nb.gg...b\nb.gg.U.b\nb......b\nbbbbbbbb\n"
 FILES = {
     "world.txt": WORLD,

@@ -26,8 +26,6 @@ from importlib import import_module
 
 TYPE_CHECKING = False  # not imported from typing, which takes most of the time of `import utak`
 if TYPE_CHECKING:
-    from typing import Any
-
     from kb.body import Grasp, Impression, Move, Push, Release, Turn
     from kb.language.diagnostics import BadInputError, CannotOpenError
     from kb.reasoning.query import QueryLimitError
@@ -76,19 +74,23 @@ _MODULES = {
 }
 
 
-def __getattr__(name: str) -> "Any":
-    """Return a public name; its module is imported when the name is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module 'utak' has no attribute {name!r}")
-    try:
-        value = getattr(import_module(_MODULES[name]), name)
-    except ImportError as error:
-        foreign = _foreign_package()
-        if foreign:
-            raise ImportError(f"utak needs its own package of this name, and Python finds {foreign} first") from error
-        raise
-    globals()[name] = value
-    return value
+if not TYPE_CHECKING:  # so that type checkers know the public names and no others
+
+    def __getattr__(name: str) -> object:
+        """Return a public name; its module is imported when the name is first used."""
+        if name not in _MODULES:
+            raise AttributeError(f"module 'utak' has no attribute {name!r}")
+        try:
+            value = getattr(import_module(_MODULES[name]), name)
+        except ImportError as error:
+            foreign = _foreign_package()
+            if foreign:
+                raise ImportError(
+                    f"utak needs its own package of this name, and Python finds {foreign} first"
+                ) from error
+            raise
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

@@ -110,10 +110,12 @@ class World:
         ------
         BadInputError
             The question has an error; the message names the place.
+        CannotOpenError
+            A file with users' rules cannot be read any more.
         QueryLimitError
             It takes too much time or memory.
         """
-        changed = tuple(Path(file).stat().st_mtime_ns for file in self.rules)
+        changed = tuple(Path(file).stat().st_mtime_ns if Path(file).exists() else 0 for file in self.rules)
         found = _engine(self.rules, changed).ask(self.facts, question)
         return Answer(found.kind, found.variables, found.rows, found.more)
 

@@ -139,13 +139,15 @@ class Episode(Sequence[Step]):
         self.record, self.rules = record, rules
 
     @staticmethod
-    def read(path: Path | str) -> "Episode":
+    def read(path: Path | str, rules: Sequence[Path | str] = ()) -> "Episode":
         """Return an episode that was saved, or written by `utak run --log`, complete or cut short.
 
         Parameters
         ----------
         path : Path or str
             The file.
+        rules : sequence of Path or str
+            The files with users' rules that took part, for questions and reasons; an episode does not hold them.
 
         Returns
         -------
@@ -159,7 +161,7 @@ class Episode(Sequence[Step]):
         BadInputError
             The file is no episode, or it is damaged.
         """
-        return Episode(read_episode(path))
+        return Episode(read_episode(path), tuple(map(str, rules)))
 
     def save(self, path: Path | str, force: bool = False) -> None:
         """Write the episode to a file as JSON lines.

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from kb.evidence.reason import Depth, Reason
@@ -62,7 +63,7 @@ class ReasonTree:
 
 def questions(record: EpisodeRecord, rules: tuple[str, ...]) -> Questions:
     """Return what answers questions about a run; rules : the files with users' rules that took part."""
-    return questions_of_episode(record, rules)
+    return questions_of_episode(record, [str(Path(file).absolute()) for file in rules])
 
 
 def _unfolding(reason: Reason, levels: int) -> str:

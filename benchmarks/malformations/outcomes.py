@@ -1,4 +1,4 @@
-"""The outcomes of reading something: accepted, refused with a place, or a fault."""
+"""Outcomes of reading something: accepted, refused with a place, or a fault."""
 
 import re
 import signal

@@ -15,11 +15,11 @@ from pathlib import Path
 
 from kb.reasoning.query import QueryEngine
 
-PROMPT_CHECKOUT = Path(__file__).resolve().parents[2]
+CHECKOUT_FOLDER = Path(__file__).resolve().parents[2]
 MAX_READY_SECONDS = 0.5  # what is wanted of the prompt
 MAX_QUERY_MILLISECONDS = 20.0  # what is wanted of a query
 MAX_WAIT_SECONDS = 20  # seconds after which a prompt that does not come is an error
-STARTS = 7  # conversations begun; the median is told
+CONVERSATIONS_BEGUN = 7  # conversations begun; the median is told
 QUERIES = (
     "object(X), shape(X, square, C), C > 97",
     "offset(o7, E, N)",
@@ -35,7 +35,7 @@ def seconds_to_prompt(story: str, **environment: str) -> tuple[float, float]:
     """Return the wall-clock and the processor seconds that `utak repl STORY` takes at a terminal to its prompt."""
     master, slave = pty.openpty()
     begin, seen = time.monotonic(), b""
-    command = [sys.executable, str(PROMPT_CHECKOUT / "utak_command.py"), "", "simulator.cli", "repl", story]
+    command = [sys.executable, str(CHECKOUT_FOLDER / "utak_command.py"), "", "simulator.cli", "repl", story]
     with subprocess.Popen(command, stdin=slave, stdout=slave, stderr=slave, env=os.environ | environment) as process:
         os.close(slave)
         try:
@@ -84,13 +84,15 @@ def query_milliseconds(repeats: int = 15) -> dict[str, tuple[float, float]]:
 
 def main() -> int:
     """Print both; exit 1 when the medians are beyond what is wanted."""
-    story = sys.argv[1] if len(sys.argv) > 1 else str(PROMPT_CHECKOUT / "examples" / "go_to_square_unseen")
+    story = sys.argv[1] if len(sys.argv) > 1 else str(CHECKOUT_FOLDER / "examples" / "go_to_square_unseen")
     ready = {}
     for name, environment in (("with the extra", {}), ("with readline alone", {"UTAK_PLAIN_PROMPT": "1"})):
-        wall, processor = zip(*(seconds_to_prompt(story, **environment) for _ in range(STARTS)), strict=True)
+        wall, processor = zip(
+            *(seconds_to_prompt(story, **environment) for _ in range(CONVERSATIONS_BEGUN)), strict=True
+        )
         ready[name] = statistics.median(wall)
         used = statistics.median(processor)
-        print(f"prompt {name}: {ready[name]:.2f} s, {used:.2f} s of processor time (medians of {STARTS})")
+        print(f"prompt {name}: {ready[name]:.2f} s, {used:.2f} s of processor time (medians of {CONVERSATIONS_BEGUN})")
     times = query_milliseconds()
     for query, (median, worst) in times.items():
         print(f"{median:6.1f} ms, at most {worst:.1f} ms: {query}")

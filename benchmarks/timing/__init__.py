@@ -1,4 +1,4 @@
-"""Timing: action cycles, the way to the first command, and the environment for learners.
+"""Timing: action cycles, the way to the first command, explanations, and the environment for learners.
 
 Modules, in reading order:
 
@@ -7,5 +7,6 @@ sixrooms        the time from the task to the first command, cold
 sixrooms_child  one cold run of sixrooms
 screens_in_a_run  the screens that a run makes, and what changing them instead would save
 environment     the speed of the Gymnasium environment and of the bare table
+explaining      the time to explain recorded decisions
 paired          the processor time of two checkouts, by turns
 """

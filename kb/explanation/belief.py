@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from kb.explanation.programs import ExplanationError, RuleUnit, canonical, decision_program, words_of_users
+from kb.explanation.programs import ExplanationError, RuleUnit, canonical, decision_program, texts_of, words_of_users
 from kb.explanation.support import Support, supports_of
 from kb.explanation.tree import ProofTrees
 from kb.explanation.values import Proof, RuleInstance, RuleText
@@ -41,15 +41,21 @@ def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str
     BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
     """
     (wanted,) = canonical([atom])
-    trees, holding = _trees(canonical(facts), tuple(map(str, rule_files)))
+    files = tuple(map(str, rule_files))
+    trees, holding = _trees(canonical(facts), files, texts_of(files))
     if wanted not in holding:
         raise ExplanationError(f"{wanted} does not certainly hold by what is believed")
     return Proof(BELIEF, trees.node(wanted))
 
 
 @lru_cache(maxsize=16)
-def _trees(facts: tuple[str, ...], rule_files: tuple[str, ...]) -> tuple[ProofTrees, frozenset[str]]:
-    """Return the proofs of all atoms that certainly hold, and these atoms; the last ones are kept."""
+def _trees(
+    facts: tuple[str, ...], rule_files: tuple[str, ...], _texts: tuple[str, ...]
+) -> tuple[ProofTrees, frozenset[str]]:
+    """Return the proofs of all atoms that certainly hold, and these atoms; the last ones are kept.
+
+    _texts : the texts of the files; when one changes, nothing that was kept counts.
+    """
     rules = read_rules(rule_files).query_rules if rule_files else ()
     request = {"justify": True, "facts": request_entries(facts), "rules": [one.written for one in rules]}
     found = rules_worker().exchange(request, MAX_RULE_SECONDS)

@@ -10,13 +10,15 @@ from typing import NamedTuple
 
 from kb.explanation.values import RuleInstance, RuleText
 from kb.language.reader import facts_from_text
-from kb.language.source_text import Source, source_from_bytes
+from kb.language.source_text import Source, read_source, source_from_bytes
 from kb.reasoning.rulebook import Statement
 from kb.reasoning.sentences import PredicateWords, fill, read_sentences
 from kb.reasoning.solver import ENCODING_FOLDERS
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
 from kb.tracing.requests import respond
 from kb.tracing.syntax import JsonValues, ProgramPart
+
+HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
 
 
 class ExplanationError(Exception):
@@ -69,6 +71,7 @@ class DecisionProgram:
         self.encoding, self._seconds = encoding, seconds
         path = _path_of(encoding)
         self._users: tuple[Statement, ...] = read_rules(rule_files).rules_reaching(encoding) if rule_files else ()
+        _refuse_helping_names([atom.name for one in self._users for atom in (*one.heads, *one.body)])
         text = path.read_text(encoding="utf-8")
         own = ProgramPart(f"{path.parent.parent.name}/asp/{path.name}", 1, text)
         written = [ProgramPart(one.source.file, one.at[0], one.written) for one in self._users]
@@ -105,19 +108,42 @@ class DecisionProgram:
         return RuleInstance(unit.rule, shown, fill(unit.rule.sentence, given) or unit.rule.text)
 
 
-@lru_cache(maxsize=64)
 def decision_program(encoding: str, rule_files: tuple[str, ...] = ()) -> DecisionProgram:
-    """Return an encoding with the users' rules that reach it; the last ones are kept. Errors as of the class."""
+    """Return an encoding with the users' rules that reach it; the same object while no file changes.
+
+    Raises what `DecisionProgram` does.
+    """
+    return _kept_program(encoding, rule_files, texts_of(rule_files))
+
+
+@lru_cache(maxsize=64)
+def _kept_program(encoding: str, rule_files: tuple[str, ...], _texts: tuple[str, ...]) -> DecisionProgram:
+    """Return an encoding with users' rules; the last ones are kept, as long as the texts of the files stay the same."""
     return DecisionProgram(encoding, rule_files)
+
+
+def texts_of(rule_files: Sequence[str]) -> tuple[str, ...]:
+    """Return the texts of files; CannotOpenError or BadInputError when one cannot be read or is no text of ours."""
+    return tuple(read_source(path).text for path in rule_files)
 
 
 def canonical(atoms: Sequence[str]) -> tuple[str, ...]:
     """Return atoms as clingo writes them, without full stops, in their order.
 
-    Raises BadInputError for a text that is no fact: text of an episode never reaches clingo unread.
+    Raises BadInputError for a text that is no fact: text of an episode never reaches clingo unread. Raises
+    ExplanationError for a name that explanations use themselves.
     """
     text = "\n".join(atom if atom.rstrip().endswith(".") else f"{atom}." for atom in atoms)
-    return tuple(str(fact) for fact in facts_from_text(text))
+    found = tuple(str(fact) for fact in facts_from_text(text))
+    _refuse_helping_names(found)
+    return found
+
+
+def _refuse_helping_names(names: Sequence[str]) -> None:
+    """Raise ExplanationError when an atom or a name begins like those of helping rules (kb.tracing.instrument)."""
+    for name in names:
+        if name.startswith(HELPING_PREFIX):
+            raise ExplanationError(f"names that begin with {HELPING_PREFIX} belong to explanations: {name}")
 
 
 def encoding_names() -> tuple[str, ...]:

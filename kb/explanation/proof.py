@@ -62,7 +62,6 @@ class TracedDecision:
         return self._rivals[key]
 
 
-@lru_cache(maxsize=128)
 def traced_decision(
     encoding: str, facts: tuple[str, ...], answer: tuple[str, ...], rule_files: tuple[str, ...] = ()
 ) -> TracedDecision:
@@ -70,11 +69,17 @@ def traced_decision(
 
     Parameters, errors as of `explain_decision`; facts and atoms as clingo writes them.
     """
-    return TracedDecision(decision_program(encoding, rule_files), facts, answer)
+    return _kept_decision(decision_program(encoding, rule_files), facts, answer)
+
+
+@lru_cache(maxsize=128)
+def _kept_decision(program: DecisionProgram, facts: tuple[str, ...], answer: tuple[str, ...]) -> TracedDecision:
+    """Return a decision with its proofs; the last ones are kept."""
+    return TracedDecision(program, facts, answer)
 
 
 def explain_decision(
-    encoding: str, facts: Sequence[str], answer: Sequence[str], atom: str, rule_files: Sequence[str] = ()
+    encoding: str, facts: Sequence[str], answer: Sequence[str] | None, atom: str, rule_files: Sequence[str] = ()
 ) -> Proof:
     """Return why an atom holds in an answer of an encoding.
 
@@ -82,7 +87,7 @@ def explain_decision(
     ----------
     encoding : the name of the encoding without `.lp`, such as "interpretation".
     facts : its input facts, atoms as text with or without full stops.
-    answer : the shown atoms of its answer, likewise.
+    answer : the shown atoms of its answer, likewise; None where it had no answer.
     atom : the atom, likewise; it may be one that the encoding does not show.
     rule_files : the paths of files with users' rules that took part.
 
@@ -97,6 +102,8 @@ def explain_decision(
     BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
     """
     (wanted,) = canonical([atom])
+    if answer is None:
+        raise ExplanationError(f"{encoding}.lp had no answer, so {wanted} does not hold")
     decision = traced_decision(encoding, canonical(facts), canonical(answer), tuple(map(str, rule_files)))
     if wanted not in decision.atoms:
         raise ExplanationError(f"{wanted} does not hold in this answer of {encoding}.lp")

@@ -5,7 +5,8 @@ from typing import Any
 
 from kb.explanation.values import Absence, Proof, ProofNode, RivalChoice
 
-LEVELS_BY_DEPTH = {"short": 0, "mid": 2, "long": 1_000}  # levels below the claim that a text shows, by its depth
+MAX_LEVELS = 200  # levels below the claim that are shown at most; a convention, well below Python's limit of calls
+LEVELS_BY_DEPTH = {"short": 0, "mid": 2, "long": MAX_LEVELS}  # levels below the claim that a text shows, by its depth
 RIVALS_SHOWN = {"short": 1, "mid": 3, "long": 1_000}  # other ways to choose that a text names, by its depth
 
 
@@ -56,7 +57,7 @@ def proof_dict(node: ProofNode, levels: int | None = None) -> dict[str, Any]:
     Parameters
     ----------
     node : the claim.
-    levels : how many levels below the claim are included; None for all.
+    levels : how many levels below the claim are included; None for all, up to MAX_LEVELS.
 
     Returns
     -------
@@ -64,7 +65,7 @@ def proof_dict(node: ProofNode, levels: int | None = None) -> dict[str, Any]:
     no rule derives the claim), "rivals" and "children". Where a claim stands again whose parts were listed before it,
     "again" is True and "children" is empty; it is False elsewhere.
     """
-    return _dict(node, levels, set())
+    return _dict(node, MAX_LEVELS if levels is None else min(levels, MAX_LEVELS), set())
 
 
 def proof_as_dict(proof: Proof, levels: int | None = None) -> dict[str, Any]:
@@ -87,14 +88,13 @@ def absence_as_dict(found: Absence, levels: int | None = None) -> dict[str, Any]
     }
 
 
-def _dict(node: ProofNode, levels: int | None, seen: set[int]) -> dict[str, Any]:
+def _dict(node: ProofNode, levels: int, seen: set[int]) -> dict[str, Any]:
     """Return a node as a dictionary; `seen` holds the identities of the nodes whose children were listed."""
     again = id(node) in seen and bool(node.children)
-    deeper = None if levels is None else levels - 1
     children: list[dict[str, Any]] = []
-    if not again and levels != 0:
+    if not again and levels > 0:
         seen.add(id(node))
-        children = [_dict(child, deeper, seen) for child in node.children]
+        children = [_dict(child, levels - 1, seen) for child in node.children]
     return {
         "kind": node.kind,
         "claim": node.claim,

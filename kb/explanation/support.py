@@ -1,6 +1,6 @@
 """Which rule instance derives each atom of an answer, such that no atom rests on itself."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from kb.explanation.programs import RuleUnit
@@ -79,23 +79,57 @@ def founded_supports(
 
     supports : the instances for each atom. given : the input facts. holding : all atoms of the answer.
     """
-    wanted = set(holding)
     heights = dict.fromkeys(given, 0)
     chosen: dict[str, Support] = {}
-    for needs in (_all_needed, _needed_at_least):
-        while True:
-            ready = {
-                atom: best
-                for atom in wanted - heights.keys()
-                if (best := _best_ready(supports.get(atom, ()), heights, needs)) is not None
-            }
-            if not ready:
-                break
-            level = max(heights.values(), default=0)
-            for atom, (height, support) in ready.items():
-                heights[atom] = max(height, level + 1) if needs is _needed_at_least else height
-                chosen[atom] = support
-    return chosen, heights
+    wanted = set(holding)
+    _raise_levels(supports, wanted, heights, chosen)
+    while True:  # what rests on aggregates that are founded by a part of their elements
+        level = max(heights.values(), default=0) + 1
+        ready = {
+            atom: best
+            for atom in sorted(wanted - heights.keys())
+            if (best := _best_at_least(supports.get(atom, ()), heights)) is not None
+        }
+        if not ready:
+            return chosen, heights
+        for atom, support in ready.items():
+            heights[atom], chosen[atom] = level, support
+
+
+def _raise_levels(
+    supports: Mapping[str, Sequence[Support]], wanted: set[str], heights: dict[str, int], chosen: dict[str, Support]
+) -> None:
+    """Give heights and rule instances to all atoms that rest on given facts, level after level.
+
+    wanted : the atoms that hold. heights, chosen : changed.
+    """
+    waiting: dict[str, list[tuple[str, int]]] = {}  # by atom the instances that need it: (their atom, their index)
+    left: dict[tuple[str, int], int] = {}  # how many needed atoms of an instance have no height yet
+    size: dict[tuple[str, int], int] = {}
+    ready: list[tuple[str, int]] = []
+    for atom in sorted(wanted - heights.keys()):
+        for index, support in enumerate(supports.get(atom, ())):
+            needed = set(_all_needed(support))
+            key = (atom, index)
+            size[key], left[key] = len(needed), len(needed - heights.keys())
+            for other in needed - heights.keys():
+                waiting.setdefault(other, []).append(key)
+            if not left[key]:
+                ready.append(key)
+    level = 0
+    while ready:
+        level += 1
+        best: dict[str, tuple[int, int]] = {}
+        for atom, index in ready:
+            if atom not in heights:
+                best[atom] = min(best.get(atom, (size[atom, index], index)), (size[atom, index], index))
+        ready = []
+        for atom, (_, index) in best.items():
+            heights[atom], chosen[atom] = level, supports[atom][index]
+            for key in waiting.get(atom, ()):
+                left[key] -= 1
+                if not left[key]:
+                    ready.append(key)
 
 
 def positive_atoms(literals: Iterable[LiteralValue], infos: Iterable[JsonValues]) -> Iterator[str]:
@@ -110,26 +144,16 @@ def element_atoms(one: CountedElement, info: JsonValues) -> Iterator[str]:
     yield from positive_atoms(one.condition, info["conditions"][one.element])
 
 
-Needs = Callable[[Support, Mapping[str, int]], Iterable[str] | None]
+def _best_at_least(options: Sequence[Support], heights: Mapping[str, int]) -> Support | None:
+    """Return the first instance that holds by atoms that have heights, aggregates by a part of their elements."""
+    for support in options:
+        needed = _needed_at_least(support, heights)
+        if needed is not None and all(atom in heights for atom in needed):
+            return support
+    return None
 
 
-def _best_ready(options: Sequence[Support], heights: Mapping[str, int], needs: Needs) -> tuple[int, Support] | None:
-    """Return (height, instance) of the best instance all of whose atoms have heights; None when there is none."""
-    best: tuple[tuple[int, int, int], Support] | None = None
-    for order, support in enumerate(options):
-        atoms = needs(support, heights)
-        if atoms is None:
-            continue
-        needed = list(atoms)
-        if all(atom in heights for atom in needed):
-            height = 1 + max((heights[atom] for atom in needed), default=0)
-            key = (height, len(needed), order)
-            if best is None or key < best[0]:
-                best = key, support
-    return None if best is None else (best[0][0], best[1])
-
-
-def _all_needed(support: Support, _heights: Mapping[str, int]) -> Iterable[str]:
+def _all_needed(support: Support) -> Iterator[str]:
     """Yield all atoms that hold and that the body and the condition of an instance read without negation."""
     yield from positive_atoms(support.literals, support.unit.literals)
     if support.condition:

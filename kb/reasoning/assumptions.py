@@ -134,6 +134,13 @@ def _assumed_fact(source: Source, fact: Fact, kb_files: Sequence[str]) -> Assump
             (equivalent,) = parse_facts(source_from_bytes(source.file, f"{atom}.".encode()))
             return _rule(_placed(_guarded(equivalent), fact), written, seen_by_queries, kb_files)
         return Assumption(written, "", seen_by_queries, ())
+    complaints = [
+        check_facts(source, [fact], {fact.name: interface[signature]})
+        for interface in USER_RULE_INTERFACES.values()
+        if signature in interface
+    ]
+    if complaints and all(complaints):  # no encoding takes these arguments
+        raise BadInputError(complaints[0])
     if signature not in INTERFACE_PREDICATES and signature not in INTERNAL_PREDICATES:
         _require_own_predicate(source, fact, kb_files)
     return _rule(_placed(_guarded(fact), fact), written, (), kb_files)

@@ -13,6 +13,7 @@ alternatives  what a choice would have cost otherwise, or which constraints forb
 calculations  arithmetic of rules as functions, and where they turn
 domains       the values that arguments may have: known ones, and numbers that rules need
 candidates    facts that might be given besides, so that an atom holds
+switches      programs whose facts can be taken away or given besides
 changes       the smallest changes of the facts that make an atom hold
 requests      all of this as requests and responses of JSON values
 

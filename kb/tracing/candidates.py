@@ -17,8 +17,9 @@ from kb.language.vocabulary import Signature
 from kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
 from kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
 
-MAX_FACTS_OF_ATOM = 1_000  # candidates for one atom of a rule; a convention
-MAX_CANDIDATES = 6_000  # candidates in all; a convention
+MAX_FACTS_OF_ATOM = 200  # candidates for one atom of a rule; a convention
+MAX_CANDIDATES = 3_000  # candidates in all; a convention
+MAX_CANDIDATES_OF_CHOICE = 300  # candidates in all where costs decide, which is dear to check; a convention
 MAX_COMPARED = 40  # given facts of a predicate with which a candidate is compared; a convention
 FREE_ARGUMENT, ANY_ARGUMENT = (
     "free",
@@ -46,13 +47,13 @@ class CandidateFacts(NamedTuple):
     Attributes
     ----------
     facts : the facts, those first that differ least from given ones.
-    relevant : the predicates on which the wanted atom may rest.
+    removable : the given facts on which the wanted atom may rest.
     by_choice : whether it may rest on a choice, so that costs matter.
     cut : whether some facts were left out.
     """
 
     facts: tuple[str, ...]
-    relevant: frozenset[Signature]
+    removable: tuple[str, ...]
     by_choice: bool
     cut: bool
 
@@ -72,7 +73,6 @@ def candidate_facts(
     units, by_choice = _relevant_units(program, wanted)
     domains = Domains(program, units, [wanted, *facts, *atoms])
     patterns = _needed_patterns(program, units, domains, wanted)
-    relevant = {(one.name, len(one.parts)) for one in patterns}
     given = set(facts)
     found: dict[clingo.Symbol, None] = {}
     cut = domains.cut
@@ -88,7 +88,21 @@ def candidate_facts(
             if symbol not in given:
                 found[symbol] = None
     ordered = _nearest_first(list(found), facts)
-    return CandidateFacts(tuple(map(str, ordered)), frozenset(relevant), by_choice, cut)
+    if by_choice and len(ordered) > MAX_CANDIDATES_OF_CHOICE:
+        about = set(wanted.arguments)
+        ordered.sort(key=lambda fact: bool(fact.arguments) and not about.intersection(fact.arguments))
+        ordered, cut = ordered[:MAX_CANDIDATES_OF_CHOICE], True
+    removable = tuple(str(fact) for fact in facts if any(_matches(fact, one) for one in patterns))
+    return CandidateFacts(tuple(map(str, ordered)), removable, by_choice, cut)
+
+
+def _matches(fact: clingo.Symbol, pattern: AtomPattern) -> bool:
+    """Return whether a fact has the values that a pattern fixes."""
+    if (fact.name, len(fact.arguments)) != (pattern.name, len(pattern.parts)):
+        return False
+    return all(
+        isinstance(part, str) or part == value for part, value in zip(pattern.parts, fact.arguments, strict=True)
+    )
 
 
 def _nearest_first(found: Sequence[clingo.Symbol], facts: Sequence[clingo.Symbol]) -> list[clingo.Symbol]:

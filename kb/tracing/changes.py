@@ -1,24 +1,25 @@
 """The smallest changes of the input facts with which a wanted atom holds: facts given besides, and facts taken away.
 
-The program is grounded once with every candidate as a fact that may be given and every given fact as one that may be
-taken away. Where no choice is involved, clingo itself finds a change of least size. Where costs decide what is chosen,
-changes are tried in order of their size, each with two searches under assumptions: for the best answer, and for the
-best one with the wanted atom. The atom holds after a change when both cost the same.
+Where no choice is involved, clingo itself finds a change of least size. Where costs decide what is chosen, all changes
+of a size are tried while they are few: the atom holds after a change when the best answer with it costs no more than
+the best one. Beyond that, changes of what the wanted atom is about are tried, and then facts are taken away one after
+the other, each time the one that brings the atom nearest to being chosen.
 """
 
-from collections.abc import Iterator, Sequence
-from itertools import combinations
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations, islice
+from math import comb
+from typing import NamedTuple
 
 import clingo
 
-from kb.tracing.answers import MAX_TRACE_CONFLICTS, TraceError
 from kb.tracing.candidates import CandidateFacts
+from kb.tracing.switches import MAX_CHANGE_SIZE, FactChange, SwitchedProgram
 from kb.tracing.syntax import ParsedProgram
 
-MAX_CHECKS = 900  # changes that are tried where costs decide; a convention, one to three seconds
-MAX_CHANGE_SIZE = 12  # facts of one change; a convention
-FactChange = tuple[int, ...]  # indices of switches, ascending
+MAX_CHECKS = 400  # changes that are tried size by size; a convention, about a second
+MAX_NEAR_CHECKS = 100  # changes of what the wanted atom is about, of each size; a convention
+MAX_GREEDY_CHECKS = 300  # changes that are tried while facts are taken away one after the other; a convention
 
 
 class FoundChange(NamedTuple):
@@ -38,120 +39,100 @@ class FoundChange(NamedTuple):
     least: bool
 
 
-class ChangeSearch:
-    """A program whose input facts can be switched on and off.
+def least_change(
+    program: ParsedProgram, facts: Sequence[str], candidates: CandidateFacts, wanted: clingo.Symbol
+) -> FoundChange:
+    """Return a change of least size with which the wanted atom holds, as far as the limits of the search allow.
 
     Parameters
     ----------
     program : the program taken apart.
     facts : its input facts.
-    candidates : what may be given besides, and which predicates matter.
+    candidates : what may be given besides, and which given facts matter.
     wanted : the atom that shall hold.
     """
+    switched = SwitchedProgram(program, facts, candidates, wanted)
+    if not candidates.by_choice:
+        return _as_found(switched, switched.least_of_one_answer(), True)
+    possible = switched.least_possible()
+    if possible is None:
+        return _as_found(switched, None, True)
+    return _ChoiceSearch(switched, wanted, possible).least_change()
 
-    def __init__(
-        self, program: ParsedProgram, facts: Sequence[str], candidates: CandidateFacts, wanted: clingo.Symbol
-    ) -> None:
-        self._wanted, self._by_choice = wanted, candidates.by_choice
-        self._removable = [fact for fact in facts if _signature(fact) in candidates.relevant]
-        self._addable = list(candidates.facts)
-        fixed = [fact for fact in facts if _signature(fact) not in candidates.relevant]
-        self._control = _switched(program, fixed, self._removable, self._addable, candidates.by_choice)
-        self._switches = self._switch_literals()
-        self._checks = 0
+
+class _ChoiceSearch:
+    """A search for changes where costs decide.
+
+    Attributes
+    ----------
+    switched : the program with switches.
+    wanted : the atom that shall hold.
+    possible : a change of least size after which some answer holds it, at whatever cost.
+    """
+
+    def __init__(self, switched: SwitchedProgram, wanted: clingo.Symbol, possible: FactChange) -> None:
+        self.switched, self.wanted, self.possible = switched, wanted, possible
+        self._about = self._switches_about()
 
     def least_change(self) -> FoundChange:
-        """Return a change of least size with which the wanted atom holds, as far as the limits of the search allow."""
-        possible = self._possible_change()
-        if possible is None:
-            return FoundChange((), (), False, True)
-        if not self._by_choice:
-            return self._as_found(possible, True)
-        for size in range(len(possible) if possible else 0, MAX_CHANGE_SIZE + 1):
-            for change in self._changes_of_size(size):
-                if self._checks >= MAX_CHECKS:
-                    return self._greedy(possible)
-                if self._holds(change):
-                    return self._as_found(change, True)
-        return self._greedy(possible)
-
-    def _switch_literals(self) -> list[int]:
-        """Return the solver literals of all switches: those that take facts away, then those that give facts."""
-        known = self._control.symbolic_atoms
-        numbers = [("trace__gone", len(self._removable)), ("trace__added", len(self._addable))]
-        found = []
-        for name, count in numbers:
-            for index in range(count):
-                atom = known[clingo.Function(name, [clingo.Number(index)])]
-                assert atom is not None
-                found.append(atom.literal)
-        return found
-
-    def _possible_change(self) -> FactChange | None:
-        """Return a change of least size after which some answer holds the atom, at whatever cost; None without one."""
-        wanted = self._control.symbolic_atoms[self._wanted]
-        if wanted is None:
-            return None
-        if not self._by_choice:
-            return self._solved([wanted.literal], "opt")
-        for size in range(MAX_CHANGE_SIZE + 1):
-            bound = self._control.symbolic_atoms[clingo.Function("trace__size", [clingo.Number(size)])]
-            assert bound is not None
-            found = self._solved([wanted.literal, bound.literal], "ignore")
+        """Return a change of least size, or a small one when the search is cut off."""
+        size = len(self.possible)
+        count = len(self.switched.removable) + len(self.switched.addable)
+        while size <= MAX_CHANGE_SIZE and self.switched.checks + comb(count, size) <= MAX_CHECKS:
+            found = self._first_that_holds(self._changes_of_size(size, count))
             if found is not None:
-                return found
-        return None
+                return _as_found(self.switched, found, True)
+            size += 1
+        for options in (self._extensions(), self._replacements()):
+            found = self._first_that_holds(islice(options, MAX_NEAR_CHECKS))
+            if found is not None:
+                found = self._without_idle_parts(found)
+                return _as_found(self.switched, found, len(found) <= size)
+        found = self._greedy()
+        return _as_found(self.switched, found, found is not None and len(found) <= size, gave_up=True)
 
-    def _solved(self, assumptions: Sequence[int], mode: str) -> FactChange | None:
-        """Return the switches that are on in the best answer, or in any one with the mode `ignore`; or None."""
-        best: list[FactChange] = []
-
-        def keep(model: clingo.Model) -> None:
-            """Keep the change of a model."""
-            best[:] = [self._change_of(model)]
-
-        settings: Any = self._control.configuration.solve
-        settings.opt_mode = mode
-        self._control.solve(assumptions=list(assumptions), on_model=keep)
-        settings.opt_mode = "opt"
-        return best[0] if best else None
-
-    def _change_of(self, model: clingo.Model) -> FactChange:
-        """Return the switches that are on in a model."""
-        return tuple(index for index, literal in enumerate(self._switches) if model.is_true(literal))
+    def _first_that_holds(self, options: Iterable[FactChange]) -> FactChange | None:
+        """Return the first change after which the wanted atom is part of a best answer; None when none is."""
+        return next((change for change in options if self._holds(change)), None)
 
     def _holds(self, change: FactChange) -> bool:
         """Return whether the wanted atom is part of some best answer after a change."""
-        self._checks += 1
-        on = set(change)
-        assumptions = [literal if index in on else -literal for index, literal in enumerate(self._switches)]
-        wanted = self._control.symbolic_atoms[self._wanted]
-        if wanted is None:
-            return False
-        with_wanted = self._best_cost([*assumptions, wanted.literal])
-        return with_wanted is not None and with_wanted == self._best_cost(assumptions)
+        excess = self.switched.excess(change)
+        return excess is not None and not any(excess)
 
-    def _best_cost(self, assumptions: Sequence[int]) -> list[int] | None:
-        """Return the cost of the best answer under assumptions; None when there is none."""
-        costs: list[list[int]] = []
-        self._control.solve(assumptions=list(assumptions), on_model=lambda model: costs.append(list(model.cost)))
-        return costs[-1] if costs else None
-
-    def _changes_of_size(self, size: int) -> Iterator[FactChange]:
+    def _changes_of_size(self, size: int, count: int) -> Iterator[FactChange]:
         """Yield the changes of a size: those that only take facts away, and for two those that replace one, first."""
-        removals = len(self._removable)
-        seen = dict.fromkeys(combinations(range(removals), size))
+        seen = dict.fromkeys(combinations(range(len(self.switched.removable)), size))
         yield from seen
         if size == 2:
-            near = [pair for pair in self._replacements() if pair not in seen]
+            near = [pair for pair in self._pairs() if pair not in seen]
             yield from near
             seen |= dict.fromkeys(near)
-        yield from (change for change in combinations(range(len(self._switches)), size) if change not in seen)
+        yield from (change for change in combinations(range(count), size) if change not in seen)
+
+    def _switches_about(self) -> list[int]:
+        """Return the switches of facts that name an argument of the wanted atom, or have no arguments."""
+        about = set(self.wanted.arguments)
+        facts = [clingo.parse_term(fact) for fact in (*self.switched.removable, *self.switched.addable)]
+        return [n for n, fact in enumerate(facts) if not fact.arguments or about.intersection(fact.arguments)]
+
+    def _extensions(self) -> Iterator[FactChange]:
+        """Yield the least possible change with one more switch: all removals, then candidates about the wanted atom."""
+        removals = range(len(self.switched.removable))
+        options = [*removals, *(index for index in self._about if index not in removals)]
+        yield from (_joined(self.possible, (index,)) for index in options if index not in self.possible)
 
     def _replacements(self) -> Iterator[FactChange]:
+        """Yield the least possible change with one more given fact about the wanted atom replaced."""
+        about = set(self._about)
+        for gone, added in self._pairs():
+            if gone in about and added in about and not {gone, added} & set(self.possible):
+                yield _joined(self.possible, (gone, added))
+
+    def _pairs(self) -> Iterator[FactChange]:
         """Yield the pairs of a given fact and a candidate that differ in one argument."""
-        gone = [clingo.parse_term(fact) for fact in self._removable]
-        for index, text in enumerate(self._addable):
+        gone = [clingo.parse_term(fact) for fact in self.switched.removable]
+        for index, text in enumerate(self.switched.addable):
             added = clingo.parse_term(text)
             for number, fact in enumerate(gone):
                 if fact.name == added.name and len(fact.arguments) == len(added.arguments):
@@ -159,77 +140,45 @@ class ChangeSearch:
                     if sum(one != other for one, other in pairs) == 1:
                         yield number, len(gone) + index
 
-    def _greedy(self, possible: FactChange) -> FoundChange:
-        """Return a change of which no member can be left out, found by taking away facts one after the other."""
-        change = possible
-        for index in range(len(self._removable)):
-            if self._holds(change):
-                break
-            if index not in change and self._wanted_is_possible((*change, index)):
-                change = tuple(sorted({*change, index}))
-        if not self._holds(change):
-            return FoundChange((), (), False, False)
-        for index in sorted(change, reverse=True):
+    def _greedy(self) -> FactChange | None:
+        """Return a change found by taking away the fact that helps most, again and again; None when that fails."""
+        change, limit = self.possible, self.switched.checks + MAX_GREEDY_CHECKS
+        best = self.switched.excess(change)
+        while best is not None and any(best):
+            helped: tuple[tuple[int, ...], FactChange] | None = None
+            for index in range(len(self.switched.removable)):
+                if index in change:
+                    continue
+                if self.switched.checks >= limit:
+                    return None
+                longer = _joined(change, (index,))
+                excess = self.switched.excess(longer)
+                if excess is not None and (helped is None or excess < helped[0]):
+                    helped = excess, longer
+            if helped is None or helped[0] > best:
+                return None
+            best, change = helped
+        return None if best is None else self._without_idle_parts(change)
+
+    def _without_idle_parts(self, change: FactChange) -> FactChange:
+        """Return a change of which no member can be left out."""
+        for index in change:
             fewer = tuple(other for other in change if other != index)
             if self._holds(fewer):
                 change = fewer
-        return self._as_found(change, False)
-
-    def _wanted_is_possible(self, change: FactChange) -> bool:
-        """Return whether some answer holds the wanted atom after a change, whatever it costs."""
-        on = set(change)
-        assumptions = [literal if index in on else -literal for index, literal in enumerate(self._switches)]
-        wanted = self._control.symbolic_atoms[self._wanted]
-        return wanted is not None and bool(self._control.solve(assumptions=[*assumptions, wanted.literal]).satisfiable)
-
-    def _as_found(self, change: FactChange, least: bool) -> FoundChange:
-        """Return a change as facts."""
-        count = len(self._removable)
-        in_way = tuple(sorted(self._removable[index] for index in change if index < count))
-        missing = tuple(sorted(self._addable[index - count] for index in change if index >= count))
-        return FoundChange(missing, in_way, True, least)
+        return change
 
 
-def _signature(fact: str) -> tuple[str, int]:
-    """Return the predicate of a fact."""
-    symbol = clingo.parse_term(fact)
-    return symbol.name, len(symbol.arguments)
+def _joined(change: FactChange, more: FactChange) -> FactChange:
+    """Return two changes as one."""
+    return tuple(sorted({*change, *more}))
 
 
-def _switched(
-    program: ParsedProgram,
-    fixed: Sequence[str],
-    removable: Sequence[str],
-    addable: Sequence[str],
-    by_choice: bool,
-) -> clingo.Control:
-    """Return the program grounded with switches for facts.
-
-    Without a choice the number of switches that are on is minimised; with one, the costs of the program are, and
-    `trace__size(N)` says that at most N switches are on.
-    """
-    lines = [str(one.node) for one in program.statements if one.kind != "weak" or by_choice]
-    lines += [*program.constants, *(f"#defined {name}/{arity}." for name, arity in program.defined)]
-    lines += [f"{fact}." for fact in fixed]
-    lines += ["#defined trace__gone/1.", "#defined trace__added/1."]
-    lines += [
-        f"{{ trace__gone({index}) }}. {fact} :- not trace__gone({index})." for index, fact in enumerate(removable)
-    ]
-    lines += [f"{{ trace__added({index}) }}. {fact} :- trace__added({index})." for index, fact in enumerate(addable)]
-    if by_choice:
-        lines.append(f"{{ trace__size(0..{MAX_CHANGE_SIZE}) }}.")
-        lines.append(":- trace__size(N), N < #count { 0,I : trace__gone(I); 1,I : trace__added(I) }.")
-    else:
-        # Among changes of one size those of candidates that stand first are preferred, for the same change each time.
-        lines.append(":~ trace__gone(I). [1@2,0,I]")
-        lines.append(":~ trace__added(I). [1@2,1,I]")
-        lines.append(":~ trace__added(I). [I+1@1,1,I]")
-    control = clingo.Control(["--stats=0"], logger=lambda _code, _text: None, message_limit=20)
-    try:
-        control.add("base", [], "\n".join(lines))
-        control.ground([("base", [])])
-    except RuntimeError as error:
-        raise TraceError(str(error)) from None
-    settings: Any = control.configuration.solve
-    settings.solve_limit = f"{MAX_TRACE_CONFLICTS},umax"
-    return control
+def _as_found(switched: SwitchedProgram, change: FactChange | None, least: bool, gave_up: bool = False) -> FoundChange:
+    """Return a change as facts; for None that there is none, or that the search gave up."""
+    if change is None:
+        return FoundChange((), (), False, not gave_up)
+    count = len(switched.removable)
+    in_way = tuple(sorted(switched.removable[index] for index in change if index < count))
+    missing = tuple(sorted(switched.addable[index - count] for index in change if index >= count))
+    return FoundChange(missing, in_way, True, least)

@@ -14,7 +14,7 @@ from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Sign
 from kb.tracing.calculations import Relation, calculation, names_in, turning_numbers
 from kb.tracing.syntax import ParsedProgram, Unit, head_elements
 
-MAX_NUMBERS = 40  # values of one class, beyond which no number is added; a convention
+MAX_NUMBERS = 30  # values of one class, beyond which no number is added; a convention
 MAX_COMBINATIONS = 100  # values of the other variables of a comparison that are tried; a convention
 MAX_NUMBER_ROUNDS = 3  # rounds in which needed numbers lead to other needed numbers; a convention
 ArgumentPosition = tuple[str, int, int]  # the name of a predicate, its number of arguments, the index of the argument

@@ -9,7 +9,7 @@ import clingo
 from kb.tracing.alternatives import weigh
 from kb.tracing.answers import GroundedProgram, TraceError, instances
 from kb.tracing.candidates import CandidateFacts, candidate_facts
-from kb.tracing.changes import ChangeSearch
+from kb.tracing.changes import least_change
 from kb.tracing.instrument import condition_infos, is_choice, literal_info
 from kb.tracing.syntax import JsonValues, ProgramPart, parsed
 
@@ -58,15 +58,14 @@ def _candidates(grounded: GroundedProgram, atom: str, known: Sequence[str]) -> J
     """Return the facts that might be given besides for an atom to hold, as JSON values."""
     facts, atoms = ([clingo.parse_term(text) for text in texts] for texts in (grounded.facts, known))
     found = candidate_facts(grounded.program, facts, atoms, clingo.parse_term(atom))
-    return {**found._asdict(), "facts": list(found.facts), "relevant": sorted(map(list, found.relevant))}
+    return {**found._asdict(), "facts": list(found.facts), "removable": list(found.removable)}
 
 
 def _change(grounded: GroundedProgram, atom: str, candidates: JsonValues) -> JsonValues:
     """Return the least change with which an atom holds, as JSON values."""
-    relevant = frozenset((name, arity) for name, arity in candidates["relevant"])
-    given = CandidateFacts(tuple(candidates["facts"]), relevant, candidates["by_choice"], candidates["cut"])
-    search = ChangeSearch(grounded.program, grounded.facts, given, clingo.parse_term(atom))
-    return search.least_change()._asdict()
+    facts, removable = tuple(candidates["facts"]), tuple(candidates["removable"])
+    given = CandidateFacts(facts, removable, candidates["by_choice"], candidates["cut"])
+    return least_change(grounded.program, grounded.facts, given, clingo.parse_term(atom))._asdict()
 
 
 @lru_cache(maxsize=8)

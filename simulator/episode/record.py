@@ -1,7 +1,7 @@
 """The values in an episode's lines: options, world and task in its header, commands and motions in its steps."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -189,14 +189,22 @@ def recorded_scenario(head: EpisodeLine, waking: EpisodeLine) -> Scenario:
     verge = world.verge.geoms[0] if len(world.verge.geoms) == 1 else world.verge
     start = [f"{kind}({name})" for name, kind in entry["parameters"].items()]
     start += [f"confidence({fact},{int(confidence)})" for fact, confidence in entry["claims"]]
-    sources = [Source(name, "".join(f"{fact}.\n" for fact in facts)) for name, facts in
-               (("start.lp", start), ("goal.lp", entry["goals"]))]  # fmt: skip
+    sources = [Source("start.lp", _as_text(start)), Source("goal.lp", _as_text(entry["goals"]))]
+    facts = [parse_facts(source) for source in sources]
+    for source, stated, vocabulary in zip(sources, facts, (START_VOCABULARY, GOAL_VOCABULARY), strict=True):
+        if problems := check_facts(source, stated, vocabulary):
+            raise BadInputError(problems)
     expected = entry["expect"]
     return Scenario(
         replace(world, verge=verge, utak=(float(x), float(y))),
-        task_of(sources[0], parse_facts(sources[0]), sources[1], parse_facts(sources[1])),
-        None if expected is None else facts_from_text("".join(f"{fact}.\n" for fact in expected), "expect.lp"),
+        task_of(sources[0], facts[0], sources[1], facts[1]),
+        None if expected is None else facts_from_text(_as_text(expected), "expect.lp"),
     )
+
+
+def _as_text(facts: Iterable[str]) -> str:
+    """Return facts without full stops as the text of a fact file."""
+    return "".join(f"{fact}.\n" for fact in facts)
 
 
 def recorded_settings(head: EpisodeLine, kb_files: tuple[str, ...]) -> Settings:

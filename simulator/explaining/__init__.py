@@ -4,6 +4,7 @@ Modules in reading order:
 
 questions  questions about a run or an episode, answered with trees of reasons
 trees      trees for the steps of a whole episode, cut to what a page can hold
+fixing     the smallest changes with which a run that failed would have worked
 
 Public names: `Questions`, `questions_of_episode`.
 """

@@ -1,4 +1,4 @@
-"""The result of reading a file of another format, and the options of reading."""
+"""The value that readers of other formats return, and the options that they are given."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

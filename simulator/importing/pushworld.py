@@ -34,12 +34,11 @@ BORDER_SQUARES = 1  # the walls that a puzzle has around it without naming them
 MAX_PUZZLE_CELLS = 65_536  # cells of a puzzle; a convention
 MAX_PUZZLE_OBJECTS = 500  # objects of a puzzle; a convention
 THING_PART = re.compile(r"[mg][0-9a-z_]+")  # an object or a goal
-PUSHWORLD_WORD = re.compile(r"[^ \t]+")
+CELL_WORD = re.compile(r"[^ \t]+")
 PART_HINT = "cells are . W A M0 G0, and several of them joined by +, such as A+G1"
 
-CellPlaces = dict[
-    str, dict[RasterCell, SourceSpan]
-]  # by part, in lower case: its cells, each with its place in the text
+# By part, in lower case: its cells, each with its place in the text.
+PuzzlePlaces = dict[str, dict[RasterCell, SourceSpan]]
 
 
 def read(path: Path | str, options: ImportOptions) -> Imported:
@@ -94,17 +93,17 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     return Imported("PushWorld puzzle", drawn.file, drawn.text, *task, tuple(notes))
 
 
-def _places(source: Source) -> tuple[CellPlaces, int, int]:
+def _places(source: Source) -> tuple[PuzzlePlaces, int, int]:
     """Return the cells of each part, and the numbers of rows and columns; raise BadInputError for wrong parts."""
     lines = list(source.lines)
     while lines and not lines[-1].strip():
         lines.pop()
-    words = [list(islice(PUSHWORLD_WORD.finditer(line), MAX_PUZZLE_CELLS + 1)) for line in lines]
+    words = [list(islice(CELL_WORD.finditer(line), MAX_PUZZLE_CELLS + 1)) for line in lines]
     if not words:
         raise BadInputError([source.problem(source.start(), "the puzzle is empty")])
     if len(words) > MAX_PUZZLE_CELLS or sum(map(len, words)) > MAX_PUZZLE_CELLS:
         raise BadInputError([source.problem(source.start(), f"a puzzle has at most {MAX_PUZZLE_CELLS} cells here")])
-    places: CellPlaces = defaultdict(dict)
+    places: PuzzlePlaces = defaultdict(dict)
     problems: list[Problem] = []
     for number, (line, row) in enumerate(zip(lines, words, strict=True), 1):
         if len(row) != len(words[0]) or not row:
@@ -126,7 +125,7 @@ def _places(source: Source) -> tuple[CellPlaces, int, int]:
     return places, len(words), len(words[0])
 
 
-def _problems(source: Source, places: CellPlaces) -> "list[Problem]":
+def _problems(source: Source, places: PuzzlePlaces) -> "list[Problem]":
     """Return what makes a puzzle none, or none that TABLETOP can show; [] for nothing."""
     problems = []
     robot = sorted(places.get("a", {}).values())

@@ -211,21 +211,19 @@ def _cells(level: Level) -> dict[RasterCell, str]:
     }
 
 
-def _check(
-    source: Source,
-    level: Level,
-    robot: Sequence[RasterCell],
-    boxes: Sequence[RasterCell],
-    storages: Sequence[RasterCell],
-) -> None:
-    """Raise BadInputError unless a level has one robot, a box and a storage."""
+def _check(source: Source, level: Level, *found: Sequence[RasterCell]) -> None:
+    """Raise BadInputError unless a level has one robot, a box and a storage.
+
+    found : the cells of robots, those of boxes, and those of storages.
+    """
+    robot, boxes, storages = found
     problems = []
     if len(robot) > 1:
         places = [span for row in level.rows for mark, span in row if mark in "@+"]
         hint = f"the first is on line {places[0].line}, column {places[0].start}"
         problems.append(source.problem(places[1], "a second robot", hint))
-    for found, what in ((robot, "robot (@)"), (boxes, "box ($)"), (storages, "storage (.)")):
-        if not found:
+    for cells, what in ((robot, "robot (@)"), (boxes, "box ($)"), (storages, "storage (.)")):
+        if not cells:
             problems.append(source.problem(level.first, f"the level has no {what}"))
     if max(len(boxes), len(storages)) > MAX_LEVEL_BOXES:
         problems.append(source.problem(level.first, f"a level has at most {MAX_LEVEL_BOXES} boxes and storages here"))

@@ -21,7 +21,7 @@ def assume(dialogue: Dialogue, rest: str) -> None:
         lines = [f"{one.written}  % {told_reach(one.reaches)}" for one in assumed]
         dialogue.printer.say("\n".join(lines) if lines else "nothing is assumed at this step")
         return
-    story = dialogue.live_story()
+    story = dialogue.live_story("assume", rest)
     known = {one.written for one in story.conditions.assumptions}
     after = _change(dialogue, story, "assume", rest)
     for one in after.assumptions:
@@ -34,7 +34,7 @@ def retract(dialogue: Dialogue, rest: str) -> None:
     if not rest:
         dialogue.printer.tell("retract takes an assumption; assume alone lists them")
         return
-    story = dialogue.live_story()
+    story = dialogue.live_story("retract", rest)
     before = {one.written for one in story.conditions.assumptions}
     after = _change(dialogue, story, "retract", rest)
     for written in sorted(before - {one.written for one in after.assumptions}):
@@ -46,7 +46,7 @@ def goal(dialogue: Dialogue, rest: str) -> None:
     if not rest:
         dialogue.printer.say("\n".join(f"{fact}." for fact in dialogue.story.conditions.task.goals))
         return
-    story = dialogue.live_story()
+    story = dialogue.live_story("goal", rest)
     after = _change(dialogue, story, "goal", rest)
     dialogue.printer.say(f"wanted from step {story.at} on: {' '.join(f'{fact}.' for fact in after.task.goals)}")
     plan(dialogue, "")

@@ -16,7 +16,7 @@ from kb.language.vocabulary import (
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from simulator.repl.statements import FACT_COMMANDS, QUERY_SIGN, is_query
 
-WORD = re.compile(r"[A-Za-z0-9_?-]*$")  # the word at the cursor
+WORD = re.compile(r"[A-Za-z0-9_?-]*\Z")  # the word at the cursor
 # The words of an argument type that has no others, by its name.
 WORDS_OF_TYPE: Mapping[str, tuple[str, ...]] = {
     "shape": SHAPE_CLASSES,
@@ -122,7 +122,7 @@ def _open_atom(before: str) -> tuple[str, int] | None:
         elif char == "(" and depth > 0:
             depth -= 1
         elif char == "(":
-            name = re.search(r"[a-z_]\w*\s*$", before[:at])
+            name = re.search(r"[a-z_]\w*\s*\Z", before[:at])
             return (name[0].strip(), commas) if name is not None else None
         elif char == "," and depth == 0:
             commas += 1

@@ -9,6 +9,7 @@ from kb.reasoning.query import QueryAnswer, QueryEngine, QueryLimitError
 from simulator.repl.explaining import EXPLAINERS, Explainer, asked
 from simulator.repl.printer import Printer
 from simulator.repl.statements import MORE_SIGN, QUERY_SIGN, is_query
+from simulator.run.changes import Change, changed_conditions
 from simulator.run.live_story import LiveStory
 from simulator.run.recorded_story import RecordedStory
 from simulator.run.session import CannotAdoptError
@@ -91,12 +92,15 @@ class Dialogue:
         self.engine.use_rules(self.story.rule_files)
         return self.engine.ask(self.known_facts(), query, max_rows)
 
-    def live_story(self) -> LiveStory:
+    def live_story(self, kind: str, text: str) -> LiveStory:
         """Return the story as a run that can be changed; a recorded episode is repeated up to this step first.
 
-        Raises BadInputError when the episode cannot be repeated.
+        Raises BadInputError when the episode cannot be repeated, or the change that is meant has errors.
+
+        kind : assume, retract or goal. text : what is assumed, taken back or wanted.
         """
         if isinstance(self.story, RecordedStory):
+            changed_conditions(self.story.conditions, Change(self.story.at, kind, text), self.story.kb_files)
             self.printer.tell(
                 f"the run of {self.story.name} is repeated up to step {self.story.at}, to go on from there"
             )

@@ -92,7 +92,11 @@ class ReadlineLines:
             self._begun = ""
         with suppress(AttributeError):
             sys.stdin.reconfigure(errors="replace")  # type: ignore[union-attr]  # what is typed may be of another encoding
-        line = input(CONTINUATION if is_open else prompt)
+        try:
+            line = input(CONTINUATION if is_open else prompt)
+        except KeyboardInterrupt:
+            print()
+            raise
         self._begun += f"{line}\n"
         return line
 

@@ -1,4 +1,4 @@
-"""The changes in the facts of a world model from one step to the next."""
+"""Changes of the facts of a world model from one step to the next."""
 
 import re
 from collections import Counter, defaultdict
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 EDGE_FACT = "segment("  # facts that begin so are counted by node: one more corner renumbers all edges behind it
-FACT_NUMBER = re.compile(r"([(,])-?\d+(?=[,)])", re.ASCII)  # an argument that is a number
+WHOLE_ARGUMENT = re.compile(r"([(,])-?\d+(?=[,)])", re.ASCII)  # an argument that is a number
 
 
 class Changes(NamedTuple):
@@ -41,10 +41,10 @@ def changes(before: Sequence[str], after: Sequence[str]) -> Changes:
     waiting: dict[str, list[str]] = defaultdict(list)
     for fact in gone:
         if not _is_edge(fact):
-            waiting[FACT_NUMBER.sub(r"\1#", fact)].append(fact)
+            waiting[WHOLE_ARGUMENT.sub(r"\1#", fact)].append(fact)
     added, changed = [], []
     for fact in come:
-        former = waiting.get(FACT_NUMBER.sub(r"\1#", fact))
+        former = waiting.get(WHOLE_ARGUMENT.sub(r"\1#", fact))
         if former:
             changed.append((former.pop(0), fact))
         elif not _is_edge(fact):

@@ -15,6 +15,7 @@ from string import Template
 from typing import Any
 
 from simulator.episode.episode import Episode
+from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import deflated, packed_episode
 from simulator.terminal.streams import escape_controls
 
@@ -57,7 +58,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",
         player=deflated({"style": style, "body": body, "script": player}),
-        episode="\n".join(packed_episode(episode, trees)),
+        episode="\n".join(packed_episode(episode, episode_events(episode), trees)),
     )
 
 

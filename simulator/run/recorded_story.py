@@ -1,6 +1,7 @@
 """A recorded episode, read step by step, back and forth; and the live run that repeats it."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 import shapely
@@ -15,7 +16,10 @@ from simulator.run.live_story import LiveStory
 from simulator.run.robots import make_robot
 from simulator.run.session import RobotMaker
 from simulator.scenario.picture import draw
+from simulator.scenario.scenario import Scenario
 
+# What a header that is not as it must be leads to.
+DAMAGE_ERRORS = (ValueError, KeyError, TypeError, AttributeError, shapely.errors.ShapelyError)
 # What happened in the world at a step: the same in a repetition of the same run.
 WORLD_KEYS = ("step", "action", "motion", "utak", "held", "objects", "retina", "touch")
 
@@ -28,10 +32,14 @@ class RecordedStory:
     name : the name of the file, for messages.
     episode : the episode.
     kb_files : the paths of the rule files with which it was made, as far as they are given again.
+
+    Attributes
+    ----------
+    name, kb_files : as given.
     """
 
     def __init__(self, name: str, episode: Episode, kb_files: tuple[str, ...] = ()) -> None:
-        self.name, self._episode, self._kb_files = name, episode, kb_files
+        self.name, self._episode, self.kb_files = name, episode, kb_files
         self._at = 0
         self._rules = AssumedRules()
         self._checked: dict[int, list[str]] = {}  # the facts of the step that was asked for last
@@ -95,20 +103,28 @@ class RecordedStory:
 
     @property
     def conditions(self) -> RunConditions:
-        """The conditions that count at the current step besides the scenario, as far as the header states it.
+        """The conditions that count at the current step besides the scenario, as far as the header states them.
 
-        Raises BadInputError when the header's task or a change in it has errors.
+        Changes with errors are left out. Raises BadInputError when the header's task has errors.
         """
-        conditions = RunConditions((), recorded_scenario(self.header, self.lines[0]).task)
+        conditions = RunConditions((), self._scenario().task)
         for change in self.changes:
-            conditions = changed_conditions(conditions, change, self._kb_files)
+            with suppress(BadInputError):
+                conditions = changed_conditions(conditions, change, self.kb_files)
         return conditions
+
+    def _scenario(self) -> Scenario:
+        """Return the scenario that the header states; raise BadInputError when it states none."""
+        try:
+            return recorded_scenario(self.header, self.lines[0])
+        except DAMAGE_ERRORS as error:
+            raise self._damaged(-1, f"the header states no scenario: {type(error).__name__}: {error}") from None
 
     @property
     def rule_files(self) -> tuple[str, ...]:
         """The paths of the rules that queries use: the user's files, and assumptions that the header states."""
         assumed = self._rules.files(self.conditions.assumptions) if self.changes else ()
-        return (*self._kb_files, *assumed)
+        return (*self.kb_files, *assumed)
 
     @property
     def next_action(self) -> tuple[EpisodeLine | None, str] | None:
@@ -163,10 +179,10 @@ class RecordedStory:
         ------
         BadInputError : the run cannot be repeated; the problem says why.
         """
+        scenario = self._scenario()
         try:
-            scenario = recorded_scenario(self.header, self.lines[0])
-            settings = recorded_settings(self.header, self._kb_files)
-        except (ValueError, KeyError, TypeError, AttributeError, shapely.errors.ShapelyError) as error:
+            settings = recorded_settings(self.header, self.kb_files)
+        except DAMAGE_ERRORS as error:
             raise self._damaged(-1, f"this run cannot be repeated: {error}") from None
         live, differing = LiveStory(scenario, settings, make), None
         for step in range(self._at + 1):
@@ -192,7 +208,7 @@ class RecordedStory:
 
 def _change_of(entry: Any) -> Change | None:
     """Return a change as a header states it; None for a damaged one."""
-    if isinstance(entry, dict) and isinstance(entry.get("step"), int):
+    if isinstance(entry, dict) and type(entry.get("step")) is int and entry["step"] >= 0:
         for kind in CHANGE_KINDS:
             if isinstance(entry.get(kind), str):
                 return Change(entry["step"], kind, entry[kind])

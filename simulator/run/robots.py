@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from planner.cycle import Options, Robot
 
 
-def make_robot(body: Body, task: Task, settings: Settings) -> "Robot":
+def make_robot(body: Body, task: Task, settings: Settings) -> RobotProtocol:
     """Return the robot of `planner.cycle` for a body and a task; compile the geometry kernels that it needs first."""
     from planner.cycle import Robot as Mind
 

@@ -73,6 +73,14 @@ class RobotProtocol(Protocol):
 
 
 @runtime_checkable
+class FollowingRobotProtocol(Protocol):
+    """A robot that takes commands from outside."""
+
+    def follow(self, command: Command, why: str) -> StepReportProtocol:
+        """Give a command that comes from outside, act and return the report."""
+
+
+@runtime_checkable
 class AdoptingRobotProtocol(Protocol):
     """A robot that takes other rules and another task while it runs."""
 

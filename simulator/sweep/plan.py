@@ -15,7 +15,7 @@ SWEEP_VERSION = 1  # of the form of results; docs/sweeps.md
 RUN_FUNCTION = "simulator.sweep.one_run:run_one"  # what a worker does for a run
 PREPARATION_FUNCTION = "simulator.sweep.one_run:prepare"  # what each worker process does first
 SEED_LIMIT = 2**63  # seeds are below it
-MAX_RUNS = 1_000_000  # of a sweep; a convention
+MAX_RUNS = 200_000  # of a sweep; each takes about 2 kB of memory
 
 
 class SweepRun(NamedTuple):

@@ -17,7 +17,7 @@ from simulator.world.world import VERGE_COLOUR
 
 SENSED_REACH = 16  # squares; the offsets of the retina's squares run from -16 to 15
 VIEW_ZONES = ((4, 1), (8, 2), (16, 4))  # (reach, side of a field) of each zone, in squares, from the fovea outwards
-FIELD_COUNT = 160  # fields of the retina
+SENSED_FIELDS = 160  # fields of the retina
 SENSED_NUMBERS = 168  # of an impression in numbers: the fields and the 8 adjacent squares
 MAX_FIELD_SQUARES = 16  # squares of the largest fields
 VERGE_CODE = colour_code(VERGE_COLOUR)  # what is felt beyond the table
@@ -75,7 +75,7 @@ class Senses:
         count = np.arange(MAX_FIELD_SQUARES + 1)
         area = side[:, None] ** 2
         self._levels = ((14 * count + area) // (2 * area)).astype(np.uint8)  # by field and count
-        self._fields = np.arange(FIELD_COUNT)
+        self._fields = np.arange(SENSED_FIELDS)
         self._adjacent = {
             name: (round(east * cosine - north * sine), round(east * sine + north * cosine))
             for name, (east, north) in NEIGHBOUR_OFFSETS.items()
@@ -96,7 +96,7 @@ class Senses:
         """
         if sensed is None:
             sensed = np.empty(SENSED_NUMBERS, np.uint8)
-        counts, touched = sensed[:FIELD_COUNT], sensed[FIELD_COUNT:]
+        counts, touched = sensed[:SENSED_FIELDS], sensed[SENSED_FIELDS:]
         i, j = math.floor(here[0]), math.floor(here[1])
         survey_square.call_unchecked(table.colours, i, j, self._squares, self._neighbours, VERGE_CODE, counts, touched)
         counts[self._own_field] += 1
@@ -122,12 +122,12 @@ class Senses:
 
 def gray_levels(sensed: ImpressionCodes) -> tuple[int, ...]:
     """Return the 160 gray levels, 0 to 7, of an impression in numbers."""
-    return tuple(sensed[:FIELD_COUNT].tolist())
+    return tuple(sensed[:SENSED_FIELDS].tolist())
 
 
 def felt_colours(sensed: ImpressionCodes) -> tuple[str | None, ...]:
     """Return the colours felt in an impression in numbers: of 8 squares, clockwise from north; None for floor."""
-    return tuple([COLOUR_OF_CODE[code] for code in sensed[FIELD_COUNT:].tolist()])
+    return tuple([COLOUR_OF_CODE[code] for code in sensed[SENSED_FIELDS:].tolist()])
 
 
 def _fields_of_squares() -> tuple[Longs, Longs]:

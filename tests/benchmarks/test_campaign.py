@@ -4,6 +4,7 @@ import json
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,13 +18,15 @@ from benchmarks.harness.narrowness import Narrowness, narrowness
 from benchmarks.harness.stopwatch import Seconds
 from benchmarks.harness.tally import faults, table, verdicts
 from benchmarks.harness.tally import narrowness as told_right
-from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial
+from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial_of, trial_of_outcome, trial_task
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.scenes import RandomScenario
 from kb.body import Body, Command, Impression, Move
 from kb.perception.frame import turned
 from kb.task.task import Task
 from simulator.scenario.settings import Settings
+from simulator.sweep.executors.in_process import run_in_this_process
+from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
 
 
 class Report(NamedTuple):
@@ -266,3 +269,26 @@ def test_a_verdict_without_a_passage_is_not_right() -> None:
         0.1,
         0.0,
     ]
+
+
+@pytest.mark.parametrize("narrow", [None, Narrowness(0.1, 0.0), Narrowness(math.nan, math.nan)])
+def test_a_trial_survives_the_way_from_its_process(narrow: Narrowness | None) -> None:
+    score = Score(1, 2, 3, 4, 5, 6, 7, ("a", "b"))
+    trial = CampaignTrial(7, 3, True, True, False, "done", "r", 4, 1.5, math.nan, ["x"], times(1.0, 2.0), score)
+    trial = replace(trial, narrow=narrow)
+    found = trial_of(json.loads(json.dumps(trial.row())))
+    assert repr(found) == repr(trial), "not ==, for nan differs from itself"
+
+
+def test_a_process_that_dies_is_a_crash_of_its_trial() -> None:
+    lost = TaskOutcome(None, "died", "its process was ended by SIGKILL", 3.0)
+    trial = trial_of_outcome(3, 11, Conditions(), lost)
+    assert (trial.possible, trial.crash, trial.right) == (False, "its process was ended by SIGKILL", False)
+
+
+def test_a_trial_as_a_task_is_the_same_trial(tmp_path: Path) -> None:
+    task = trial_task(1, 5, Conditions(max_steps=2, seconds=0), tmp_path)
+    (found,) = run_in_this_process([WorkerTask(task.function, json.loads(json.dumps(task.argument)))])
+    trial = trial_of_outcome(1, 5, Conditions(), found[1])
+    assert (trial.task, trial.seed, trial.crash) == (1, 5, "") and len(trial.cycles) == trial.steps + 1
+    assert task.seconds is None and (trial_task(1, 5, Conditions(seconds=9), tmp_path).seconds or 0) > 9

@@ -148,8 +148,11 @@ def test_rules_of_users_take_part_and_may_be_asked(tmp_path: Path) -> None:
     rules.write_text("broad(D) :- width(D, L), L >= 300.\n")
     with pytest.raises(utak.BadInputError, match="wide"):
         run.world.query("wide(D)")
+    rules.unlink()
     with pytest.raises(utak.CannotOpenError):
-        utak.Run(NEXT_ROOM, rules=[tmp_path / "none.lp"])
+        run.world.query("wide(D)")
+    with pytest.raises(utak.CannotOpenError):
+        utak.Run(NEXT_ROOM, rules=[rules])
 
 
 def test_a_run_shows_itself() -> None:

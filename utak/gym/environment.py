@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 
 from simulator.scenario.picture import draw
-from simulator.world.senses import FIELD_COUNT, SENSED_NUMBERS, ImpressionCodes
+from simulator.world.senses import SENSED_FIELDS, SENSED_NUMBERS, ImpressionCodes
 from utak.gym.actions import action_form
 from utak.gym.game import Game, Rules, Scenarios, games
 from utak.gym.pixels import Image, image
@@ -139,15 +139,15 @@ def observation_space() -> spaces.Space[Any]:
     """Return the space of impressions."""
     return spaces.Dict(
         {
-            "retina": spaces.Box(0, MAX_SEEN_LEVEL, (FIELD_COUNT,), np.uint8),
-            "touch": spaces.Box(0, MAX_FELT_COLOUR, (SENSED_NUMBERS - FIELD_COUNT,), np.uint8),
+            "retina": spaces.Box(0, MAX_SEEN_LEVEL, (SENSED_FIELDS,), np.uint8),
+            "touch": spaces.Box(0, MAX_FELT_COLOUR, (SENSED_NUMBERS - SENSED_FIELDS,), np.uint8),
         }
     )
 
 
 def split(sensed: ImpressionCodes) -> Observation:
     """Return impressions in numbers, (..., 168), as observations."""
-    return {"retina": sensed[..., :FIELD_COUNT], "touch": sensed[..., FIELD_COUNT:]}
+    return {"retina": sensed[..., :SENSED_FIELDS], "touch": sensed[..., SENSED_FIELDS:]}
 
 
 def next_game(several: list[Game], random: np.random.Generator, options: dict[str, Any] | None) -> Game:

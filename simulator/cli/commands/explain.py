@@ -1,4 +1,4 @@
-"""`utak explain`: why a fact is believed, a command was given, a cell shows what it does; what would have worked."""
+"""`utak explain`: why a fact is believed, why a command was given, what a cell is laid to, what would have worked."""
 
 import argparse
 import sys
@@ -27,9 +27,6 @@ def add(parts: Any) -> None:
     part.add_argument("episode", metavar="EP.jsonl", help="an episode")
     part.add_argument(
         "fact", metavar="FACT", nargs="?", help="a fact, a goal or verdict(V); without it the command of the step"
-    )
-    part.add_argument(
-        "--whynot", metavar="FACT", help="tell why a fact is not believed, and what is missing or in the way"
     )
     part.add_argument("--cell", type=_cell, metavar="N", help="a cell of the impression of the step, 0 to 159")
     part.add_argument("--at", type=_step, metavar="STEP", help="the step (default: the last)")
@@ -78,8 +75,6 @@ def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
     """Return the answer to the question of the command line."""
     if options.cell is not None:
         return questions.why_cell(options.cell, options.at)
-    if options.whynot is not None:
-        return questions.why_not(options.whynot, options.at)
     if options.fact is not None:
         return questions.why(options.fact, options.at)
     return questions.why_step(options.at)

@@ -1,4 +1,4 @@
-"""What geometry alone refutes: proofs that no run can succeed, and the widths from which on a gap is worth a run.
+"""Bounds by geometry alone: proofs that no run can succeed, and the widths from which on a gap is worth a run.
 
 The robot, and all that can be moved beside the thing in question, are left out: what is impossible without them is
 impossible with them.
@@ -20,6 +20,8 @@ from simulator.world.physics import table_edge
 from simulator.world.world import Thing, World
 
 GAP_MARGIN = 1e-6  # squares by which a gap is closed on paper; below what the physics resolves
+# Relative resolution and cells of a proof: enough for widths that differ by a step; what is not decided is run instead.
+PROOF_RESOLUTION, PROOF_CELLS = 1e-3, 20_000
 MIN_SIDE_AREA = 1.0  # square squares; smaller parts of the floor are no side of a gap; a convention
 
 
@@ -68,4 +70,6 @@ def _cannot_come(world: World, thing: Thing, region: Any) -> bool:
     inside = Inside([part for part in shapely.get_parts(region) if part.geom_type == "Polygon"])
     obstacles = shapely.union_all([solid_of(world), table_edge(world.width, world.height)])
     bounds = (0.0, 0.0, float(world.width), float(world.height))
-    return plan_motion(body, obstacles, Pose(middle.x, middle.y, 0.0), inside, bounds).status == "impossible"
+    start = Pose(middle.x, middle.y, 0.0)
+    plan = plan_motion(body, obstacles, start, inside, bounds, PROOF_RESOLUTION, cells=PROOF_CELLS)
+    return plan.status == "impossible"

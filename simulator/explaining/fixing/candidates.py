@@ -13,7 +13,7 @@ from planner.stages import stages
 from simulator.explaining.fixing.bounds import cannot_pass
 from simulator.explaining.fixing.changes import Away, Dropped, Led, Wider, dropped_goals
 from simulator.explaining.fixing.gaps import (
-    LENGTH_TOLERANCE,
+    GAP_LENGTH_TOLERANCE,
     WIDTH_STEP,
     Gap,
     GapSide,
@@ -41,14 +41,16 @@ class GapRange:
     Attributes
     ----------
     gap, side : the gap, and which of its walls gives way.
-    least : the fewest steps with which what must be carried may pass, by geometry alone; at least 1.
+    least : about the fewest steps with which what must be carried may pass, by geometry alone; at least 1.
     most : the most steps that are tried.
+    alone : whether what must be carried may pass when nothing else is changed; else the gap is tried in pairs alone.
     """
 
     gap: Gap
     side: GapSide
     least: int
     most: int
+    alone: bool = True
 
     def change(self, steps: int) -> Wider:
         """Return the change by so many steps."""
@@ -89,11 +91,9 @@ def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: lis
     passages = passages_of(world)
     ranges: list[tuple[GapRange, ...]] = []
     for gap in (*passages, *new_doors_of(world)):
-        if gap.width < widest - LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
-            sides = (GapSide.LEFT,) if gap.is_new else (GapSide.BOTH, GapSide.LEFT, GapSide.RIGHT)
-            found = [one for side in sides if (one := _range(scenario.world, carried, gap, side, widest)) is not None]
-            if found:
-                ranges.append(tuple(found))
+        if gap.width < widest - GAP_LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
+            found = _ranges_of(world, carried, gap, widest)
+            ranges += [found] if found else []
     led = tuple(_led_places(scenario, passages, seen_from))
     return Candidates(tuple(dropped_goals(scenario.task)), away, tuple(ranges), led)
 
@@ -114,28 +114,37 @@ def is_out_of_commands(result: Result, max_steps: int) -> bool:
     return result.verdict == "limit" and result.steps >= max_steps
 
 
-def _range(world: World, carried: tuple[Thing, ...], gap: Gap, side: GapSide, widest: float) -> GapRange | None:
-    """Return the widths of a gap that are tried on one side; None when it cannot be made wider there.
+def _ranges_of(world: World, carried: tuple[Thing, ...], gap: Gap, widest: float) -> tuple[GapRange, ...]:
+    """Return the widths of a gap that are tried, by side; () when it cannot be made wider.
 
-    The upper end is the widest of those that can be made; the lower end is found by bisection among them, because what
-    cannot pass a gap cannot pass a narrower one.
+    The upper end is the widest of those that can be made. The lower end is found by bisection on the side where the gap
+    can be widest, because what cannot pass a gap cannot pass a narrower one; it is a guess for the other sides.
     """
     limit = min(widest, max(gap.room, gap.width + 1.0))
-    most = math.floor((limit - gap.width) / WIDTH_STEP + LENGTH_TOLERANCE)
-    while most > 0 and widened(world, gap, side, most * WIDTH_STEP) is None:
-        most -= 1
+    most_wanted = math.floor((limit - gap.width) / WIDTH_STEP + GAP_LENGTH_TOLERANCE)
+    most_by_side = {}
+    for side in [GapSide.LEFT] if gap.is_new else GapSide:
+        most = most_wanted
+        while most > 0 and widened(world, gap, side, most * WIDTH_STEP) is None:
+            most -= 1
+        if most > 0:
+            most_by_side[side] = most
+    if not most_by_side:
+        return ()
+    best = max(most_by_side, key=lambda side: most_by_side[side])
 
     def is_too_narrow(steps: int) -> bool:
-        changed = widened(world, gap, side, steps * WIDTH_STEP)
+        changed = widened(world, gap, best, steps * WIDTH_STEP)
         return changed is None or (bool(carried) and all(cannot_pass(world, changed, gap, one) for one in carried))
 
-    if most < 1 or is_too_narrow(most):
-        return None
-    low, high = 0, most
-    while high - low > 1:
+    low, high = 0, most_by_side[best]
+    alone = not is_too_narrow(high)
+    while alone and high - low > 1:
         middle = (low + high) // 2
         low, high = (middle, high) if is_too_narrow(middle) else (low, middle)
-    return GapRange(gap, side, high, most)
+    return tuple(
+        GapRange(gap, side, min(high, most) if alone else 1, most, alone) for side, most in most_by_side.items()
+    )
 
 
 def _led_places(scenario: Scenario, passages: list[Gap], seen_from: list[XY]) -> Iterator[Led]:

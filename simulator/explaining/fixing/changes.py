@@ -50,12 +50,12 @@ class Wider:
 
     @property
     def by(self) -> float:
-        """By how many squares it is wider."""
+        """Return by how many squares it is wider."""
         return self.steps * WIDTH_STEP
 
     @property
     def width(self) -> float:
-        """How wide it is then, in squares."""
+        """Return how wide it is then, in squares."""
         return self.gap.width + self.by
 
 
@@ -101,7 +101,7 @@ class MoreCommands:
     max_steps: int
 
 
-Change = Away | Wider | Dropped | Led | MoreCommands
+WorldChange = Away | Wider | Dropped | Led | MoreCommands
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Variant:
     led: tuple[XY, ...] = ()
 
 
-def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[Change]) -> Variant | None:
+def variant_of(scenario: Scenario, settings: Settings, changes: Iterable[WorldChange]) -> Variant | None:
     """Return a scenario with all of some changes; None when they cannot be made.
 
     They cannot when a gap cannot be widened so, when no goal is left, or when expect.lp wants something of a thing that

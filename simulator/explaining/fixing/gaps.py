@@ -23,13 +23,15 @@ from simulator.world.world import World
 
 WIDTH_STEP = 0.25  # squares; widths are tried in these steps; a convention
 FINE_CELLS = 4  # cells along a square, in worlds whose walls do not lie on whole squares; a convention
+CELL_DIAGONAL = math.sqrt(2) / FINE_CELLS  # squares; how far a wall may lie from where the raster shows it
 MAX_FINE_SIDE = 256  # squares; greater tables are surveyed in whole squares; a convention
-MIN_NECK_RATIO = 1.25  # how many times as wide the floor must be on both sides of a passage; as kb.world.doors has it
+MIN_NECK_RATIO = 1.05  # how many times as wide the floor is on both sides of a passage; a convention, near 1
 WALL_MARGIN = 0.5  # squares about a passage within which its walls are measured; a convention
 ROUGH_MARGIN = 1.5  # squares about a passage found on a raster within which its walls lie; more than a cell's diagonal
 JAMB_MARGIN = 0.05  # squares beyond jambs that lie askew, so that no sliver of them stays; more than the tolerance
+MAX_MEASURINGS = 8  # times that a gap in a thick wall is measured further; each time the window grows; a convention
 JAMB_TOLERANCE = 0.01  # squares by which a wall may be further away and still bounds a passage; coordinates are rounded
-LENGTH_TOLERANCE = 1e-6  # squares; rounding of lengths
+GAP_LENGTH_TOLERANCE = 1e-6  # squares; rounding of lengths
 MIN_FLOOR_AREA = 1e-6  # square squares; smaller pieces of floor come from rounding
 MAX_OPENED_WALL = 8  # squares; no door is made in a thicker wall; a convention
 
@@ -66,12 +68,12 @@ class Gap:
 
     @property
     def is_new(self) -> bool:
-        """Whether it is a new door, where there was none."""
+        """Return whether it is a new door, where there was none."""
         return self.width == 0.0
 
     @property
     def place(self) -> XY:
-        """The point halfway between its ends."""
+        """Return the point halfway between its ends."""
         return (self.left[0] + self.right[0]) / 2, (self.left[1] + self.right[1]) / 2
 
 
@@ -86,8 +88,16 @@ def floor_of(world: World) -> Any:
 
 
 def passages_of(world: World) -> list[Gap]:
-    """Return the passages of the floor, the narrowest first, then from the south and the west."""
-    solid = solid_of(world)
+    """Return the passages of the floor, the narrowest first, then from the south and the west.
+
+    Those between walls alone are among them, also where a fixed thing stands in the way.
+    """
+    found = {gap.wall: gap for gap in (*_passages_in(world, world.verge), *_passages_in(world, solid_of(world)))}
+    return sorted(found.values(), key=lambda gap: (gap.width, gap.place[1], gap.place[0]))
+
+
+def _passages_in(world: World, solid: Any) -> list[Gap]:
+    """Return the passages of what is left of a table beside a solid, in no particular order."""
     cells = _cells_per_square(solid, world)
     free = ~_covered(solid, world, cells)
     if not free.any():
@@ -95,12 +105,12 @@ def passages_of(world: World) -> list[Gap]:
     found = []
     for passage in Screen(free).passages(MIN_NECK_RATIO):
         (a, b), (c, d) = ([(x / cells, y / cells) for x, y in mouth] for mouth in passage.mouths)
-        if math.dist(_halfway(a, c), _halfway(b, d)) < LENGTH_TOLERANCE:
+        if math.dist(_halfway(a, c), _halfway(b, d)) < GAP_LENGTH_TOLERANCE:
             continue  # its mouths cross each other: there is no direction in which it could be made wider
         gap = _gap_between(_halfway(a, c), _halfway(b, d), shapely.MultiPoint([a, b, c, d]), passage.width / cells)
         gap = replace(gap, room=min(passage.sides) / cells)
         found.append(gap if cells == 1 else _measured(solid, gap))
-    return sorted(found, key=lambda gap: (gap.width, gap.place[1], gap.place[0]))
+    return found
 
 
 def _gap_between(left: XY, right: XY, mouths: Any, width: float) -> Gap:
@@ -117,10 +127,21 @@ def _halfway(one: XY, other: XY) -> XY:
 
 
 def _measured(solid: Any, rough: Gap) -> Gap:
-    """Return a gap that was found on a raster with the ends and the width that its walls have."""
-    window = shapely.from_wkt(rough.wall).buffer(max(ROUGH_MARGIN, rough.width / 2))
-    left, right = _walls_beside(solid, window, rough)
-    if left.is_empty or right.is_empty or left.distance(right) < LENGTH_TOLERANCE:
+    """Return a gap that was found on a raster with the ends, the width and the depth that its walls have."""
+    gap = _measured_once(solid, rough)
+    for _ in range(MAX_MEASURINGS):
+        again = _measured_once(solid, gap)
+        if again.depth <= gap.depth + JAMB_TOLERANCE:
+            break
+        gap = again
+    return gap
+
+
+def _measured_once(solid: Any, rough: Gap) -> Gap:
+    """Return a gap with the measures that its walls have near where it was thought to be."""
+    margin = max(ROUGH_MARGIN, rough.width / 2)
+    left, right = _walls_beside(solid, shapely.from_wkt(rough.wall), margin, CELL_DIAGONAL, rough)
+    if left.is_empty or right.is_empty or left.distance(right) < GAP_LENGTH_TOLERANCE:
         return rough
     width = float(left.distance(right))
     q, p = shapely.get_coordinates(shapely.shortest_line(right, left)).tolist()
@@ -200,7 +221,7 @@ def widened(world: World, gap: Gap, side: GapSide, by: float) -> World | None:
     or when other parts of the floor would be joined as well.
     """
     shape = shapely.from_wkt(gap.wall)
-    if not gap.is_new and gap.depth < LENGTH_TOLERANCE:
+    if not gap.is_new and gap.depth < GAP_LENGTH_TOLERANCE:
         shape = _thickened(shape, gap, by)
     floor = floor_of(world)
     local = shape if gap.is_new else _part_at(shape.intersection(floor), gap.place)
@@ -220,7 +241,7 @@ def widened(world: World, gap: Gap, side: GapSide, by: float) -> World | None:
     changed = replace(world, verge=verge)
     if not verge.is_valid or verge.is_empty:
         return None
-    if not gap.is_new and _width(solid_of(changed), swept, gap) < gap.width + by - LENGTH_TOLERANCE:
+    if not gap.is_new and _width(solid_of(changed), swept, gap) < gap.width + by - GAP_LENGTH_TOLERANCE:
         return None
     parts, holes = _topology(floor)
     new_parts, new_holes = _topology(floor_of(changed))
@@ -258,14 +279,24 @@ def _sweep(shape: Any, offset: XY) -> Any:
     return shapely.union_all([part for part in parts if part.area > 0])
 
 
-def _width(solid: Any, window: Any, gap: Gap) -> float:
-    """Return how far the walls on the left and on the right of a gap are apart within a window, in squares."""
-    left, right = _walls_beside(solid, window.buffer(WALL_MARGIN, cap_style="flat", join_style="mitre"), gap)
+def _width(solid: Any, opening: Any, gap: Gap) -> float:
+    """Return how far the walls on the left and on the right of an opening are apart, in squares."""
+    left, right = _walls_beside(solid, opening, WALL_MARGIN, GAP_LENGTH_TOLERANCE, gap)
     return math.inf if left.is_empty or right.is_empty else float(left.distance(right))
 
 
-def _walls_beside(solid: Any, window: Any, gap: Gap) -> list[Any]:
-    """Return what is solid on the left and on the right of a gap's middle within a window."""
+def _walls_beside(solid: Any, opening: Any, margin: float, apart: float, gap: Gap) -> list[Any]:
+    """Return what is solid on the left and on the right of a gap's middle.
+
+    Parameters
+    ----------
+    solid : all that is solid.
+    opening : the opening between the walls.
+    margin : how far about it the walls are cut off, in squares.
+    apart : how far from it a wall may be; what stands further away, as before a door, is no wall of it.
+    gap : the gap.
+    """
+    window = opening.buffer(margin)
     near = solid.intersection(window)
     x0, y0, x1, y1 = window.bounds
     reach = 2 * (x1 - x0 + y1 - y0)
@@ -274,7 +305,8 @@ def _walls_beside(solid: Any, window: Any, gap: Gap) -> list[Any]:
     halves = []
     for sign in (1, -1):
         far = [(px + sign * x * reach, py + sign * y * reach) for px, py in (b, a)]
-        halves.append(near.intersection(shapely.Polygon([a, b, *far])))
+        parts = shapely.get_parts(near.intersection(shapely.Polygon([a, b, *far])))
+        halves.append(shapely.union_all([part for part in parts if part.area > 0 and part.distance(opening) <= apart]))
     return halves
 
 
@@ -296,7 +328,7 @@ def _clean(verge: Any) -> Any:
 def _cells_per_square(solid: Any, world: World) -> int:
     """Return into how many cells a square's side is divided: 1 where all walls lie on whole squares."""
     points = shapely.get_coordinates(solid)
-    on_squares = bool(np.all(np.abs(points - np.round(points)) < LENGTH_TOLERANCE))
+    on_squares = bool(np.all(np.abs(points - np.round(points)) < GAP_LENGTH_TOLERANCE))
     return 1 if on_squares or max(world.width, world.height) > MAX_FINE_SIDE else FINE_CELLS
 
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,14 +11,17 @@ from geometry.motion.se2 import direction
 from geometry.raster.rasterize import squares
 from kb.body import Body, Command, Move
 from kb.task.task import Task
-from simulator.run.robots import make_robot
-from simulator.run.session import Session, StepReportProtocol, VerdictProtocol
+from simulator.run.session import (
+    FollowingRobotProtocol,
+    RobotMaker,
+    RobotProtocol,
+    Session,
+    StepReportProtocol,
+    VerdictProtocol,
+)
 from simulator.scenario.settings import Settings
 from simulator.world.physics import Tabletop
 from simulator.world.world import World
-
-if TYPE_CHECKING:
-    from planner.cycle import Robot
 
 ARRIVAL_DISTANCE = 0.75  # squares; a led robot that is so near to a place has arrived; less than a square's diagonal
 MAX_LEADING_COMMANDS = 40  # commands; where noise or a thing in the way takes more, leading is given up; a convention
@@ -39,8 +41,10 @@ class LedRobot:
     led : whether more commands are going to be given.
     """
 
-    def __init__(self, robot: "Robot") -> None:
-        self._robot = robot
+    def __init__(self, robot: RobotProtocol) -> None:
+        if not isinstance(robot, FollowingRobotProtocol):
+            raise TypeError("this robot takes no commands from outside")
+        self._robot, self._follow = robot, robot.follow
         self.given: Command | None = None
         self.led = False
 
@@ -53,7 +57,7 @@ class LedRobot:
         if self.given is None:
             return self._robot.step()
         command, self.given = self.given, None
-        return self._robot.follow(command, LEADING_REASON)
+        return self._follow(command, LEADING_REASON)
 
     @property
     def finished(self) -> bool:
@@ -72,15 +76,16 @@ class Leader:
     Parameters
     ----------
     place : the place, on free floor, (x, y) in squares, table frame.
+    make : makes the robot.
     """
 
-    def __init__(self, place: XY) -> None:
-        self._place = place
+    def __init__(self, place: XY, make: RobotMaker) -> None:
+        self._place, self._make = place, make
         self._robot: LedRobot | None = None
 
     def make(self, body: Body, task: Task, settings: Settings) -> LedRobot:
         """Return the robot that is led."""
-        self._robot = LedRobot(make_robot(body, task, settings))
+        self._robot = LedRobot(self._make(body, task, settings))
         self._robot.led = True
         return self._robot
 

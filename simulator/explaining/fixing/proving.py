@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from simulator.episode.episode import EpisodeLog
 from simulator.explaining.fixing.bounds import refutation
-from simulator.explaining.fixing.changes import Change, Variant, variant_of
+from simulator.explaining.fixing.changes import Variant, WorldChange, variant_of
 from simulator.explaining.fixing.leading import Leader
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
@@ -22,7 +22,7 @@ class BudgetEndedError(Exception):
 
 @dataclass(frozen=True)
 class Budget:
-    """How much may be run.
+    """Bounds how much may be run.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Budget:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a changed scenario ended.
+    """Holds how a changed scenario ended.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ IMPOSSIBLE_CHANGE = Outcome(False, None)
 
 
 @dataclass
-class Prover:
+class VariantProver:
     """Runs a scenario with changes and remembers how it ended.
 
     Attributes
@@ -72,18 +72,18 @@ class Prover:
     scenario: Scenario
     settings: Settings
     budget: Budget
-    watch: Callable[[int, tuple[Change, ...], Outcome], None] = lambda number, changes, outcome: None
+    watch: Callable[[int, tuple[WorldChange, ...], Outcome], None] = lambda number, changes, outcome: None
     make: RobotMaker = make_robot
     runs: int = 0
     commands: int = 0
-    _known: dict[tuple[Change, ...], Outcome] = field(default_factory=dict)
+    _known: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
     _begun: float = field(default_factory=time.monotonic)
 
-    def variant(self, changes: tuple[Change, ...]) -> Variant | None:
+    def variant(self, changes: tuple[WorldChange, ...]) -> Variant | None:
         """Return the scenario with some changes; None when they cannot be made."""
         return variant_of(self.scenario, self.settings, changes)
 
-    def outcome(self, changes: tuple[Change, ...]) -> Outcome:
+    def outcome(self, changes: tuple[WorldChange, ...]) -> Outcome:
         """Return how the scenario with some changes ends; it is run unless that is known.
 
         Raises BudgetEndedError when no run is left.
@@ -99,22 +99,22 @@ class Prover:
                 self._known[changes] = self._run(changes, variant)
         return self._known[changes]
 
-    def follows(self, changes: tuple[Change, ...], outcome: Outcome) -> None:
+    def follows(self, changes: tuple[WorldChange, ...], outcome: Outcome) -> None:
         """Keep how changes end that need no run of their own, because another run shows it."""
         self._known[changes] = outcome
 
     @property
-    def tried(self) -> dict[tuple[Change, ...], Outcome]:
-        """All changes that were tried, with how they ended, in their order."""
+    def tried(self) -> dict[tuple[WorldChange, ...], Outcome]:
+        """Return all changes that were tried, with how they ended, in their order."""
         return dict(self._known)
 
-    def _run(self, changes: tuple[Change, ...], variant: Variant) -> Outcome:
+    def _run(self, changes: tuple[WorldChange, ...], variant: Variant) -> Outcome:
         """Run a scenario with changes."""
         if self.runs >= self.budget.runs:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
         self._check_time()
         self.runs += 1
-        leader = Leader(variant.led[0]) if variant.led else None
+        leader = Leader(variant.led[0], self.make) if variant.led else None
         session = Session(
             variant.scenario, variant.settings, self.make if leader is None else leader.make, EpisodeLog(None)
         )

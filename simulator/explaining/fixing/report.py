@@ -12,10 +12,10 @@ import numpy as np
 from geometry.kernels.arrays import XY
 from geometry.motion.se2 import direction
 from kb.evidence.reason import Depth
-from simulator.explaining.fixing.changes import Away, Change, Dropped, Led, MoreCommands, Wider
+from simulator.explaining.fixing.changes import Away, Dropped, Led, MoreCommands, Wider, WorldChange
 from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide
 from simulator.explaining.fixing.proving import Outcome
-from simulator.explaining.fixing.search import Changes, Fix, FixReport
+from simulator.explaining.fixing.search import Fix, FixReport, WorldChanges
 from simulator.world.world import World
 
 COMPASS_WORDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
@@ -68,12 +68,12 @@ def is_repeated(report: FixReport) -> bool:
     return recorded is None or (before is not None and before.line["result"] == recorded)
 
 
-def changes_in_words(changes: Changes, world: World) -> str:
+def changes_in_words(changes: WorldChanges, world: World) -> str:
     """Return changes in words, places in the robot's frame."""
     return " and ".join(_in_words(change, world) for change in changes)
 
 
-def change_values(change: Change, world: World) -> dict[str, Any]:
+def change_values(change: WorldChange, world: World) -> dict[str, Any]:
     """Return a change as JSON values; `table` and `robot` have its places in both frames, (x, y) in squares."""
     match change:
         case Away(name):
@@ -118,12 +118,12 @@ def _lines(report: FixReport, depth: Depth) -> Iterator[str]:
     if depth != Depth.SHORT:
         refuted = sum(bool(outcome.refuted) for _, outcome in failed)
         geometry = f", {refuted} of them by geometry alone" if refuted else ""
-        count = len(failed) + len(report.fixes)
+        count = len(failed) + sum(outcome.works for changes, outcome in report.tried if changes)
         yield f"{count} changes tried in {report.runs} runs, {report.commands} commands; {len(failed)} failed{geometry}"
         yield FRAME_NOTE
 
 
-def _failed(report: FixReport) -> list[tuple[Changes, Outcome]]:
+def _failed(report: FixReport) -> list[tuple[WorldChanges, Outcome]]:
     """Return what was tried and does not work, without what cannot be made."""
     return [
         (changes, outcome)
@@ -153,7 +153,7 @@ def _proof_in_words(fix: Fix, report: FixReport) -> str:
     return " (with every smaller step it fails)" if fix.is_least else " (with one step less it fails)"
 
 
-def _in_words(change: Change, world: World) -> str:
+def _in_words(change: WorldChange, world: World) -> str:
     """Return a change in words."""
     match change:
         case Away(name):

@@ -1,9 +1,9 @@
 """The search for the smallest changes with which a run works.
 
-Single changes come first, a gap as wide as it is tried at all. What works is made as small as possible. Then pairs are
-tried of changes that do not work alone. So no change that is reported contains another one that works. A width is
-bisected between one that fails and one that works, so the step below the reported one is shown to fail. What is left of
-the budget is spent on the smaller steps that bisection skipped.
+Single changes come first, a gap as wide as it is tried at all. What works is made as small as possible. Then
+pairs are tried of changes that do not work alone. So no change that is reported contains another one that works. Widths
+are tried from what geometry allows on, further and further up, and bisected between one that fails and one that works:
+with one step less they are shown to fail. What is left of the budget is spent on the smaller steps that were skipped.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,9 +17,9 @@ from simulator.explaining.fixing.candidates import (
     carried_things,
     is_out_of_commands,
 )
-from simulator.explaining.fixing.changes import Change, Dropped, MoreCommands, Wider
-from simulator.explaining.fixing.gaps import WIDTH_STEP
-from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, Prover
+from simulator.explaining.fixing.changes import Dropped, MoreCommands, Wider, WorldChange
+from simulator.explaining.fixing.gaps import WIDTH_STEP, GapSide
+from simulator.explaining.fixing.proving import Budget, BudgetEndedError, Outcome, VariantProver
 from simulator.explaining.fixing.recorded import RecordedRun
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker
@@ -29,12 +29,12 @@ MIN_MORE_COMMANDS = 200  # commands; at least so many are added then: the defaul
 SECOND_PROBE_STEPS = round(
     1.0 / WIDTH_STEP
 )  # steps above what geometry allows: one square, as coarse as the robot sees
-Changes = tuple[Change, ...]
+WorldChanges = tuple[WorldChange, ...]
 
 
 @dataclass(frozen=True)
 class Fix:
-    """Changes with which the run works.
+    """WorldChanges with which the run works.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Fix:
     is_least : whether it was shown to fail with any smaller number of steps of a width, not only with one less.
     """
 
-    changes: Changes
+    changes: WorldChanges
     outcome: Outcome
     is_smallest: bool
     is_least: bool
@@ -52,7 +52,7 @@ class Fix:
 
 @dataclass(frozen=True)
 class FixReport:
-    """What was found.
+    """Holds what was found.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class FixReport:
     run: RecordedRun
     before: Result | None
     fixes: tuple[Fix, ...]
-    tried: tuple[tuple[Changes, Outcome], ...]
+    tried: tuple[tuple[WorldChanges, Outcome], ...]
     runs: int
     commands: int
     ended: str
@@ -81,7 +81,7 @@ class FixReport:
 def find_fixes(
     run: RecordedRun,
     budget: Budget,
-    watch: Callable[[int, Changes, Outcome], None] = lambda number, changes, outcome: None,
+    watch: Callable[[int, WorldChanges, Outcome], None] = lambda number, changes, outcome: None,
     make: RobotMaker = make_robot,
 ) -> FixReport:
     """Return the smallest changes with which a run would have worked.
@@ -97,7 +97,7 @@ def find_fixes(
     -------
     What was found, and what was tried.
     """
-    prover = Prover(run.scenario, run.settings, budget, watch, make)
+    prover = VariantProver(run.scenario, run.settings, budget, watch, make)
     search, before, ended = FixSearch(prover), None, ""
     try:
         unchanged = prover.outcome(())
@@ -125,8 +125,8 @@ class FixSearch:
     prover : runs the changed scenarios.
     """
 
-    prover: Prover
-    _fixes: list[Changes] = field(default_factory=list)
+    prover: VariantProver
+    _fixes: list[WorldChanges] = field(default_factory=list)
     _ranges: dict[tuple[object, object], GapRange] = field(default_factory=dict)
 
     def more_commands(self, before: Result) -> None:
@@ -144,21 +144,22 @@ class FixSearch:
                 self.prover.follows(enough, outcome)
                 self._fixes.append(enough)
 
-    def singles(self, candidates: Candidates) -> list[Change]:
+    def singles(self, candidates: Candidates) -> list[WorldChange]:
         """Try every change alone, keep those that work, and return those of the others of which pairs are tried."""
-        left: list[Change] = []
-        plain: tuple[Change, ...] = (*candidates.dropped, *candidates.away)
+        left: list[WorldChange] = []
+        plain: tuple[WorldChange, ...] = (*candidates.dropped, *candidates.away)
         for change in plain:
             if self._works((change,)):
                 self._fixes.append((change,))
             elif self.prover.variant((change,)) is not None:
                 left.append(change)
-        gaps: list[Change] = []
+        gaps: list[WorldChange] = []
         for ranges in candidates.ranges:
             self._ranges |= {(one.gap, one.side): one for one in ranges}
             found = self._gap(ranges)
             if found is None:
-                gaps.append(ranges[0].change(ranges[0].most))
+                strongest = next((one for one in ranges if one.side == GapSide.BOTH), ranges[0])
+                gaps.append(strongest.change(strongest.most))
             else:
                 self._fixes.append(found)
         for place in candidates.led:
@@ -166,7 +167,7 @@ class FixSearch:
                 self._fixes.append((place,))
         return [*gaps, *sorted(left, key=lambda change: isinstance(change, Dropped))]
 
-    def pairs(self, left: list[Change]) -> None:
+    def pairs(self, left: list[WorldChange]) -> None:
         """Try pairs of changes that do not work alone, and make those that work as small as possible."""
         for pair in combinations(left, 2):
             if self._works(pair):
@@ -202,19 +203,19 @@ class FixSearch:
             fixes.append(Fix(changes, outcome, smallest, least))
         return tuple(fixes)
 
-    def _works(self, changes: Changes) -> bool:
+    def _works(self, changes: WorldChanges) -> bool:
         """Return whether changes work."""
         return self.prover.outcome(changes).works
 
-    def _is_known(self, changes: Changes, works: bool) -> bool:
+    def _is_known(self, changes: WorldChanges, works: bool) -> bool:
         """Return whether changes are known to work, or to fail."""
         outcome = self.prover.tried.get(changes)
         return outcome is not None and outcome.works == works
 
-    def _gap(self, ranges: tuple[GapRange, ...]) -> Changes | None:
+    def _gap(self, ranges: tuple[GapRange, ...]) -> WorldChanges | None:
         """Return a gap made wider by as few steps as work, on the side where the fewest suffice; None when none do."""
-        best: Changes | None = None
-        for number, one in enumerate(ranges):
+        best: WorldChanges | None = None
+        for number, one in enumerate(one for one in ranges if one.alone):
             for steps in _probes(one, 0 if number else 1) if best is None else _below(one, best):
                 probed = (one.change(steps),)
                 if self._works(probed):
@@ -224,10 +225,10 @@ class FixSearch:
                     break
         return best
 
-    def _shrunk(self, changes: Changes) -> Changes:
+    def _shrunk(self, changes: WorldChanges) -> WorldChanges:
         """Return working changes with each width as small as possible beside the others, and without needless parts."""
         first = True
-        before: Changes = ()
+        before: WorldChanges = ()
         while changes != before:
             before = changes
             for place, change in enumerate(changes):
@@ -240,21 +241,23 @@ class FixSearch:
                 return self._shrunk(part)
         return changes
 
-    def _fewest(self, changes: Changes, place: int) -> Changes:
-        """Return working changes with one width bisected between no step, which fails, and the steps it has."""
+    def _fewest(self, changes: WorldChanges, place: int) -> WorldChanges:
+        """Return working changes with one width as small as possible: with one step less they are shown to fail.
+
+        First the steps just above what geometry allows are tried, further and further up; then the rest is bisected.
+        """
         change = changes[place]
         assert isinstance(change, Wider)
         fails, works = 0, change.steps
-        middle = self._ranges[change.gap, change.side].least - 1
+        least = self._ranges[change.gap, change.side].least
+        trials = [least + 2**k - 1 for k in range(change.steps.bit_length())] + [least - 1]
         while works - fails > 1:
-            if not fails < middle < works:
-                middle = (works + fails) // 2
-            if self._works(_with_steps(changes, place, middle)):
-                works = middle
+            steps = next((one for one in trials if fails < one < works), (works + fails) // 2)
+            if self._works(_with_steps(changes, place, steps)):
+                works = steps
                 self._fixes[-1] = _with_steps(changes, place, works)
             else:
-                fails = middle
-            middle = (works + fails) // 2
+                fails = steps
         return _with_steps(changes, place, works)
 
 
@@ -265,14 +268,14 @@ def _probes(one: GapRange, others: int) -> Iterator[int]:
         yield one.least + SECOND_PROBE_STEPS
 
 
-def _below(one: GapRange, best: Changes) -> Iterator[int]:
+def _below(one: GapRange, best: WorldChanges) -> Iterator[int]:
     """Yield the number of steps that would be better than a gap that works on another side, if it can be made."""
     (change,) = best
     if isinstance(change, Wider) and 1 <= change.steps - 1 <= one.most:
         yield change.steps - 1
 
 
-def _with_steps(changes: Changes, place: int, steps: int) -> Changes:
+def _with_steps(changes: WorldChanges, place: int, steps: int) -> WorldChanges:
     """Return changes with another number of steps of the width at an index; without that change for no steps."""
     change = changes[place]
     assert isinstance(change, Wider)

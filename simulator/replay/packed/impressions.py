@@ -1,4 +1,4 @@
-"""The 160 fields of the retina with few characters: observed, predicted, and how they were explained.
+"""Impressions with few characters: what 160 fields observe, what was predicted for them, and how it was explained.
 
 Digits are written as what they are above others: the greatest level above the least, what is observed above the
 greatest. `status` is told by these but for exceptions, and `cells` by `status`. `explained` is told by a letter for
@@ -11,7 +11,7 @@ from typing import Any
 
 from simulator.episode.episode import EpisodeLine
 
-PACKED_FIELDS = 160
+FIELD_COUNT = 160
 DIGIT_KEYS = ("least", "most", "retina")  # each is written as what it is above the one before, in this order
 STATUS_WORDS = {"p": "predicted", "e": "explained", "n": "noise"}
 MAX_LETTERS = 26  # facts that can explain fields of one impression, by a letter each
@@ -34,14 +34,14 @@ def pack_impression(line: EpisodeLine) -> tuple[dict[str, Any], dict[str, Any]]:
     below = ""
     for key in DIGIT_KEYS:
         text = "".join(map(str, line["retina"])) if key == "retina" else belief.get(key)
-        if isinstance(text, str) and re.fullmatch(f"[0-7]{{{PACKED_FIELDS}}}", text):
+        if isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text):
             packed[key] = _above(text, below) if below else text
             belief.pop(key if key != "retina" else "", None)
             below = text
         else:
             below = ""
     status = belief.get("status")
-    if isinstance(status, str) and re.fullmatch(f"[pen]{{{PACKED_FIELDS}}}", status):
+    if isinstance(status, str) and re.fullmatch(f"[pen]{{{FIELD_COUNT}}}", status):
         packed["status"] = _exceptions(status, expected_status(line))
         del belief["status"]
         if belief.get("cells") == {STATUS_WORDS[letter]: count for letter, count in Counter(status).items()}:
@@ -59,8 +59,8 @@ def expected_status(line: EpisodeLine) -> str:
     It is `n` where the level is out of bounds, `p` where the bounds are one, else `e`. Without bounds it is `p`.
     """
     least, most = (line["belief"].get(key) for key in ("least", "most"))
-    if not all(isinstance(text, str) and re.fullmatch(f"[0-7]{{{PACKED_FIELDS}}}", text) for text in (least, most)):
-        return "p" * PACKED_FIELDS
+    if not all(isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text) for text in (least, most)):
+        return "p" * FIELD_COUNT
     levels = map(str, line["retina"])
     return "".join(
         "e" if low <= level <= high and low != high else "p" if low == level == high else "n"

@@ -20,7 +20,6 @@ from typing import Any
 from simulator.episode.episode import Episode, EpisodeLine
 from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
 from simulator.replay.packed.delta import GONE, difference
-from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
 from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
@@ -35,46 +34,44 @@ BYTES_PER_STEP = 285
 MAX_SAFE_INTEGER = 2**53  # the greatest integer that a browser's numbers hold exactly
 NO_HTML = str.maketrans("&<>`", ".,/:")  # what takes the place of the signs of base 85 that mean something in HTML
 Path = tuple[str, ...]  # the keys that lead to a value of a step's line
-SOLVED = ("belief", "solved")
 
 
-def packed_episode(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None) -> list[str]:
+def packed_episode(
+    episode: Episode, events: Mapping[str, Sequence[int]], trees: Mapping[int, Sequence[Any]] | None = None
+) -> list[str]:
     """Return an episode as the texts that a page holds.
 
     Parameters
     ----------
     episode : the episode, with one step at least.
+    events : the steps of each kind of event.
     trees : explanations by step: lists of `{"text": ..., "children": [...]}`, whose children are of the same form.
 
     Returns
     -------
     The index and the blocks, of ASCII without blanks and without signs that mean something in HTML.
     """
-    budget = PACKED_BYTES + BYTES_PER_STEP * max(0, len(episode.steps) - STEPS_PER_BLOCK)
-    texts: list[str] = []
-    for detail in DETAILS:
-        texts = _packed(episode, detail, trees or {})
-        if sum(map(len, texts)) <= budget:
-            break
-    return texts
-
-
-def _packed(episode: Episode, detail: tuple[int, int], trees: Mapping[int, Sequence[Any]]) -> list[str]:
-    """Return the texts of an episode whose decisions are cut to a detail."""
-    lines = [slim(kept_line(line, detail)) for line in episode.steps]
+    lines = [slim(line) for line in episode.steps]
+    blocks = [lines[first : first + STEPS_PER_BLOCK] for first in range(0, len(lines), STEPS_PER_BLOCK)]
+    movable = episode.header["world"]["movable"]
+    columns = [_columns(block, movable, trees or {}) for block in blocks]
     index = {
         "header": slim(episode.header),
         "result": slim(episode.result),
         "steps": len(lines),
         "columns": track_columns(lines),
-        "events": episode_events(episode),
+        "events": dict(events),
         "bounds": _bounds(lines),
         "block": STEPS_PER_BLOCK,
-        "detail": list(detail),
     }
-    blocks = [lines[first : first + STEPS_PER_BLOCK] for first in range(0, len(lines), STEPS_PER_BLOCK)]
-    movable = episode.header["world"]["movable"]
-    return [deflated(index), *(deflated(_block(block, movable, trees)) for block in blocks)]
+    budget = PACKED_BYTES + BYTES_PER_STEP * max(0, len(lines) - STEPS_PER_BLOCK)
+    texts: list[str] = []
+    for detail in DETAILS:
+        parts = [columns[n] + _decisions(block, detail) for n, block in enumerate(blocks)]
+        texts = [deflated({**index, "detail": list(detail)}), *map(deflated, parts)]
+        if sum(map(len, texts)) <= budget:
+            break
+    return texts
 
 
 def kept_line(line: EpisodeLine, detail: tuple[int, int] = DETAILS[0]) -> EpisodeLine:
@@ -124,20 +121,28 @@ def _bounds(lines: Sequence[EpisodeLine]) -> list[int] | None:
     return [min(west), min(south), max(east), max(north)]
 
 
-def _block(
+def _columns(
     lines: Sequence[EpisodeLine], movable: Mapping[str, EpisodeLine], trees: Mapping[int, Sequence[Any]]
 ) -> list[Any]:
-    """Return the columns of some steps: pairs of a path of keys, and the differences from step to step."""
+    """Return the columns of a block but for decisions: pairs of a path of keys, and the differences between steps."""
     prepared = [dict(_prepared(line, movable)) for line in lines]
     for line, values in zip(lines, prepared, strict=True):
         if line["step"] in trees:
             values["replay", "trees"] = slim(list(trees[line["step"]]))
-    decided: Any = None
-    for values in prepared:
-        if isinstance(values.get(SOLVED), list):
-            decided = values["packed", "solved"] = by_encoding(values.pop(SOLVED), decided)
     paths = dict.fromkeys(path for line in prepared for path in line)
     return [[list(path), _differences([line.get(path, _Absent) for line in prepared])] for path in paths]
+
+
+def _decisions(lines: Sequence[EpisodeLine], detail: tuple[int, int]) -> list[Any]:
+    """Return the column of the decisions of a block, cut to a detail; [] where no step records decisions."""
+    values: list[Any] = []
+    before: dict[str, Any] | None = None
+    for line in lines:
+        solved = kept_line(line, detail)["belief"].get("solved")
+        if isinstance(solved, list):
+            before = by_encoding(solved, before)
+        values.append(before if isinstance(solved, list) else _Absent)
+    return [[["packed", "solved"], _differences(values)]] if before is not None else []
 
 
 class _Absent:
@@ -171,6 +176,8 @@ def _prepared(line: EpisodeLine, movable: Mapping[str, EpisodeLine]) -> Iterator
         del belief["place"]
     if places_anew(line) is not None:
         del belief["seen_from"]
+    if isinstance(belief.get("solved"), list):
+        del belief["solved"]  # _decisions
     split = split_facts(belief["facts"])
     if split is not None:
         del belief["facts"]

@@ -1,7 +1,7 @@
 """Places and motions of an episode, written with few digits: of the robot, of things, of impressions.
 
 The true places that a page keeps are rounded: those of the robot and its motions to TRACK_DIGITS decimals of a square,
-the outlines of things to within TRACK_TOLERANCE. What the robot believes is kept exactly.
+the outlines of things to within KEPT_OUTLINE_TOLERANCE. What the robot believes is kept exactly.
 """
 
 import math
@@ -14,7 +14,7 @@ from simulator.replay.packed.delta import SAME, difference
 TRACK_DIGITS = 6  # decimals of a square
 PARTS = 10.0**TRACK_DIGITS  # of a square
 POSE_DIGITS = 5  # decimals of a square and of a degree, in the poses of things
-TRACK_TOLERANCE = 1e-4  # squares by which the outline of a thing may be off; a convention, far below a pixel
+KEPT_OUTLINE_TOLERANCE = 1e-4  # squares by which the outline of a thing may be off; a convention, far below a pixel
 TrackedRing = Sequence[Sequence[float]]
 
 
@@ -86,7 +86,7 @@ def posed(ring: TrackedRing, first: TrackedRing) -> list[Any]:
         turn = math.atan2(now[1] - ring[0][1], now[0] - ring[0][0]) - math.atan2(far[1] - y, far[0] - x)
         degrees = round(math.degrees(turn) % 360, POSE_DIGITS)
         pose = [round(ring[0][0], POSE_DIGITS), round(ring[0][1], POSE_DIGITS), degrees]
-        if all(math.dist(a, b) < TRACK_TOLERANCE for a, b in zip(placed(pose, first), ring, strict=True)):
+        if all(math.dist(a, b) < KEPT_OUTLINE_TOLERANCE for a, b in zip(placed(pose, first), ring, strict=True)):
             return pose
     return [[_rounded(v) for v in point] for point in ring]
 

@@ -78,7 +78,7 @@ def _faults_of_node(decision: Decision, node: ProofNode) -> Iterator[str]:
     elif node.kind not in ("aggregate", "each"):
         yield f"{node.claim} is of kind {node.kind}"
     for text in (node.words, node.sentence):
-        if not text or ("{" in text.replace(node.claim, "") and "#" not in node.claim):
+        if not text or re.search(r"\{[A-Z]\w*(/10+)?\}", text):
             yield f"{node.claim} reads {text!r}"
     if re.search(r"\bfalse\b", node.words):
         yield f"{node.claim} reads {node.words}"

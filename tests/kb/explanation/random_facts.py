@@ -38,8 +38,8 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     },
     "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,)},
     "boldness": {
-        "plan": (NUMBERS, (3, 4, 8)),
-        **dict.fromkeys(("hopes", "askew", "short", "aside"), (NUMBERS,)),
+        "plan": (NUMBERS, (3, 4, 8)), "hopes": (NUMBERS,), "askew": (NUMBERS,), "short": (NUMBERS,),
+        "aside": (NUMBERS,),
     },
     "routes": {
         "route": (NUMBERS, (40, 60), (5, 20), (0, 30)), "through": (NUMBERS, ("d1", "d2")),

@@ -1,6 +1,9 @@
 """Proofs of what encodings decide: each is checked by clingo, node by node."""
 
+import json
 import re
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -17,6 +20,10 @@ from tests.kb.explanation.proof_checker import Decision, best_decisions, faults,
 from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts
 
 CASES = [pytest.param(e, case, id=f"{e.stem}: {case.title}") for e in ENCODINGS for case in cases_of(e)]
+
+# Decisions of real runs: [encoding, facts, answer], from `solved` of episodes of examples/go_northeast_rooms,
+# go_to_square_unseen, go_next_room_hidden_door, push_square_blocked_door, and push_square_next_room with noise 0.1.
+RECORDED = json.loads((Path(__file__).parent / "recorded.json").read_text())
 
 
 def checked(decision: Decision, atom: str) -> ProofNode:
@@ -35,6 +42,15 @@ def test_proofs_of_the_cases_are_right(encoding, case: Case) -> None:
     for decision in best_decisions(encoding, case.facts)[:1]:
         for atom in sorted(decision.shown)[:2]:
             checked(decision, atom)
+
+
+@pytest.mark.parametrize("number", range(len(RECORDED)), ids=lambda number: f"{number}-{RECORDED[number][0]}")
+def test_proofs_of_recorded_decisions_are_right(number: int) -> None:
+    name, facts, answer = RECORDED[number]
+    best = best_decisions(encoding_path(name), "\n".join(f"{fact}." for fact in facts))
+    (decision,) = (one for one in best if one.shown == set(answer))
+    for atom in answer[:2]:
+        checked(decision, atom)
 
 
 @pytest.mark.parametrize("name", sorted(INPUTS))
@@ -177,7 +193,6 @@ def test_the_checker_finds_a_wrong_cost() -> None:
     (decision,) = best_decisions(encoding_path("boldness"), " ".join(f"{fact}." for fact in facts))
     root = explain_decision("boldness", facts, ["take(1)"], "take(1)").root
     (rival,) = root.rivals
-    from dataclasses import replace
 
     for wrong in (replace(rival, difference=9), replace(rival, verdict="forbidden"), replace(rival, prices=())):
         assert faults_of_rivals(decision, replace(root, rivals=(wrong,)))

@@ -1,5 +1,6 @@
 """Explanations with users' rules: in decisions, in queries, and what is wrong with their sentences."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from kb.explanation.belief import explain_query_atom
 from kb.explanation.programs import DecisionProgram, ExplanationError
 from kb.explanation.proof import explain_decision
-from kb.explanation.rendering import render
+from kb.explanation.rendering import proof_as_dict, render
 from kb.explanation.whynot import explain_absence
 from kb.language.diagnostics import BadInputError
 from kb.reasoning.query import QueryEngine
@@ -182,3 +183,31 @@ def test_wrong_sentences_are_located_errors(tmp_path: Path, text: str, place: st
 def test_sentences_in_block_comments_and_strings_are_none(tmp_path: Path) -> None:
     text = '%*\n%! because "{Q}"\n*%\nlost(R, "%! because") :- rim(R).\n:~ lost(R, _). [1@2, R]\n'
     assert len(read_rules([written(tmp_path, text)]).statements) == 2
+
+
+def test_a_changed_file_of_rules_is_read_again(tmp_path: Path) -> None:
+    rules = written(tmp_path, HEAVY)
+    before = explain_decision("interpretation", FACTS, answer(rules, FACTS), "heavy(a)", [rules])
+    written(tmp_path, HEAVY.replace("is heavy:", "weighs much:"))
+    after = explain_decision("interpretation", FACTS, answer(rules, FACTS), "heavy(a)", [rules])
+    assert "is heavy:" in before.root.sentence and "weighs much:" in after.root.sentence
+    first = explain_query_atom(BELIEF, "near_thing(o1)", [written(tmp_path, NEAR)]).root.sentence
+    second = explain_query_atom(BELIEF, "near_thing(o1)", [written(tmp_path, NEAR.replace("is near", "is by"))])
+    assert (first, second.root.sentence) == ("o1 is near o2.", "o1 is by o2.")
+
+
+def test_a_very_high_proof_is_shown_in_part(tmp_path: Path) -> None:
+    rules = written(tmp_path, "up(0) :- rim(_).\nup(N + 1) :- up(N), N < 1500.\n")
+    facts = [*FACTS, "rim(a)"]
+    proof = explain_decision("interpretation", facts, answer(rules, facts), "up(1500)", [rules])
+    assert sum(1 for _ in proof.root.walk()) > 1500
+    assert "up(1400)" in render(proof, "long")
+    json.dumps(proof_as_dict(proof))
+
+
+def test_names_of_helping_rules_are_refused(tmp_path: Path) -> None:
+    rules = written(tmp_path, "trace__on(R) :- rim(R).\n")
+    with pytest.raises(ExplanationError, match="trace__on"):
+        explain_decision("interpretation", FACTS, ["kind(a,object,48)"], "kind(a,object,48)", [rules])
+    with pytest.raises(ExplanationError, match="trace__weight"):
+        explain_decision("interpretation", [*FACTS, "trace__weight(1,2,3,4,5)"], ["kind(a,object,48)"], "own(a)")

@@ -10,12 +10,12 @@ from typing import Any
 
 import pytest
 from replay_episodes import hostile, same
+from simulator.replay.events import episode_events
 
 from benchmarks.harness.browser import CHROMIUM, Browser
 from simulator.episode.episode import Episode
-from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import NO_HTML, kept_line, slim
-from simulator.replay.packed.tracks import TRACK_TOLERANCE
+from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE
 from simulator.replay.page import replay_page
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium was found")
@@ -51,7 +51,7 @@ def assert_shows(browser: Browser, episode: Episode, steps: list[int]) -> None:
         found, wanted = browser.run(f"utak.episode.line({number})"), slim(kept_line(episode.steps[number], detail))
         assert found.keys() == wanted.keys()
         for key in wanted:
-            assert same(found[key], wanted[key], TRACK_TOLERANCE if key in ROUNDED else 0), (number, key)
+            assert same(found[key], wanted[key], KEPT_OUTLINE_TOLERANCE if key in ROUNDED else 0), (number, key)
     assert browser.complaints() == []
     assert browser.requests() == []
 

@@ -5,7 +5,7 @@ import math
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.replay.packed.tracks import TRACK_TOLERANCE, placed, posed
+from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE, placed, posed
 
 NUMBERS = st.floats(0, 100)
 RINGS = st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=9, unique=True)
@@ -16,7 +16,7 @@ def test_a_moved_thing_is_told_by_its_pose(ring: list[tuple[float, float]], x: f
     moved = placed([x, y, degrees], ring)
     found = posed(moved, ring)
     again = placed(found, ring) if isinstance(found[0], float) else found
-    assert all(math.dist(a, b) < TRACK_TOLERANCE for a, b in zip(again, moved, strict=True))
+    assert all(math.dist(a, b) < KEPT_OUTLINE_TOLERANCE for a, b in zip(again, moved, strict=True))
 
 
 def test_an_outline_of_another_shape_is_kept_as_it_is() -> None:

@@ -38,15 +38,17 @@ def dask(folder: Path, program: str, *options: str, code: Path = ROOT) -> Iterat
 
 
 @contextmanager
-def scheduler(folder: Path) -> Iterator[str]:
-    """Run a scheduler until the end of the block, and yield its address."""
+def scheduler(folder: Path, started: "list[subprocess.Popen[bytes]] | None" = None) -> Iterator[str]:
+    """Run a scheduler until the end of the block, and yield its address; its process is appended to `started`."""
     file = folder / "scheduler.json"
     options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
-    with dask(folder, "scheduler", *options):
+    with dask(folder, "scheduler", *options) as process:
         end = time.monotonic() + 30
         while not file.exists() or not file.read_text():
             assert time.monotonic() < end, "the scheduler does not start"
             time.sleep(0.05)
+        if started is not None:
+            started.append(process)
         yield json.loads(file.read_text())["address"]
 
 
@@ -101,6 +103,19 @@ def test_a_scheduler_without_workers_is_not_waited_for_for_ever(tmp_path: Path) 
         with pytest.raises(CannotOpenError, match=r"had no workers for 0\.5 s"):
             list(run_on_dask([TASK], address, max_workerless_seconds=0.5))
         assert time.monotonic() - begun < 15
+
+
+def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_reason(tmp_path: Path) -> None:
+    tasks = [TASK, WorkerTask("time:sleep", 100)]
+    started: list[subprocess.Popen[bytes]] = []
+    with scheduler(tmp_path, started) as address, worker(tmp_path, address):
+        begun = time.monotonic()
+        ended = run_on_dask(tasks, address, max_connecting_seconds=3.0)
+        assert next(ended)[1].value == -1
+        started[0].kill()
+        with pytest.raises(CannotOpenError, match="the scheduler was lost"):
+            next(ended)
+        assert time.monotonic() - begun < 60
 
 
 @pytest.mark.parametrize(
