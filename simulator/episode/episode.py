@@ -91,6 +91,28 @@ def read_episode(path: Path | str) -> Episode:
     return Episode(rows[0], tuple(rows[1:]), result)
 
 
+def read_begun_episode(path: Path | str) -> Episode:
+    """Return an episode of at least one step, complete or cut short.
+
+    Parameters
+    ----------
+    path : the file.
+
+    Returns
+    -------
+    The episode, with every value checked.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be read.
+    BadInputError : the file is no episode, it is damaged, or it ends before its first step.
+    """
+    episode = read_episode(path)
+    if not episode.steps:
+        raise _damaged(str(path), 1, "the episode ends before its first step")
+    return episode
+
+
 def complete_lines(path: Path | str) -> list[bytes]:
     """Return the lines of an episode with their line ends; a last line without a line end is left out.
 

@@ -88,6 +88,8 @@ def world_text(world: CellWorld, scale: int, border: int = 0) -> WorldText:
     RasterError : the table would be larger than `MAX_TABLE_SIDE`, or is too large for a picture and has walls of more
         than `MAX_OUTLINE_CORNERS` corners.
     """
+    if not world.walls.any() and max(world.walls.shape) * scale > MAX_PICTURE_SIDE:
+        border = max(border, 1)  # facts state a verge, however small
     check_size(world.walls.shape, Fraction(scale), border)
     walls = np.pad(np.kron(world.walls, np.ones((scale, scale), bool)), border, constant_values=True)
     column, row = world.robot

@@ -52,7 +52,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Answer the question and print the tree of reasons, or the changes."""
-    from simulator.episode.episode import read_episode
+    from simulator.episode.episode import read_begun_episode
 
     wrong = _usage_problem(options)
     if wrong:
@@ -62,7 +62,9 @@ def execute(options: argparse.Namespace) -> int:
         return _fix(options)
     from simulator.explaining.questions import questions_of_episode
 
-    questions = questions_of_episode(read_episode(options.episode), [str(Path(path).absolute()) for path in options.kb])
+    questions = questions_of_episode(
+        read_begun_episode(options.episode), [str(Path(path).absolute()) for path in options.kb]
+    )
     reason = _answer(questions, options)
     if options.json:
         print(as_json(reason.as_dict()))
@@ -107,7 +109,7 @@ def _usage_problem(options: argparse.Namespace) -> str:
 def _fix(options: argparse.Namespace) -> int:
     """Print the smallest changes with which the run works; return whether there are any."""
     from kb.evidence.reason import Depth
-    from simulator.episode.episode import read_episode
+    from simulator.episode.episode import read_begun_episode
     from simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
     from simulator.explaining.fixing.recorded import recorded_run
     from simulator.explaining.fixing.report import is_repeated, report_text, report_values
@@ -115,7 +117,7 @@ def _fix(options: argparse.Namespace) -> int:
     from simulator.explaining.fixing.writing import require_empty_folder
 
     rules = [str(Path(path).absolute()) for path in options.kb]
-    run = recorded_run(options.episode, read_episode(options.episode), rules)
+    run = recorded_run(options.episode, read_begun_episode(options.episode), rules)
     if options.write is not None:
         require_empty_folder(options.write)
     budget = Budget(DEFAULT_RUNS if options.runs is None else options.runs, options.seconds)

@@ -234,3 +234,10 @@ def test_a_table_is_bounded_in_worlds_and_episodes(lines: list[dict[str, Any]], 
     (tmp_path / "ep.jsonl").write_text(DAMAGE["a table of 100,000 squares"](lines))
     assert main(["query", str(tmp_path / "ep.jsonl"), "node(X)"]) == 65
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000  # kilobytes
+
+
+def test_an_episode_without_steps_is_not_explained(lines: list[dict[str, Any]], tmp_path: Path) -> None:
+    path = tmp_path / "ep.jsonl"
+    path.write_text(json.dumps(lines[0]) + "\n")
+    for question in ([], ["--cell", "40"], ["node(o1)"]):
+        assert main(["explain", str(path), *question]) == 65

@@ -12,11 +12,13 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from geometry.raster.contours import outline
 from kb.language.diagnostics import BadInputError
 from kb.language.source_text import Source
 from simulator.cli.main import main
 from simulator.importing.imported import ImportOptions
 from simulator.importing.pgm import parse_pgm
+from simulator.importing.raster import count_corners
 from simulator.importing.ros_map import cell_of, default_scale
 from simulator.importing.ros_map import read as read_ros
 from simulator.importing.ros_yaml import parse_head
@@ -131,6 +133,25 @@ def test_a_large_map_becomes_facts(tmp_path: Path) -> None:
     world = imported(tmp_path / "a.map", tmp_path / "s").world
     assert (tmp_path / "s" / "world.lp").exists()
     assert np.array_equal(floor_of(world), drawn(text))
+
+
+def test_a_large_map_without_walls_gets_a_border(tmp_path: Path) -> None:
+    (tmp_path / "a.map").write_text(map_text("\n".join(["." * 600] * 3)))
+    world = imported(tmp_path / "a.map", tmp_path / "s").world
+    assert (world.width, world.height) == (602, 5)
+    assert floor_of(world)[1:-1, 1:-1].all()
+
+
+def test_a_large_map_of_countless_corners_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.map").write_text(map_text("\n".join(["@." * 300, ".@" * 300] * 100)))
+    assert main(["import", str(tmp_path / "a.map"), str(tmp_path / "s")]) == 65
+    assert "corners" in capsys.readouterr().err
+
+
+@settings(max_examples=60, deadline=None)
+@given(mask=hnp.arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7))))
+def test_corners_are_counted_as_rings_have_them(mask: np.ndarray) -> None:
+    assert count_corners(mask) == sum(map(len, outline(mask)))
 
 
 WRONG_STARTS = {"99,1": "not on the map", "0.5,3.5": "no floor", "-1,2": "not on the map"}
