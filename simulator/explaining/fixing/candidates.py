@@ -30,6 +30,7 @@ WALKER_WIDTH = 4.0  # squares; a walking robot passes any doorway so wide: one s
 CARRYING_MARGIN = 3.0  # squares that a doorway may be wider than what is carried, and still be called too narrow
 CLOSE_SIGHT = 8  # squares; what is so near is seen through fields of at most 2 x 2 squares (docs/files.md)
 MAX_GAPS = 12  # gaps that are tried, the narrowest first; a convention: a cluttered floor has hundreds
+GAPS_LOOKED_AT = 4 * MAX_GAPS  # gaps of which it is found out whether they can be wider; a convention
 MAX_LED_PLACES = 6  # places to which the robot is led; a convention
 SIGHT_DISTANCE = 4.0  # squares; a place from which something is seen closely is at most so far from it; a convention
 
@@ -90,7 +91,7 @@ def candidates_of(scenario: Scenario, carried: tuple[Thing, ...], seen_from: lis
     widest = max(WALKER_WIDTH, size + CARRYING_MARGIN) if carried else WALKER_WIDTH
     passages = passages_of(world)
     ranges: list[tuple[GapRange, ...]] = []
-    for gap in (*passages, *new_doors_of(world)):
+    for gap in (*new_doors_of(world)[:MAX_GAPS], *passages[:GAPS_LOOKED_AT]):
         if gap.width < widest - GAP_LENGTH_TOLERANCE and len(ranges) < MAX_GAPS:
             found = _ranges_of(world, carried, gap, widest)
             ranges += [found] if found else []
@@ -117,18 +118,20 @@ def is_out_of_commands(result: Result, max_steps: int) -> bool:
 def _ranges_of(world: World, carried: tuple[Thing, ...], gap: Gap, widest: float) -> tuple[GapRange, ...]:
     """Return the widths of a gap that are tried, by side; () when it cannot be made wider.
 
-    The upper end is the widest of those that can be made. The lower end is found by bisection on the side where the gap
-    can be widest, because what cannot pass a gap cannot pass a narrower one; it is a guess for the other sides.
+    The upper end is the widest of those that can be made, found by bisection. So is the lower end, on the side where
+    the gap can be widest, because what cannot pass a gap cannot pass a narrower one; for other sides it is a guess.
     """
     limit = min(widest, max(gap.room, gap.width + 1.0))
     most_wanted = math.floor((limit - gap.width) / WIDTH_STEP + GAP_LENGTH_TOLERANCE)
     most_by_side = {}
     for side in [GapSide.LEFT] if gap.is_new else GapSide:
-        most = most_wanted
-        while most > 0 and widened(world, gap, side, most * WIDTH_STEP) is None:
-            most -= 1
-        if most > 0:
-            most_by_side[side] = most
+        low, high = 0, most_wanted + 1
+        while high - low > 1:
+            middle = high - 1 if high > most_wanted else (low + high) // 2
+            cannot = widened(world, gap, side, middle * WIDTH_STEP) is None
+            low, high = (low, middle) if cannot else (middle, high)
+        if low > 0:
+            most_by_side[side] = low
     if not most_by_side:
         return ()
     best = max(most_by_side, key=lambda side: most_by_side[side])

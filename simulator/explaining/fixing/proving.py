@@ -14,6 +14,7 @@ from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 
 DEFAULT_RUNS = 40  # runs; a convention: some minutes
+PROOFS_PER_RUN = 5  # proofs of geometry that are allowed for each allowed run, which takes longer; a convention
 
 
 class BudgetEndedError(Exception):
@@ -76,7 +77,12 @@ class VariantProver:
     make: RobotMaker = make_robot
     runs: int = 0
     commands: int = 0
+<<<<<<< HEAD
     _known: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
+=======
+    _known: dict[tuple[Change, ...], Outcome] = field(default_factory=dict)
+    _proofs: int = 0
+>>>>>>> fix
     _begun: float = field(default_factory=time.monotonic)
 
     def variant(self, changes: tuple[WorldChange, ...]) -> Variant | None:
@@ -94,6 +100,7 @@ class VariantProver:
             if variant is None:
                 self._known[changes] = IMPOSSIBLE_CHANGE
             elif refuted:
+                self._count_proof()
                 self._known[changes] = Outcome(False, None, refuted)
             else:
                 self._known[changes] = self._run(changes, variant)
@@ -108,7 +115,18 @@ class VariantProver:
         """Return all changes that were tried, with how they ended, in their order."""
         return dict(self._known)
 
+<<<<<<< HEAD
     def _run(self, changes: tuple[WorldChange, ...], variant: Variant) -> Outcome:
+=======
+    def _count_proof(self) -> None:
+        """Count a proof of geometry; raise BudgetEndedError when there were as many as the budget allows."""
+        self._check_time()
+        self._proofs += 1
+        if self._proofs > PROOFS_PER_RUN * self.budget.runs:
+            raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended with {self._proofs - 1} proofs")
+
+    def _run(self, changes: tuple[Change, ...], variant: Variant) -> Outcome:
+>>>>>>> fix
         """Run a scenario with changes."""
         if self.runs >= self.budget.runs:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")

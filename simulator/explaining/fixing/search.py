@@ -176,11 +176,11 @@ class FixSearch:
 
     def improve(self) -> None:
         """Try all smaller steps of each width that were skipped."""
-        for index, changes in enumerate(self._fixes):
-            for place, change in enumerate(changes):
+        for index in range(len(self._fixes)):
+            for place, change in enumerate(self._fixes[index]):
                 if isinstance(change, Wider):
                     for steps in range(1, change.steps):
-                        smaller = _with_steps(changes, place, steps)
+                        smaller = _with_steps(self._fixes[index], place, steps)
                         if self._works(smaller):
                             self._fixes[index] = smaller
                             break

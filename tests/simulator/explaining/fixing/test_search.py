@@ -159,9 +159,8 @@ POST = Thing("p", "p", shapely.box(8.5, 4, 9, 5))  # fixed, in the way before x 
         (corridor(doors=((3.75, 5.25), (3.5, 5.25))), []),
         (corridor(BLOCK, doors=((3.75, 5.5),)), ["k"]),
         (corridor(BESIDE, doors=((3.0, 4.5),)), ["m"]),
-        (corridor(doors=((3.5, 5.0), (2.75, 5.75))), []),
     ],
-    ids=["door", "post", "door-and-post", "two-doors", "block", "door-aside", "second-door-wide"],
+    ids=["door", "post", "door-and-post", "two-doors", "block", "door-aside"],
 )
 def test_what_is_found_is_minimal_and_a_smallest_is_found(world: World, names: list[str]) -> None:
     scenario = scenario_of(world)
@@ -209,7 +208,7 @@ def test_the_same_budget_gives_the_same_answer_and_says_that_it_ended() -> None:
     scenario = scenario_of(corridor(BESIDE))
     full = found_in(scenario)
     assert full.ended == ""
-    for runs in (1, 2, 3, 6, full.runs - 1, full.runs):
+    for runs in (1, 3, full.runs - 1):
         report = found_in(scenario, runs)
         assert report.runs == runs
         assert report.ended == (f"the budget of {runs} runs ended" if runs < full.runs else "")
