@@ -77,12 +77,8 @@ class VariantProver:
     make: RobotMaker = make_robot
     runs: int = 0
     commands: int = 0
-<<<<<<< HEAD
     _known: dict[tuple[WorldChange, ...], Outcome] = field(default_factory=dict)
-=======
-    _known: dict[tuple[Change, ...], Outcome] = field(default_factory=dict)
     _proofs: int = 0
->>>>>>> fix
     _begun: float = field(default_factory=time.monotonic)
 
     def variant(self, changes: tuple[WorldChange, ...]) -> Variant | None:
@@ -115,9 +111,6 @@ class VariantProver:
         """Return all changes that were tried, with how they ended, in their order."""
         return dict(self._known)
 
-<<<<<<< HEAD
-    def _run(self, changes: tuple[WorldChange, ...], variant: Variant) -> Outcome:
-=======
     def _count_proof(self) -> None:
         """Count a proof of geometry; raise BudgetEndedError when there were as many as the budget allows."""
         self._check_time()
@@ -125,8 +118,7 @@ class VariantProver:
         if self._proofs > PROOFS_PER_RUN * self.budget.runs:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended with {self._proofs - 1} proofs")
 
-    def _run(self, changes: tuple[Change, ...], variant: Variant) -> Outcome:
->>>>>>> fix
+    def _run(self, changes: tuple[WorldChange, ...], variant: Variant) -> Outcome:
         """Run a scenario with changes."""
         if self.runs >= self.budget.runs:
             raise BudgetEndedError(f"the budget of {self.budget.runs} runs ended")
