@@ -40,10 +40,3 @@ def test_the_commands_print_what_stands_below_them(
     said = capsys.readouterr()
     assert "verdict(done)" in said.out
     assert "error" not in said.out + said.err
-
-
-def test_the_python_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main(["run", str(ROOT / "examples" / "push_l_tight_door"), "--log", "l.jsonl"]) == 0
-    (code,) = blocks("python")
-    exec(compile(code, "tutorial", "exec"), {})

@@ -57,6 +57,8 @@ class Worker:
         ------
         RuntimeError : a new process does not start.
         """
+        if self._process is not None and self._process.poll() is not None:
+            self.close()  # it ended between two requests: it ends with the thread that started it
         if self._process is None:
             self._process, self._lines = _start()
         worker, self._process = self._process, None

@@ -96,7 +96,7 @@ HEADER = Keys(
         "options": OPTIONS,
         "world": WORLD,
         "task": TASK,
-        "changes": Noted("what was assumed, retracted or wanted at the prompt, by step", ListOf(NamesTo(Anything()))),
+        "changes": Noted("what was assumed, retracted or wanted at the prompt, by step", Anything()),
         "forked": Noted("the stages before, of a run that goes on otherwise, in order", ListOf(RUN_STAGE, 1)),
     },
     frozenset({"changes", "forked"}),

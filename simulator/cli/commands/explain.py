@@ -28,6 +28,7 @@ def add(parts: Any) -> None:
     part.add_argument(
         "fact", metavar="FACT", nargs="?", help="a fact, a goal or verdict(V); without it the command of the step"
     )
+    part.add_argument("--whynot", metavar="FACT", help="why a fact is not believed: what is missing or in the way")
     part.add_argument("--cell", type=_cell, metavar="N", help="a cell of the impression of the step, 0 to 159")
     part.add_argument("--at", type=_step, metavar="STEP", help="the step (default: the last)")
     part.add_argument(
@@ -77,6 +78,8 @@ def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
     """Return the answer to the question of the command line."""
     if options.cell is not None:
         return questions.why_cell(options.cell, options.at)
+    if options.whynot is not None:
+        return questions.why_not(options.whynot, options.at)
     if options.fact is not None:
         return questions.why(options.fact, options.at)
     return questions.why_step(options.at)
@@ -91,9 +94,12 @@ def _text(reason: "Reason", depth: str) -> str:
 
 def _usage_problem(options: argparse.Namespace) -> str:
     """Return which options do not go together; "" when all do."""
-    asked = options.fact is not None or options.cell is not None or options.at is not None
-    if options.fix and asked:
-        return "--fix is about the whole run: it takes no FACT, no --cell and no --at"
+    questions = {"FACT": options.fact, "--whynot": options.whynot, "--cell": options.cell}
+    asked = [name for name, value in questions.items() if value is not None]
+    if options.fix and (asked or options.at is not None):
+        return "--fix is about the whole run: it takes no FACT, no --whynot, no --cell and no --at"
+    if len(asked) > 1:
+        return f"one question at a time: {asked[0]} or {asked[1]}"
     needing = {
         "--runs": options.runs,
         "--seconds": options.seconds,

@@ -8,6 +8,7 @@ import shapely
 
 from kb.body import Command, Impression, Move, Release
 from kb.objects.held_object import HeldObject
+from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
@@ -32,6 +33,7 @@ class Undecided:
     asked : for each time after the first, whether the robot had begun anew.
     """
 
+    task = Task({}, (), ())
     bound: Mapping[str, str] = {}
     corners: Mapping[str, Corner] = {}
 

@@ -134,11 +134,23 @@ def sweep(scene: Path, tmp_path: Path) -> list[list[str]]:
     return [["sweep", str(scene), "--max-steps", "1"]]
 
 
+def explain(scene: Path, tmp_path: Path) -> list[list[str]]:
+    log = str(tmp_path / "explained.jsonl")
+    assert main(["run", str(scene), "--max-steps", "1", "--log", log]) in (0, 1, 75)
+    return [["explain", log, "--at", "0"]]
+
+
+def tested(scene: Path, tmp_path: Path) -> list[list[str]]:
+    return [["test", str(scene), "--max-steps", "1"]]
+
+
 PRINTED: dict[str, Callable[[Path, Path], list[list[str]]]] = {
     "run": run,
     "query": query,
     "routes": routes,
     "sweep": sweep,
+    "explain": explain,
+    "test": tested,
 }
 
 

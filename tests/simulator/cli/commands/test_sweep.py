@@ -107,7 +107,8 @@ def test_runs_that_take_too_long_are_recorded_and_the_exit_code_says_so(
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent in another way")
 def test_an_interrupt_keeps_what_is_done_and_leaves_no_process(scenario: Path, tmp_path: Path) -> None:
     results = tmp_path / "results.jsonl"
-    code = f"import sys; sys.path.insert(0, {str(ROOT)!r}); from simulator.cli.main import main; sys.exit(main())"
+    hear = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)"  # a parent may ignore it
+    code = f"{hear}; sys.path.insert(0, {str(ROOT)!r}); from simulator.cli.main import main; sys.exit(main())"
     options = ["sweep", str(scenario), "--noise", "0.05", "--seeds", "0:500", "-o", str(results)]
     with subprocess.Popen([sys.executable, "-c", code, *options], stderr=subprocess.PIPE, text=True) as process:
         end = time.monotonic() + 60
