@@ -1,9 +1,11 @@
 """Integers are checked wherever text enters, and all JSON that is printed is read by a strict parser."""
 
 import argparse
+import io
 import json
 import sys
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import pytest
@@ -136,11 +138,12 @@ def sweep(scene: Path, tmp_path: Path) -> list[list[str]]:
 
 def explain(scene: Path, tmp_path: Path) -> list[list[str]]:
     log = str(tmp_path / "explained.jsonl")
-    assert main(["run", str(scene), "--max-steps", "1", "--log", log]) in (0, 1, 75)
+    with redirect_stdout(io.StringIO()):
+        assert main(["run", str(scene), "--max-steps", "1", "--log", log]) in (0, 1, 75)
     return [["explain", log, "--at", "0"]]
 
 
-def tested(scene: Path, tmp_path: Path) -> list[list[str]]:
+def suite(scene: Path, tmp_path: Path) -> list[list[str]]:
     return [["test", str(scene), "--max-steps", "1"]]
 
 
@@ -150,7 +153,7 @@ PRINTED: dict[str, Callable[[Path, Path], list[list[str]]]] = {
     "routes": routes,
     "sweep": sweep,
     "explain": explain,
-    "test": tested,
+    "test": suite,
 }
 
 
