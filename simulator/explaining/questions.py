@@ -5,6 +5,8 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
+from shapely.errors import ShapelyError
+
 from kb.evidence.absences import AbsenceExplainer
 from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
@@ -21,6 +23,17 @@ from simulator.episode.episode import Episode, EpisodeLine
 
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
 
+# What well-formed values that do not fit together end in; the last one is of outlines that cross themselves.
+DAMAGE_ERRORS = (
+    LookupError,
+    ValueError,
+    TypeError,
+    AttributeError,
+    ArithmeticError,
+    AssertionError,
+    RuntimeError,
+    ShapelyError,
+)
 MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong than right
 
 
@@ -179,7 +192,7 @@ def _refusing_damage(question: str) -> Iterator[None]:
         yield
     except (MissingRecordError, ExplanationError) as error:
         raise _problem(question, str(error)) from None
-    except (LookupError, ValueError, TypeError, AttributeError, ArithmeticError, AssertionError, RuntimeError) as error:
+    except DAMAGE_ERRORS as error:
         if os.environ.get("UTAK_DEBUG"):
             raise
         what = f"the episode's record does not fit together, so this cannot be explained ({type(error).__name__})"

@@ -2,6 +2,7 @@
 
 import json
 import re
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -161,3 +162,17 @@ def test_what_is_believed_has_no_reason_to_be_absent(run: tuple[Questions, list[
         run[0].why_not("kind(org, utak, C)")
     assert run[0].why_not("node(o99)").kind == ReasonKind.NEGATION
     assert run[0].why_not("verdict(nonsense)").rests_on
+
+
+def test_an_outline_that_crosses_itself_is_refused_and_raises_nothing_else(run: tuple[Questions, list[Any]]) -> None:
+    _, lines = run
+    broken = json.loads(json.dumps(lines[:1]))
+    crossing = [(0, 0), (300, 300), (300, 0), (0, 300), (150, -100), (150, 400)]
+    corners = [*crossing, crossing[0]]
+    facts = [f"segment(o9,{n},{a[0]},{a[1]},{b[0]},{b[1]},0)." for n, (a, b) in enumerate(pairwise(corners))]
+    broken[0]["belief"]["facts"] += [*facts, "rect(o9,0,-100,300,400)."]
+    questions = Questions({"task": {"goals": ["at(utak,x)"]}}, broken)
+    try:
+        assert questions.why("rect(o9, A, B, C, D)").rests_on
+    except BadInputError as refused:
+        assert "why:1:" in str(refused)
