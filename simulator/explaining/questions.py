@@ -24,7 +24,7 @@ from simulator.episode.episode import Episode, EpisodeLine
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
 
 # What well-formed values that do not fit together end in; the last one is of outlines that cross themselves.
-DAMAGE_ERRORS = (
+MISFIT_ERRORS = (
     LookupError,
     ValueError,
     TypeError,
@@ -192,7 +192,7 @@ def _refusing_damage(question: str) -> Iterator[None]:
         yield
     except (MissingRecordError, ExplanationError) as error:
         raise _problem(question, str(error)) from None
-    except DAMAGE_ERRORS as error:
+    except MISFIT_ERRORS as error:
         if os.environ.get("UTAK_DEBUG"):
             raise
         what = f"the episode's record does not fit together, so this cannot be explained ({type(error).__name__})"
