@@ -59,7 +59,8 @@ def explain_absence(
     candidates["facts"] = [fact for fact in candidates["facts"] if _is_sensible(encoding, fact)]
     found = program.ask({**request, "task": "change", "candidates": candidates})
     missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
-    partial = not found["least"] or (candidates["cut"] and len(missing) + len(in_way) > 1)
+    is_single = bool(found["found"]) and len(missing) + len(in_way) <= 1
+    partial = not found["least"] or (candidates["cut"] and not is_single)
     proof = _proof_after(program, given, missing, in_way, wanted) if found["found"] else None
     sentence = _sentence(program, wanted, given, missing, in_way, found["found"])
     return Absence(encoding, wanted, missing, in_way, partial, found["found"], sentence, rival, proof)
