@@ -30,7 +30,7 @@ class Rules(NamedTuple):
     noise: float = 0.0
 
 
-class Outcome(NamedTuple):
+class PlayOutcome(NamedTuple):
     """The outcome of a command.
 
     Attributes
@@ -87,17 +87,17 @@ class Game:
         self.progress = ExpectationProgress(self._expectations if self._reward is not None else (), self._world)
         self._see()
 
-    def play(self, command: Command) -> Outcome:
+    def play(self, command: Command) -> PlayOutcome:
         """Execute a command and return what comes of it."""
         before = self.progress.share
         carry_out(self.table, command)
         self.steps += 1
         if self._reward is None:
-            return Outcome(0.0, False, self.steps >= self._most)
+            return PlayOutcome(0.0, False, self.steps >= self._most)
         self._see()
         achieved = self.progress.achieved
         reward = self.progress.share - before if self._reward == "progress" else float(achieved)
-        return Outcome(reward, achieved, not achieved and self.steps >= self._most)
+        return PlayOutcome(reward, achieved, not achieved and self.steps >= self._most)
 
     def _see(self) -> None:
         """Let the progress take in the present state."""
