@@ -119,11 +119,13 @@ class RecordedStep:
     @cached_property
     def places(self) -> tuple[XY, ...]:
         """The places of all impressions up to this one, as believed now: (east, north), squares, robot frame."""
-        given = self._belief.get("seen_from")
-        if given is not None:
-            return tuple((east, north) for east, north in given)
-        east, north = self._recorded("place")
-        return (*(self._before.places if self._before else ()), (east, north))
+        later: list[Sequence[float]] = []
+        step: RecordedStep | None = self
+        while step is not None and "seen_from" not in step._belief:
+            later.append(step._recorded("place"))
+            step = step._before
+        given = step._belief["seen_from"] if step is not None else ()
+        return tuple((east, north) for east, north in (*given, *reversed(later)))
 
     def square_of(self, place: XY) -> Square:
         """Return the square (column, row) of the map frame in which a point (east, north) of the robot frame lies."""
