@@ -4,12 +4,11 @@ from collections.abc import Callable
 from typing import Protocol
 
 from kb.evidence.atoms import atom_parts
-from kb.evidence.inputs import FLOOR, VERGE, Given, input_reason
+from kb.evidence.inputs import Given, input_reason, squares_reason
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.witness import (
-    UNITS_PER_SQUARE,
     command_reason,
     felt_reason,
     line_squares,
@@ -17,10 +16,10 @@ from kb.evidence.witness import (
     seen_reason,
 )
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT
+from kb.language.vocabulary import thing_positions
 from kb.tracing.decisions import SolverCall
+from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
-ROBOT = "org"  # the node of the robot
 ROBOT_ALIAS = "utak"  # its name in questions
 
 
@@ -104,10 +103,10 @@ class FactExplainer:
             return self._kind_reasons(node, arguments[1], arguments[2], step)
         if name == "shape":
             found = self.decision("shapes", fact, step)
-            return [found] if found else [self._squares(node, step)]
+            return [found] if found else [squares_reason(self.record, step, node)]
         if name == "colour":
             felt = felt_reason(self.record, step, node_squares(self.record.steps[step], node), arguments[1], node)
-            return [felt] if felt else [self._squares(node, step)]
+            return [felt] if felt else [squares_reason(self.record, step, node)]
         if name in ("door", "width", "threshold", "connects", "crosses"):
             return self._door_reasons(name, arguments, step)
         if name == "corner":
@@ -119,11 +118,11 @@ class FactExplainer:
         if name == "segment":
             return self._segment_reasons(node, arguments, step)
         if name == "adjacent":
-            return self._facts([f"offset({ROBOT},", f"rect({arguments[1]},"], step)
+            return self._facts([f"offset({ROOT_NODE},", f"rect({arguments[1]},"], step)
         if name == "bound":
             found = self.decision("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
             return [found] if found else []
-        if name in ("offset", "in", "rect") and node == ROBOT:
+        if name in ("offset", "in", "rect") and node == ROOT_NODE:
             return [self._pose_reason(step)]
         return self._other_reasons(name, arguments, step)
 
@@ -131,18 +130,18 @@ class FactExplainer:
         """Return what facts rest on that geometry measures alone: places, outlines, rooms and the pathgraph."""
         node = arguments[-1] if name == "child" else arguments[0]
         if name in ("room", "unseen", "link", "junction"):
-            node = FLOOR
-        if node == ROBOT:
+            node = FLOOR_NODE
+        if node == ROOT_NODE:
             return [Reason("the robot is the root of the world model", "", ReasonKind.CONVENTION)]
-        if name == "offset" and node in (FLOOR, VERGE):
+        if name == "offset" and node in (FLOOR_NODE, VERGE_NODE):
             return [self._pose_reason(step)]
         if name == "in":
-            return [self._squares(node, step), *self._facts([f"room({arguments[1]})"], step)]
-        return [self._squares(node, step)]
+            return [squares_reason(self.record, step, node), *self._facts([f"room({arguments[1]})"], step)]
+        return [squares_reason(self.record, step, node)]
 
     def _kind_reasons(self, node: str, kind: str, confidence: str, step: int) -> list[Reason]:
         """Return why a node is of a kind: the interpretation of its region, or that it was moved."""
-        if node == ROBOT:
+        if node == ROOT_NODE:
             return [Reason("the robot is itself in the world", "", ReasonKind.CONVENTION)]
         now = self.record.steps[step]
         if node in now.moved:
@@ -155,24 +154,17 @@ class FactExplainer:
             colour = next((fact for fact in now.facts if fact.startswith(f"colour({node},")), None)
             if colour is not None:
                 return self._facts([colour], step)
-        return [self._squares(node, step)]
-
-    def _squares(self, node: str, step: int) -> Reason:
-        """Return the reason of the squares of a node: the cells that show them."""
-        what = {FLOOR: "the squares of the floor", VERGE: "the squares of the verge"}.get(
-            node, f"the squares of {node}"
-        )
-        return seen_reason(self.record, step, node_squares(self.record.steps[step], node), node != FLOOR, what)
+        return [squares_reason(self.record, step, node)]
 
     def _segment_reasons(self, node: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a piece of a boundary is believed: the cells on its two sides. The node lies on its left."""
         now = self.record.steps[step]
-        west, south, east, north = (int(value) / UNITS_PER_SQUARE for value in arguments[2:6])
+        west, south, east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[2:6])
         inside = line_squares(now, (west, south), (east, north), 0.5)
         outside = line_squares(now, (west, south), (east, north), -0.5)
         return [
-            seen_reason(self.record, step, inside, node != FLOOR, "the squares on its left"),
-            seen_reason(self.record, step, outside, node == FLOOR, "the squares on its right"),
+            seen_reason(self.record, step, inside, node != FLOOR_NODE, "the squares on its left"),
+            seen_reason(self.record, step, outside, node == FLOOR_NODE, "the squares on its right"),
         ]
 
     def _door_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
@@ -187,7 +179,7 @@ class FactExplainer:
                     kind, (neck, *_) = atom_parts(atom)
                     if kind == "door" and [tuple(end) for end in call.about[int(neck)]] == list(ends):
                         return [self.prove(call, atom, number)]
-        return [self._squares(FLOOR, step)]
+        return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _corner_reasons(self, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return why a corner is the furthest one: the answer of corners.lp with its place."""
@@ -200,7 +192,7 @@ class FactExplainer:
                     kind, parts = atom_parts(atom)
                     if kind == "furthest" and parts[0] == side and f"convex({parts[1]},{east},{north})" in call.facts:
                         return [self.prove(call, atom, number)]
-        return [self._squares(FLOOR, step)]
+        return [squares_reason(self.record, step, FLOOR_NODE)]
 
     def _movable_reasons(self, node: str, confidence: str, step: int) -> list[Reason]:
         """Return why a node is believed to be movable, or not: motions with it, or that it was never tried."""
@@ -210,7 +202,7 @@ class FactExplainer:
             tried = self._motion_reasons(node, step)
             if tried:
                 return tried
-        squares = self._squares(node, step)
+        squares = squares_reason(self.record, step, node)
         untried = Reason("it was never tried", "without a trial both are as likely", ReasonKind.CONVENTION)
         return [untried, squares]
 
@@ -219,8 +211,8 @@ class FactExplainer:
         for number in range(step, -1, -1):
             action = self.record.steps[number].action
             if action is not None and action["do"] == "grasp":
-                return [command_reason(self.record.steps[number]), self._squares(node, step)]
-        return [self._squares(node, step)]
+                return [command_reason(self.record.steps[number]), squares_reason(self.record, step, node)]
+        return [squares_reason(self.record, step, node)]
 
     def _motion_reasons(self, node: str, step: int) -> list[Reason]:
         """Return the newest grasp and the newest push or turn while a node was in hand, and the cells that show it."""
@@ -273,8 +265,8 @@ def plain_fact(fact: str) -> str:
     'offset(org,0,-150)'
     """
     name, arguments = atom_parts(fact.strip())
-    declared = BELIEF_PREDICATES.get((name, len(arguments)))
-    types = declared.arguments if declared else ()
-    things = {number for number, type_ in enumerate(types) if type_ == THING_ARGUMENT}
-    named = [ROBOT if at in things and argument == ROBOT_ALIAS else argument for at, argument in enumerate(arguments)]
+    things = thing_positions((name, len(arguments)))
+    named = [
+        ROOT_NODE if at in things and argument == ROBOT_ALIAS else argument for at, argument in enumerate(arguments)
+    ]
     return f"{name}({','.join(named)})" if named else name

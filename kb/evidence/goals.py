@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from kb.evidence.atoms import atom_parts
-from kb.evidence.beliefs import ROBOT, ROBOT_ALIAS, FactExplainer
+from kb.evidence.beliefs import ROBOT_ALIAS, FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.tracing.decisions import SolverCall
+from kb.world.model import ROOT_NODE
 
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
     "aims": ("choose", "this subgoal was chosen"),
@@ -95,9 +96,8 @@ def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
         name, arguments = atom_parts(arguments[0])
     facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
     below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)
-    bound = tuple(_bindings(beliefs, arguments, step))
     says = "the goal is about these facts" if below else "nothing that is believed is about it yet"
-    return Reason(goal, says, ReasonKind.INPUT if below or bound else ReasonKind.TASK, "the task", (*bound, *below))
+    return Reason(goal, says, ReasonKind.INPUT if below else ReasonKind.TASK, "the task", below)
 
 
 def _goal_reasons(beliefs: FactExplainer, task: RecordedTask, step: int) -> Iterator[Reason]:
@@ -106,22 +106,9 @@ def _goal_reasons(beliefs: FactExplainer, task: RecordedTask, step: int) -> Iter
 
 
 def _meant(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[str]:
-    """Yield the facts `bound(Parameter, Node)` for the arguments of a goal, where they are facts."""
-    now = beliefs.record.steps[step]
-    for argument in arguments:
-        if argument in now.bound and f"bound({argument},{now.bound[argument]})" in now.fact_set:
-            yield f"bound({argument},{now.bound[argument]})"
-
-
-def _bindings(beliefs: FactExplainer, arguments: Sequence[str], step: int) -> Iterator[Reason]:
-    """Yield the reasons why parameters of a goal mean what they do, where no fact says so."""
-    now = beliefs.record.steps[step]
-    for argument in dict.fromkeys(arguments):
-        node = now.bound.get(argument)
-        if node is not None and f"bound({argument},{node})" not in now.fact_set:
-            found = beliefs.decision("reconciliation", f"bind({argument},{node})", step)
-            if found is not None:
-                yield found
+    """Yield the facts `bound(Parameter, Node)` for the arguments of a goal that are bound."""
+    bound = beliefs.record.steps[step].bound
+    yield from (f"bound({argument},{bound[argument]})" for argument in arguments if argument in bound)
 
 
 def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[str]:
@@ -137,7 +124,7 @@ def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], st
 def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
     """Return the node, or the name of the corner, that an argument of a goal means; '' for none."""
     if argument == ROBOT_ALIAS:
-        return ROBOT
+        return ROOT_NODE
     name, parts = atom_parts(argument) if argument else ("", ())
     if name == "corner" and parts:
         return parts[0]

@@ -8,10 +8,10 @@ from kb.evidence.atoms import atom_parts
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
-from kb.evidence.witness import UNITS_PER_SQUARE, command_reason, felt_reason, line_squares, node_squares, seen_reason
+from kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from kb.tracing.decisions import SolverCall
+from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, VERGE_NODE
 
-FLOOR, VERGE = "floor", "verge"  # the nodes of the whole floor and of all that bounds it
 TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "not_through"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
@@ -72,7 +72,7 @@ def _below(
     if encoding == "interpretation":
         return _region_reasons(record, step, name, arguments)
     if encoding == "shapes":
-        return [_squares_reason(record, step, arguments[0])]
+        return [squares_reason(record, step, arguments[0])]
     if encoding == "rooms":
         return _neck_reasons(record, given, arguments)
     if encoding == "corners":
@@ -93,8 +93,8 @@ def _region_reasons(record: Record, step: int, name: str, arguments: tuple[str, 
         return [felt] if felt else []
     if name == "surrounds":
         inner = _node_of(record, step, arguments[1])
-        return [_squares_reason(record, step, other) for other in dict.fromkeys((node, inner))]
-    return [_squares_reason(record, step, node)]
+        return [squares_reason(record, step, other) for other in dict.fromkeys((node, inner))]
+    return [squares_reason(record, step, node)]
 
 
 def _node_of(record: Record, step: int, region: str) -> str:
@@ -105,19 +105,19 @@ def _node_of(record: Record, step: int, region: str) -> str:
             return node
     for call in reversed(record.decisions(step)):
         if call.encoding == "interpretation":
-            return FLOOR if any(fact.startswith(f"region({region},zero,") for fact in call.facts) else VERGE
-    return VERGE
+            return FLOOR_NODE if any(fact.startswith(f"region({region},zero,") for fact in call.facts) else VERGE_NODE
+    return VERGE_NODE
 
 
 def _named(node: str) -> str:
     """Return a node in words."""
-    return {FLOOR: "the floor", VERGE: "the verge"}.get(node, node)
+    return {FLOOR_NODE: "the floor", VERGE_NODE: "the verge"}.get(node, node)
 
 
-def _squares_reason(record: Record, step: int, node: str) -> Reason:
+def squares_reason(record: Record, step: int, node: str) -> Reason:
     """Return the reason why the squares of a node are believed to be occupied, or free for the floor."""
     squares = node_squares(record.steps[step], node)
-    return seen_reason(record, step, squares, node != FLOOR, f"the squares of {_named(node)}")
+    return seen_reason(record, step, squares, node != FLOOR_NODE, f"the squares of {_named(node)}")
 
 
 def _neck_reasons(record: Record, given: Given, arguments: tuple[str, ...]) -> list[Reason]:
@@ -126,7 +126,7 @@ def _neck_reasons(record: Record, given: Given, arguments: tuple[str, ...]) -> l
     (west, south), (east, north) = ends
     between = line_squares(now, (west, south), (east, north), 0.0)
     walls = [_beyond(record, given.step, near, far) for near, far in ((ends[0], ends[1]), (ends[1], ends[0]))]
-    width = int(arguments[1]) / UNITS_PER_SQUARE
+    width = int(arguments[1]) / FACT_UNITS_PER_SQUARE
     passage = Reason(
         f"the passage from ({west:g}, {south:g}) to ({east:g}, {north:g}) is {width:.2f} squares wide",
         "measured between the two walls",
@@ -153,11 +153,11 @@ def _beyond(record: Record, step: int, near: list[float], far: list[float]) -> l
 
 def _corner_reasons(record: Record, step: int, arguments: tuple[str, ...]) -> list[Reason]:
     """Return the reason of a corner of the known floor: the cells that show the floor at it."""
-    east, north = (int(value) / UNITS_PER_SQUARE for value in arguments[1:3])
+    east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:3])
     x, y = record.steps[step].frame.place_from_utak(east, north)
     column, row = round(x), round(y)
     around = [(column + dx, row + dy) for dx in (-1, 0) for dy in (-1, 0)]
-    floor = set(node_squares(record.steps[step], FLOOR))
+    floor = set(node_squares(record.steps[step], FLOOR_NODE))
     inside = [square for square in around if square in floor] or around
     return [seen_reason(record, step, inside, False, f"the floor at the corner ({east:g}, {north:g})")]
 
@@ -179,4 +179,4 @@ def _property_reasons(
         return [found]
     if name == "bound_before" and step > 0:
         return [command_reason(record.steps[step])]
-    return [_squares_reason(record, step, node)]
+    return [squares_reason(record, step, node)]

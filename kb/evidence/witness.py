@@ -16,10 +16,10 @@ from kb.evidence.record import Record, RecordedStep
 from kb.evidence.sightings import most_telling, sightings
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
+from kb.world.model import FACT_UNITS_PER_SQUARE
 
 SHOWN_CELLS = 4  # cells that one reason names at most, the most telling ones; a convention
 SAMPLED_SQUARES = 12  # squares of an outline or a line at which cells are looked up, at most; a convention
-UNITS_PER_SQUARE = 100.0  # facts count hundredths of squares
 MAX_OUTLINE_SIDE = 2 * MAX_TABLE_SIDE  # squares: a map may reach as far beyond the table as it is long; a convention
 OUTLINE_ROUNDING = 0.02  # squares: an outline in facts, in a turned frame, may reach over its squares by so much
 
@@ -146,7 +146,7 @@ def _node_squares(facts: tuple[str, ...], angle: int, origin: XY, node: str) -> 
     for east, north, further_east, further_north in _segments(facts, node):
         if last != (east, north):
             rings.append([])
-        rings[-1].append(frame.place_from_utak(east / UNITS_PER_SQUARE, north / UNITS_PER_SQUARE))
+        rings[-1].append(frame.place_from_utak(east / FACT_UNITS_PER_SQUARE, north / FACT_UNITS_PER_SQUARE))
         last = (further_east, further_north)
     parts = [shapely.Polygon(ring) for ring in rings if len(ring) >= 3]
     if not parts:

@@ -253,6 +253,16 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
 }
 
 
+def thing_positions(signature: Signature) -> frozenset[int]:
+    """Return the indices, from 0, of the arguments of a predicate of the world model that name nodes of any kind.
+
+    signature : name and number of arguments; the result is empty for a predicate that the world model does not have.
+    """
+    declared = BELIEF_PREDICATES.get(signature)
+    types = declared.arguments if declared is not None else ()
+    return frozenset(at for at, type_ in enumerate(types) if type_ is THING_ARGUMENT)
+
+
 def check_facts(source: Source, facts: Iterable[Fact], vocabulary: Vocabulary) -> list[Problem]:
     """Return what is wrong with facts against a vocabulary: unknown predicates, wrong numbers and types of arguments.
 

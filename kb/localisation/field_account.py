@@ -13,6 +13,8 @@ from kb.mapping.occupancy import OCCUPIED, OPEN, OccupancyMap
 from kb.perception.frame import Samples
 from kb.perception.retina import FIELDS, MAX_GRAY_LEVEL, OWN_FIELD
 
+FIELD_AREAS = np.array([field.side**2 for field in FIELDS])  # squares under each of the 160 fields
+
 
 class CellStatus(StrEnum):
     """The status of a field of an impression: predicted, explained by squares that were open, or noise."""
@@ -93,7 +95,6 @@ def gray_levels(counts: NDArray[np.integer]) -> tuple[int, ...]:
 
     counts : (160,) integers; those beyond what a field can hold count as what it can hold.
     """
-    area = np.array([field.side**2 for field in FIELDS])
-    levels = (2 * MAX_GRAY_LEVEL * np.clip(counts, 0, area) + area) // (2 * area)
+    levels = (2 * MAX_GRAY_LEVEL * np.clip(counts, 0, FIELD_AREAS) + FIELD_AREAS) // (2 * FIELD_AREAS)
     levels[OWN_FIELD] = MAX_GRAY_LEVEL
     return tuple(levels.tolist())

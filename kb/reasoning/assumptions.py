@@ -14,7 +14,7 @@ from kb.language.integers import integers_beyond_32_bits
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, source_from_bytes
 from kb.language.terms import Fact, Number, Symbol
-from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts
+from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts, thing_positions
 from kb.reasoning.interfaces import DEFINING_FACTS, USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, INTERNAL_PREDICATES, PREDICATES_BY_ENCODING, QUERY_INTERFACE
 from kb.reasoning.user_rules import read_rules, read_tested_sources, sources_of
@@ -107,12 +107,10 @@ def _ended(text: str) -> str:
 
 def _with_org(fact: Fact) -> Fact:
     """Return a fact of the world model with `org` for `utak` where a thing is named; any other fact as it is."""
-    declared = BELIEF_PREDICATES.get(fact.signature)
-    if declared is None:
-        return fact
+    things = thing_positions(fact.signature)
     args = tuple(
-        Symbol("org", (), term.span) if slot is THING_ARGUMENT and str(term) == "utak" else term
-        for slot, term in zip(declared.arguments, fact.args, strict=True)
+        Symbol("org", (), term.span) if at in things and str(term) == "utak" else term
+        for at, term in enumerate(fact.args)
     )
     return Symbol(fact.name, args, fact.span)
 

@@ -15,7 +15,7 @@ from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.perception.regions import label_of
 from kb.reasoning.solver import KB_ENCODINGS, solve
-from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
+from kb.world.model import WorldModel, hundredths
 
 WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew
 MIN_CORNER_SINE = 0.5  # the sine of the angle between the walls of a corner; below it they are taken for one wall
@@ -91,7 +91,7 @@ def corners(model: WorldModel, rules: tuple[Path, ...] = ()) -> Mapping[str, Cor
     facts = []
     for number, corner in enumerate(found):
         east, north = model.place_to_utak(*corner.point)
-        facts.append(f"convex({number},{round(FACT_UNITS_PER_SQUARE * east)},{round(FACT_UNITS_PER_SQUARE * north)})")
+        facts.append(f"convex({number},{hundredths(east)},{hundredths(north)})")
     answer = solve([KB_ENCODINGS / "corners.lp", *rules], facts) or ()
     return {str(a.arguments[0]): found[a.arguments[1].number] for a in answer if a.match("furthest", 2)}
 

@@ -17,7 +17,7 @@ from kb.localisation.field_account import Accommodation
 from kb.mapping.occupancy import OPEN
 from kb.world.corners import Corner
 from kb.world.evidence import evidence
-from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel
+from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
 from kb.world.pathgraph import pathgraph_facts
 from kb.world.rooms import Rooms
 
@@ -91,11 +91,12 @@ def belief(
 
 
 def _kind_facts(facts: Iterable[str]) -> dict[str, str]:
-    """Return for each node the fact of kind/3 that says what it is likely to be: for objects that they are objects."""
-    kinds = [
-        fact for fact in facts if fact.startswith("kind(") and not ("verge," in fact and "kind(verge," not in fact)
-    ]
-    return {fact[len("kind(") : fact.index(",")]: fact for fact in kinds}
+    """Return for each node the first fact of kind/3 about it among sorted facts: for objects that they are objects."""
+    found: dict[str, str] = {}
+    for fact in facts:
+        if fact.startswith("kind("):
+            found.setdefault(fact[len("kind(") : fact.index(",")], fact)
+    return found
 
 
 def binding_facts(bound: Mapping[str, str], parameters: Iterable[str]) -> Iterator[str]:
@@ -147,7 +148,7 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     yield from _room_facts(model, places.rooms)
     for side, corner in sorted(places.corners.items()):
         east, north = model.place_to_utak(*corner.point)
-        yield f"corner({side},{_hundredths(east)},{_hundredths(north)})"
+        yield f"corner({side},{hundredths(east)},{hundredths(north)})"
     yield from pathgraph_facts(model, places.rooms)
 
 
@@ -161,12 +162,12 @@ def _root_facts(model: WorldModel) -> Iterator[str]:
     east, north = model.frame.place_to_utak(*model.place)
     yield f"node({ROOT_NODE})"
     yield f"kind({ROOT_NODE},utak,100)"
-    yield f"offset({ROOT_NODE},{_hundredths(east)},{_hundredths(north)})"
+    yield f"offset({ROOT_NODE},{hundredths(east)},{hundredths(north)})"
     for name, kind, parent in ((FLOOR_NODE, "floor", ROOT_NODE), (VERGE_NODE, "verge", FLOOR_NODE)):
         yield f"node({name})"
         yield f"child({parent},{name})"
         yield f"kind({name},{kind},{_share_settled(model, kind)})"
-    yield f"offset({FLOOR_NODE},{_hundredths(-east)},{_hundredths(-north)})"
+    yield f"offset({FLOOR_NODE},{hundredths(-east)},{hundredths(-north)})"
     yield f"offset({VERGE_NODE},0,0)"
     if model.held:
         yield f"held({model.held})"
@@ -204,7 +205,7 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     if node.confidence < 100:
         yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
     east, north = model.frame.place_to_utak(*node.patch.centre)
-    yield f"offset({name},{_hundredths(east)},{_hundredths(north)})"
+    yield f"offset({name},{hundredths(east)},{hundredths(north)})"
     for shape, confidence in sorted(node.shape.items()):
         yield f"shape({name},{shape},{confidence})"
     if node.colour is not None:
@@ -275,11 +276,11 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
     starts = np.concatenate(rings)
     ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     sure = _segment_confidence(starts, ends, model)
-    corners = _points_in_hundredths(starts, model)
+    corners = _points_inhundredths(starts, model)
     count = Counter[str]()
     for name, ring in zip(names, rings, strict=True):
         count[name] += len(ring)
-    lines = np.column_stack([corners, _points_in_hundredths(ends, model)]).tolist()
+    lines = np.column_stack([corners, _points_inhundredths(ends, model)]).tolist()
     first = 0
     for name, length in count.items():
         part = slice(first, first + length)
@@ -290,7 +291,7 @@ def _outline_facts(shapes: Iterable[tuple[str, list[Floats]]], model: WorldModel
         first += length
 
 
-def _points_in_hundredths(points: Floats, model: WorldModel) -> Longs:
+def _points_inhundredths(points: Floats, model: WorldModel) -> Longs:
     """Return (n, 2) points (x, y) of the map frame, in squares, as (n, 2) int64 (east, north) of the robot frame.
 
     The results are hundredths of squares from where the robot woke, rounded; `model` has the frame.
@@ -336,12 +337,7 @@ def _room_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
         yield f"in({ROOT_NODE},r{rooms.labels[row, column]})"
     for door in rooms.sure:
         yield f"door({door.name})"
-        yield f"width({door.name},{_hundredths(door.width)})"
-        ends = [_hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
+        yield f"width({door.name},{hundredths(door.width)})"
+        ends = [hundredths(value) for end in (door.a, door.b) for value in model.place_to_utak(*end)]
         yield f"threshold({door.name},{','.join(map(str, ends))})"
         yield from (f"connects({door.name},r{a},r{b})" for a, b in ((door.sides), (door.sides[1], door.sides[0])))
-
-
-def _hundredths(length: float) -> int:
-    """Return a length in squares as a whole number of hundredths of squares, rounded."""
-    return round(FACT_UNITS_PER_SQUARE * length)

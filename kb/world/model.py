@@ -43,6 +43,11 @@ FACT_UNITS_PER_SQUARE = 100  # lengths in facts, given or shown by encodings, ar
 ROOT_NODE, FLOOR_NODE, VERGE_NODE = "org", "floor", "verge"  # names of the nodes that are no objects
 
 
+def hundredths(length: float) -> int:
+    """Return a length in squares as a whole number of hundredths of squares, rounded, as facts state it."""
+    return round(FACT_UNITS_PER_SQUARE * length)
+
+
 @dataclass(frozen=True)
 class Node:
     """A part of the world below the floor: an isolated object, or what may be one.

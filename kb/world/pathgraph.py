@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from geometry import Screen
-from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
+from kb.world.model import WorldModel, hundredths
 from kb.world.rooms import Rooms, count_crossings
 
 
@@ -32,14 +32,9 @@ def pathgraph_facts(model: WorldModel, rooms: Rooms) -> Iterator[str]:
     graph = Screen(model.floor).pathgraph_arrays
     for number, ((x, y), clearance) in enumerate(zip(graph.nodes, graph.node_clearances, strict=True), 1):
         east, north = model.place_to_utak(x, y)
-        yield f"junction(j{number},{_hundredths(east)},{_hundredths(north)},{_hundredths(clearance)})"
+        yield f"junction(j{number},{hundredths(east)},{hundredths(north)},{hundredths(clearance)})"
     for number, (first, last) in enumerate(graph.edges.tolist()):
         name, length, clearance = f"l{number + 1}", graph.lengths[number], graph.edge_clearances[number]
-        yield f"link({name},j{first + 1},j{last + 1},{_hundredths(length)},{_hundredths(clearance)})"
+        yield f"link({name},j{first + 1},j{last + 1},{hundredths(length)},{hundredths(clearance)})"
         points = graph.points_of(number)
         yield from (f"crosses({name},{door.name})" for door in rooms.sure if count_crossings(points, door) % 2)
-
-
-def _hundredths(length: float) -> int:
-    """Return a length in squares as a whole number of hundredths of squares, rounded."""
-    return round(FACT_UNITS_PER_SQUARE * length)

@@ -88,10 +88,10 @@ class Questions:
         with _refusing_damage(fact):
             if name == "verdict":
                 return self._why_verdict(wanted)
-            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
-            if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
-                return explain_goal(self.beliefs, goal, at)
             plain = plain_fact(wanted)
+            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain), None)
+            if goal is not None and plain not in self.beliefs.record.steps[at].fact_set:
+                return explain_goal(self.beliefs, goal, at)
             if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
                 return self._why_derived(plain, at)
             return self.beliefs.explain(self._instance(wanted, at), at)

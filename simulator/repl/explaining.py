@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb.evidence.reason import Depth
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from simulator.run.story import Story
 from simulator.terminal.streams import escape_controls
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     from simulator.explaining.questions import Questions
 
 CELL_QUESTION = re.compile(r"cell\s+(\d{1,9})")
-DEPTHS = ("short", "mid", "long")
-DEFAULT_DEPTH = "mid"
 
 
 class Explainer(NamedTuple):
@@ -41,8 +40,6 @@ def why(story: Story, rest: str, depth: str) -> str:
 
     story : the story at its current step. rest : a fact, `step`, or `cell N`. depth : short, mid or long.
     """
-    from kb.evidence.reason import Depth
-
     questions, at = _questions(story), story.line["step"]
     cell = CELL_QUESTION.fullmatch(rest)
     if rest == "step":
@@ -58,8 +55,6 @@ def why(story: Story, rest: str, depth: str) -> str:
 
 def why_not(story: Story, rest: str, depth: str) -> str:
     """Return why a fact is not believed: what is missing, or in the way. Parameters as of `why`."""
-    from kb.evidence.reason import Depth
-
     if not rest:
         raise _nothing_asked("whynot", "such as whynot shape(o1, square, C).")
     return escape_controls(_questions(story).why_not(rest, story.line["step"]).text(Depth(depth)))
@@ -85,11 +80,11 @@ EXPLAINERS: Mapping[str, Explainer] = {
 
 
 def asked(rest: str) -> tuple[str, str]:
-    """Return what is asked, without its full stop, and the depth: the word before it, or DEFAULT_DEPTH.
+    """Return what is asked, without its full stop, and the depth: the word before it, or mid.
 
     >>> asked("long shape(o1, square, 90).")
     ('shape(o1, square, 90)', 'long')
     """
     word, _, after = rest.strip().partition(" ")
-    depth, question = (word, after) if word in DEPTHS else (DEFAULT_DEPTH, rest)
+    depth, question = (word, after) if word in tuple(Depth) else (Depth.MID, rest)
     return question.strip().removesuffix(".").strip(), depth

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from simulator.episode.episode import Episode, read_episode
+from simulator.episode.episode import Episode, read_begun_episode
 from simulator.episode.output_files import keep_first, open_for_writing, write_whole
 from simulator.replay.page import is_page, replay_page
 
@@ -16,9 +16,7 @@ def read_replayable(path: Path | str) -> Episode:
 
     Raises CannotOpenError when it cannot be read, BadInputError when it is damaged or has no step.
     """
-    episode = read_episode(path)
-    if not episode.steps:
-        raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), "the episode ends before its first step")])
+    episode = read_begun_episode(path)
     for number, line in enumerate((episode.header, *episode.steps), 1):
         if not _is_shallow(line):
             what = f"values are nested more than {MAX_NESTING} deep: no viewer can show this episode"

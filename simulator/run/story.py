@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from kb.language.diagnostics import BadInputError, Problem, SourceSpan
-from simulator.episode.episode import EpisodeLine, read_episode
+from simulator.episode.episode import EpisodeLine, read_begun_episode
 from simulator.run.changes import Change, RunConditions
 from simulator.run.live_story import LiveStory
 from simulator.run.recorded_story import RecordedStory
@@ -92,7 +91,4 @@ def open_story(path: Path | str, settings: Settings) -> LiveStory | RecordedStor
     """
     if Path(path).is_dir():
         return LiveStory(read_scenario(path), settings)
-    episode = read_episode(path)
-    if not episode.steps:
-        raise BadInputError([Problem(str(path), SourceSpan(1, 1, 1), "the episode ends before its first step")])
-    return RecordedStory(str(path), episode, settings.kb_files)
+    return RecordedStory(str(path), read_begun_episode(path), settings.kb_files)

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kb.evidence.reason import Depth
 from simulator.terminal import exits
 from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
@@ -32,7 +33,10 @@ def add(parts: Any) -> None:
     part.add_argument("--cell", type=_cell, metavar="N", help="a cell of the impression of the step, 0 to 159")
     part.add_argument("--at", type=_step, metavar="STEP", help="the step (default: the last)")
     part.add_argument(
-        "--depth", choices=("short", "mid", "long"), default="mid", help="how much of the tree is printed (default mid)"
+        "--depth",
+        choices=tuple(map(str, Depth)),
+        default=str(Depth.MID),
+        help="how much of the tree is printed (default mid)",
     )
     part.add_argument("--json", action="store_true", help="print the whole tree as one JSON object")
     part.add_argument(
@@ -87,8 +91,6 @@ def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
 
 def _text(reason: "Reason", depth: str) -> str:
     """Return a tree of reasons as text."""
-    from kb.evidence.reason import Depth
-
     return reason.text(Depth(depth))
 
 
