@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kb.evidence.reason import Depth
 from simulator.terminal import exits
 from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
@@ -34,8 +33,8 @@ def add(parts: Any) -> None:
     part.add_argument("--at", type=_step, metavar="STEP", help="the step (default: the last)")
     part.add_argument(
         "--depth",
-        choices=tuple(map(str, Depth)),
-        default=str(Depth.MID),
+        choices=("short", "mid", "long"),  # kb.evidence.reason.Depth, which every command would load here
+        default="mid",
         help="how much of the tree is printed (default mid)",
     )
     part.add_argument("--json", action="store_true", help="print the whole tree as one JSON object")
@@ -91,6 +90,8 @@ def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
 
 def _text(reason: "Reason", depth: str) -> str:
     """Return a tree of reasons as text."""
+    from kb.evidence.reason import Depth
+
     return reason.text(Depth(depth))
 
 
