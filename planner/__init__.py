@@ -8,6 +8,8 @@ journal       what a step adds to the record of decisions and places
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
 deciding      which goal is pursued next, and how (a room)
+tasking       the task plan: what is brought where, in which order (a room)
+oracles       questions to geometry about states that plans lead to (a room)
 carrying      manipulation plans and their execution (a room)
 skills        commands where no plan gives them (a room)
 goals         where goals hold (a room)

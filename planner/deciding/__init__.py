@@ -2,11 +2,12 @@
 
 decider       stages of the task, one after the other
 transport     a goal for an object: find it, look at it, carry it, or give up
+errands       the next step of the task plan, carried out
 clearing      navigation among movable obstacles: what blocks the robot is moved aside
 pursuit       subgoals of the robot itself: the best one, the route there, the next move
 search        subgoals while something is missing
 verification  goal verification and active perception: looks that make sure
 tools         the stateful parts that one decision uses
 
-Public names: Decider, Transporter, ObstacleClearer, Pursuer, Verifier, Tools, subgoals_towards.
+Public names: Decider, Transporter, ErrandRunner, ObstacleClearer, Pursuer, Verifier, Tools, subgoals_towards.
 """

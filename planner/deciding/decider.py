@@ -21,6 +21,7 @@ from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
+from planner.deciding.errands import ErrandRunner
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -90,6 +91,7 @@ class Decider:
         self._tools = Tools(self.executor, self.pursuer, self._verifier)
         self._transporter = Transporter()
         self._clearer = ObstacleClearer()
+        self._errands = ErrandRunner(pull)
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
@@ -157,6 +159,9 @@ class Decider:
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
             return conflict
+        errand = self._errands.next(stage, situation, reconciled, self._transporter, self._tools)
+        if errand is not None:
+            return errand
         for goal in stage.carried:
             decision = self._transporter.towards(goal, stage, situation, reconciled, self._tools)
             if decision is None:

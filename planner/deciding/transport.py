@@ -83,8 +83,19 @@ class Transporter:
         """
         return self._origins.at(parameter, node, situation)
 
+    @property
+    def place(self) -> Callable[[Fact, Node, XY, Situation], Placement]:
+        """The function that tells where a goal holds for an object."""
+        return self._place
+
     def towards(
-        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools
+        self,
+        goal: Fact,
+        stage: Stage,
+        situation: Situation,
+        reconciled: Reconciliation,
+        tools: Tools,
+        end: str = "",
     ) -> Decision | None:
         """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
 
@@ -98,6 +109,7 @@ class Transporter:
         situation : what is believed; its binding tells which object the parameter means, if any is known.
         reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
         tools : executor, pursuer and verifier, with which the decision is worked out.
+        end : the name of the one end of the goal to which the object is brought; "" for any.
         """
         x = str(goal.args[0])
         node = situation.model.object(situation.binding.get(x, ""))
@@ -112,6 +124,8 @@ class Transporter:
             why = f"{stage} is not attempted: the outline of {node.name} is not known"
             return Decision(None, why, TaskVerdict.LIMIT)
         land = self._place(goal, node, self.origin_of(x, node, situation), situation)
+        if end in land.ends:
+            land = replace(land, ends={end: land.ends[end]})
         lost = self._origins.lost(x, node, situation)
         if land.holds:
             if lost and goal.name in ORIGIN_GOALS:

@@ -1,0 +1,126 @@
+"""Errands: the next step of the task plan, carried out by what carries objects.
+
+A thing that is brought to a place of its own goal is led by planner.deciding.transport, which knows how exactly it must
+end. A thing that is moved aside, or to a spot that the plan chose, is brought there by the plan executor.
+"""
+
+from geometry.manipulation.goals import End
+from kb.task.binding import Reconciliation
+from kb.world.model import Node
+from planner.advice import Act
+from planner.carrying.preconditions import turn_cost
+from planner.deciding.tools import Tools
+from planner.deciding.transport import Transporter
+from planner.decision import Decision
+from planner.goals.placement import CERTAIN_OBJECT
+from planner.navigation.subgoals import Subgoal
+from planner.sights.frontiers import touch_viewpoint
+from planner.situation import Situation
+from planner.stages import Stage
+from planner.subgoal_kind import SubgoalKind
+from planner.tasking.intention import Intention, NextErrand
+from planner.tasking.task_plan import TaskPlan
+
+MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
+
+
+class ErrandRunner:
+    """Carries out the errands of the task plan, and owns the plan."""
+
+    def __init__(self, pull: bool = True) -> None:
+        """Make a runner without a plan.
+
+        pull : whether a held object may be pulled.
+        """
+        self._intention = Intention(pull)
+
+    @property
+    def plan(self) -> TaskPlan | None:
+        """The plan under way, from its present errand on; None for none."""
+        return self._intention.plan
+
+    def next(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, transporter: Transporter, tools: Tools
+    ) -> Decision | None:
+        """Return the next command for the task plan; None when there is no plan, or its next step is the robot's own.
+
+        Never a verdict: where an errand cannot be done, the plan is made anew without it, and where none is left, None
+        is returned.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean.
+        transporter : brings objects where goals hold.
+        tools : executor, pursuer and verifier, with which the decision is worked out.
+        """
+        for _ in range(MAX_FAILURES):
+            avoid = {node.name: tools.executor.failed.grasps(node) for node in situation.model.objects if node.polygon}
+            found = self._intention.next_errand(
+                stage, situation, transporter.place, transporter.origin_of, avoid, turn_cost(situation.model)
+            )
+            if found is None:
+                return None
+            decision = self._follow(found, stage, situation, reconciled, transporter, tools)
+            if decision is not None and decision.command is not None:
+                return decision
+            self._intention.failed(found.errand, situation)
+        return None
+
+    def _follow(
+        self,
+        found: NextErrand,
+        stage: Stage,
+        situation: Situation,
+        reconciled: Reconciliation,
+        transporter: Transporter,
+        tools: Tools,
+    ) -> Decision | None:
+        """Return the next command of an errand; a verdict or None when it cannot be done."""
+        if found.goal is None:
+            return bring_to_spot(found.node, found.errand.place, found.end, stage, situation, tools)
+        goal = stage.carried[found.goal]
+        decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
+        if decision is None:
+            return None
+        return transporter.free_robot(str(goal.args[0]), stage, situation, tools) or decision
+
+
+def bring_to_spot(
+    node: Node, place: str, end: End, stage: Stage, situation: Situation, tools: Tools
+) -> Decision | None:
+    """Return the next command to bring an object to a spot, or to find out what it is; None when there is none.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    node : the object.
+    place : the name of the spot.
+    end : where it shall lie, in squares, view frame.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    tools : executor, pursuer and verifier, with which the command is worked out.
+    """
+    if node.confidence < CERTAIN_OBJECT:
+        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
+        look = tools.pursuer.pursue_look(touch, stage, situation)
+        return None if look is None or look.command is None else look
+    if node.polygon is None or node.vague:
+        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
+        if look is not None and look.command is not None:
+            return look
+    if node.polygon is None:
+        return None
+    tools.executor.drop_other_plan(node.name)
+    advice = tools.executor.advise(node, {place: end}, situation)
+    if not isinstance(advice, Act):
+        return tools.pursuer.prepare(advice, stage, situation)
+    if tools.pursuer.closes_loop(situation.model, advice.command):
+        return None
+    return Decision(advice.command, f"{advice.why}; {stage}")

@@ -1,0 +1,260 @@
+"""The oracle of carrying: whether an object can be brought to a place in a state that a plan leads to.
+
+It certifies: `sure`, a way by exact first contact over squares that are surely free; `hoped`, the same over squares
+that are not known to be occupied; `refuted`, that none was found over any square that is not known to be occupied.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+
+from geometry.kernels.arrays import XY, Bools
+from geometry.manipulation.goals import End, moved
+from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
+from geometry.motion.se2 import Pose, Translate
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.rasterize import squares
+from kb.world.model import Node
+from kb.world.rooms import Door
+from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
+from planner.oracles.problem import Lying, TableState, TaskProblem
+from planner.screen.projection import UNSEEN_LEVEL
+from planner.situation import Situation
+
+NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
+MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
+
+
+class Certainty(StrEnum):
+    """The kinds of answers of the oracle."""
+
+    SURE = "sure"
+    HOPED = "hoped"
+    REFUTED = "refuted"
+
+
+class OracleAnswer(NamedTuple):
+    """An answer of the oracle.
+
+    Attributes
+    ----------
+    certainty : how sure the way is.
+    commands : about how many commands it takes; 0 when it is refuted.
+    after : the state that it leads to; None when it is refuted.
+    body : whether the object could not even go by itself, without the robot; only for refutations.
+    plan : the way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone,
+        and when it is refuted.
+    """
+
+    certainty: Certainty
+    commands: int = 0
+    after: TableState | None = None
+    body: bool = False
+    plan: CarryingPlan | None = None
+
+
+@dataclass(frozen=True)
+class Floors:
+    """The squares that may be used, without any thing of the problem, by certainty; all with a margin.
+
+    Attributes
+    ----------
+    by_certainty : (rows, columns) bool each.
+    margin : squares that were added on each side of the arrays of the view.
+    """
+
+    by_certainty: Mapping[Certainty, Bools]
+    margin: int
+
+
+def floors_of(problem: TaskProblem, situation: Situation) -> Floors:
+    """Return the squares that may be used as if no thing of a problem were there, with a margin for unseen floor.
+
+    Parameters
+    ----------
+    problem : its things lie as they are now; ends may lie beyond the view.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    model = situation.model
+    covered = np.zeros(model.labels.shape, np.bool_)
+    for node in problem.nodes.values():
+        covered |= model.mask(node.patch)
+    margin = max(UNSEEN_MARGIN, _margin_needed(problem, covered.shape))
+    unseen = np.pad(situation.cost_maps.free(UNSEEN_LEVEL) | covered, margin, constant_values=True)
+    wider = margin - UNSEEN_MARGIN
+    hoped = np.pad(optimistic_floor(situation), wider) | np.pad(covered, margin)
+    sure = np.pad(situation.cost_maps.free(0) | covered, margin)
+    return Floors({Certainty.SURE: sure, Certainty.HOPED: hoped | sure, Certainty.REFUTED: unseen | hoped}, margin)
+
+
+def _margin_needed(problem: TaskProblem, shape: tuple[int, ...]) -> int:
+    """Return how many squares beyond the view the ends of a problem lie, at most MAX_MARGIN_SQUARES."""
+    rows, columns = shape
+    beyond = 0.0
+    for (name, _), end in problem.places.items():
+        outline = problem.state.things[name].outline
+        pose = getattr(end, "pose", None)
+        if pose is not None:
+            west, south, east, north = outline.bounds
+            reach_ = max(east - west, north - south)
+            x, y = outline.centroid.x + pose.x, outline.centroid.y + pose.y
+            beyond = max(beyond, reach_ - x, reach_ - y, x + reach_ - columns, y + reach_ - rows)
+    return min(MAX_MARGIN_SQUARES, max(0, int(np.ceil(beyond)) + 1))
+
+
+class CarryOracle:
+    """Answers whether objects can be brought to places; remembers its answers for one situation.
+
+    Attributes
+    ----------
+    asked : how many times geometry was asked.
+    """
+
+    def __init__(
+        self,
+        problem: TaskProblem,
+        situation: Situation,
+        pull: bool = True,
+        avoid: Mapping[str, Sequence[XY]] | None = None,
+        turn: float = 1.0,
+    ) -> None:
+        """Make an oracle for a situation.
+
+        Parameters
+        ----------
+        problem : its things and their places now.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        pull : whether a held object may be pulled.
+        avoid : the grasps of each object that failed, as in `plan_carrying`; none by default.
+        turn : how many commands a turn counts for.
+        """
+        self.asked = 0
+        self.floors = floors_of(problem, situation)
+        self._problem, self._situation = problem, situation
+        self._pull, self._avoid, self._turn = pull, avoid or {}, turn
+        self._doors = {door.name: door for door in situation.rooms.doors}
+        self._answers: dict[Any, OracleAnswer] = {}
+
+    def bring(
+        self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
+    ) -> OracleAnswer:
+        """Return whether an object can be brought to an end in a state, and the state that this leads to.
+
+        Parameters
+        ----------
+        state : how everything lies.
+        name : the object.
+        end : where it shall lie, meant for the object as it lies now, in squares, view frame.
+        place : the name of that place.
+        shut : the names of doors that are not passed.
+        """
+        key = (_key(state), name, place, shut)
+        if key not in self._answers:
+            self._answers[key] = self._bring(state, name, end, place, shut)
+        return self._answers[key]
+
+    def arrive(self, state: TableState, stand: Any, shut: frozenset[str] = frozenset()) -> OracleAnswer:
+        """Return whether the robot can walk to some squares in a state, and the state that this leads to.
+
+        Parameters
+        ----------
+        state : how everything lies.
+        stand : flat indices of squares (row * columns + column) on the arrays of the view.
+        shut : the names of doors that are not passed.
+        """
+        columns = self._situation.model.labels.shape[1]
+        rows_of, columns_of = np.divmod(stand, columns)
+        for certainty in Certainty:
+            free = self._free(state, None, certainty, shut)
+            x, y = (int(v) + self.floors.margin for v in state.robot)
+            far = reach(free, x, y)[rows_of + self.floors.margin, columns_of + self.floors.margin]
+            if (far != GEODESIC_UNREACHED).any():
+                best = int(np.flatnonzero(far == far[far != GEODESIC_UNREACHED].min())[0])
+                robot = float(columns_of[best]) + 0.5, float(rows_of[best]) + 0.5
+                sure = Certainty.SURE if certainty == Certainty.SURE else Certainty.HOPED
+                return OracleAnswer(sure, 1, replace(state, robot=robot, held=None))
+        return OracleAnswer(Certainty.REFUTED)
+
+    def _bring(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> OracleAnswer:
+        """Return the answer of geometry; the surest way counts."""
+        lying, margin = state.things[name], self.floors.margin
+        goal = moved(lying.reach(end), margin, margin)
+        outline = Translate(margin, margin).carry(lying.outline)
+        body = False
+        for certainty in Certainty:
+            free = self._free(state, name, certainty, shut)
+            x, y = state.robot[0] + margin, state.robot[1] + margin
+            walk = free.copy()
+            free |= squares(outline, free.shape[1], free.shape[0])
+            self.asked += 1
+            plan = plan_carrying(
+                outline,
+                free,
+                (x, y),
+                goal,
+                0.0,
+                self._pull,
+                tuple(self._avoid.get(name, ())),
+                walk,
+                held=state.held == name,
+                turn=self._turn,
+            )
+            if plan.status == "found":
+                sure = Certainty.SURE if certainty == Certainty.SURE else Certainty.HOPED
+                return OracleAnswer(sure, plan.commands, self._after(state, name, plan, place), plan=plan)
+            body = plan.status == "impossible"
+        return OracleAnswer(Certainty.REFUTED, body=body)
+
+    def _after(self, state: TableState, name: str, plan: CarryingPlan, place: str) -> TableState:
+        """Return the state after a plan, given in the frame with the margin."""
+        lying, margin = state.things[name], self.floors.margin
+        if not plan.legs:
+            return replace(state, things={**state.things, name: replace(lying, place=place)})
+        back = plan.shifted(-margin, -margin)
+        assert back.pose is not None
+        x, y, degrees = back.pose
+        pose = Pose(lying.pose.x + x, lying.pose.y + y, lying.pose.degrees + degrees)
+        leg = back.legs[-1]
+        robot = leg.place
+        for motion in leg.motions:
+            if isinstance(motion, Translate):
+                robot = robot[0] + motion.dx, robot[1] + motion.dy
+        return state.after(name, Lying(back.polygon, pose, place), robot)
+
+    def _free(self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str]) -> Bools:
+        """Return the squares that the things of a state other than `name`, and shut doors, leave free."""
+        free = self.floors.by_certainty[certainty].copy()
+        rows, columns = free.shape
+        margin = self.floors.margin
+        for other, lying in state.things.items():
+            if other != name:
+                free &= ~self._covered(other, lying, (rows, columns))
+        for door in shut & self._doors.keys():
+            free &= ~self._neck(self._doors[door], (rows, columns))
+        x, y = (int(v) + margin for v in state.robot)
+        if 0 <= x < columns and 0 <= y < rows:
+            free[y, x] = True
+        return free
+
+    def _covered(self, name: str, lying: Lying, shape: tuple[int, int]) -> Bools:
+        """Return the squares that an object covers as it lies; those that were seen while it was not moved."""
+        margin, model = self.floors.margin, self._situation.model
+        if lying.pose == (0.0, 0.0, 0.0):
+            node: Node = self._problem.nodes[name]
+            return np.pad(model.mask(node.patch), margin)
+        return squares(Translate(margin, margin).carry(lying.outline), shape[1], shape[0])
+
+    def _neck(self, door: Door, shape: tuple[int, int]) -> Bools:
+        """Return the squares on the neck of a door."""
+        line = Translate(self.floors.margin, self.floors.margin).carry(shapely.LineString([door.a, door.b]))
+        return squares(line.buffer(NECK_WIDTH), shape[1], shape[0])
+
+
+def _key(state: TableState) -> Any:
+    """Return what distinguishes a state: where everything lies, where the robot stands, what it holds."""
+    lying = tuple(sorted((name, tuple(one.pose), one.place) for name, one in state.things.items()))
+    return lying, state.robot, state.held

@@ -1,0 +1,126 @@
+"""The problem of a task plan: things, places and goals of one stage, and states of the table that plans lead to.
+
+All geometry is in squares, in the view frame: that of the arrays of the view, (0, 0) the south-west corner of square
+[0, 0].
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from geometry.kernels.arrays import XY
+from geometry.manipulation.goals import At, End
+from geometry.motion.se2 import Pose
+from kb.world.model import Node
+
+HERE = "here"  # the place of everything where it is now
+ROBOT = "utak"  # the robot among the things of a plan
+UNMOVED = Pose(0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Lying:
+    """The pose of an object in a state, and the place that it is at.
+
+    Attributes
+    ----------
+    outline : shapely Polygon, in squares, view frame.
+    pose : how it was moved since now: turned about its centroid, then translated.
+    place : the name of its place.
+    """
+
+    outline: Any
+    pose: Pose
+    place: str = HERE
+
+    def reach(self, end: End) -> End:
+        """Return an end that is meant for the object as it lies now, for the object as it lies in this state.
+
+        Only a pose (At) is relative to how the object lies; other ends are returned unchanged.
+
+        Parameters
+        ----------
+        end : where the object shall lie, in squares, view frame.
+        """
+        if not isinstance(end, At):
+            return end
+        x, y, degrees = end.pose
+        return At(Pose(x - self.pose.x, y - self.pose.y, degrees - self.pose.degrees))
+
+
+@dataclass(frozen=True)
+class TableState:
+    """A predicted state of the table: all things of a problem, and the robot.
+
+    Attributes
+    ----------
+    things : how each object lies, by its name.
+    robot : the place (x, y) of the robot, in squares, view frame.
+    held : the name of the object in the robot's hand; None for none.
+    last : the name of the object that was put down last; "start" while none was.
+    """
+
+    things: Mapping[str, Lying]
+    robot: XY
+    held: str | None = None
+    last: str = "start"
+
+    def after(self, name: str, lying: Lying, robot: XY) -> "TableState":
+        """Return the state after an object was brought somewhere and released.
+
+        Parameters
+        ----------
+        name : the object.
+        lying : how it lies then.
+        robot : where the robot stands then, (x, y) in squares, view frame.
+        """
+        return replace(self, things={**self.things, name: lying}, robot=robot, held=None, last=name)
+
+    def without(self, names: frozenset[str]) -> "TableState":
+        """Return the state without some objects."""
+        return replace(self, things={name: lying for name, lying in self.things.items() if name not in names})
+
+
+@dataclass(frozen=True)
+class PlacedGoal:
+    """A goal of the stage, and the places where it holds.
+
+    Attributes
+    ----------
+    name : g1, g2, ... in the order of the task.
+    words : the goal as the task states it.
+    subject : the object that it is about, or ROBOT.
+    holds : whether it holds now.
+    """
+
+    name: str
+    words: str
+    subject: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class TaskProblem:
+    """The things, places and goals for which a task plan is made.
+
+    Attributes
+    ----------
+    nodes : the objects that may be carried, by name, in the order of the model; their outlines are known.
+    goals : the goals of the stage, in the order of the task.
+    places : by object and name of a place: the end there, meant for the object as it lies now. ROBOT has none here.
+    fulfils : by object (or ROBOT) and name of a place: the names of the goals that hold there.
+    stands : by the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the
+        view.
+    state : how everything is now.
+    """
+
+    nodes: Mapping[str, Node]
+    goals: tuple[PlacedGoal, ...]
+    places: Mapping[tuple[str, str], End]
+    fulfils: Mapping[tuple[str, str], tuple[str, ...]]
+    stands: Mapping[str, Any]
+    state: TableState
+
+    def with_places(self, places: Mapping[tuple[str, str], End]) -> "TaskProblem":
+        """Return the problem with further places: ends by object and name of a place."""
+        return replace(self, places={**self.places, **places})

@@ -1,0 +1,81 @@
+"""The oracle of places: where an object can lie, out of the way of others or within a region.
+
+It certifies that the object, not turned, lies there over squares of a floor, and that it can be pushed there by itself
+from square to square.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools, Ints
+from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.rasterize import squares
+
+MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
+MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on choices
+
+
+def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[tuple[int, int]]:
+    """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
+
+    The nearest place off `keep_clear` comes first; then those that are furthest from the ones chosen before; at last
+    places on `keep_clear`, chosen likewise. [] when there is none.
+
+    Parameters
+    ----------
+    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
+    floor : (rows, columns) bool, squares on which it may lie.
+    around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
+    keep_clear : (rows, columns) bool, squares that others need.
+    """
+    rows, columns = floor.shape
+    own = squares(outline, columns, rows)
+    if not own.any():
+        return []
+    offsets = np.argwhere(own) - np.argwhere(own).min(axis=0)
+    row, column = (int(v) for v in np.argwhere(own).min(axis=0))
+    passable = _fits(around | floor | own, offsets)
+    if not passable[row, column]:
+        return []
+    far = reach(passable, column, row)
+    usable = _fits(floor, offsets) & (far != GEODESIC_UNREACHED)
+    usable[row, column] = False
+    clear = usable & _fits(~keep_clear, offsets)
+    apart = max(offsets.max(axis=0)) + 1
+    chosen = _apart(clear, far, MAX_CLEAR_SPOTS, int(apart))
+    chosen += _apart(usable & ~clear, far, MAX_OTHER_SPOTS, int(apart))
+    return [(x - column, y - row) for x, y in chosen]
+
+
+def _fits(mask: Bools, offsets: Ints) -> Bools:
+    """Return where the lowest row and column of some squares may be so that all of them lie on a mask."""
+    rows, columns = mask.shape
+    found = np.ones_like(mask)
+    for dy, dx in offsets:
+        shifted = np.zeros_like(mask)
+        shifted[: rows - dy, : columns - dx] = mask[dy:, dx:]
+        found &= shifted
+    return found
+
+
+def _apart(mask: Bools, far: Ints, number: int, apart: int) -> list[tuple[int, int]]:
+    """Return at most `number` squares (column, row) of a mask: the nearest, then those furthest from these."""
+    where = np.argwhere(mask)
+    if not len(where):
+        return []
+    chosen = [int(np.argmin(far[mask]))]
+    gap = np.abs(where - where[chosen[0]]).max(axis=1)
+    while len(chosen) < number and gap.max() >= apart:
+        chosen.append(int(np.argmax(gap)))
+        gap = np.minimum(gap, np.abs(where - where[chosen[-1]]).max(axis=1))
+    return [(int(where[i][1]), int(where[i][0])) for i in chosen]
+
+
+def covered_by(outlines: Sequence[Any], shape: tuple[int, int]) -> Bools:
+    """Return the squares that some shapely Polygons cover, (rows, columns) bool of a shape."""
+    found = np.zeros(shape, np.bool_)
+    for outline in outlines:
+        found |= squares(outline, shape[1], shape[0])
+    return found

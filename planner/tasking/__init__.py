@@ -1,0 +1,9 @@
+"""The task plan: what is brought where, in which order; chosen by planner/asp/task.lp, verified by geometry.
+
+setting       problem_of: the problem of a stage, from what is believed
+task_plan     TaskPlan, Errand, RefutedStep: the values
+facts         the facts of the encoding
+offers        Offers: places for things that are in the way
+search        make_plan: the encoding proposes, geometry verifies or refutes
+intention     Intention: the plan under way, kept while it holds
+"""

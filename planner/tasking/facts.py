@@ -1,0 +1,115 @@
+"""The facts of planner/asp/task.lp: things, places, goals and rooms of a problem, and what geometry said so far."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
+from geometry.raster.rasterize import squares
+from kb.world.rooms import NO_ROOM
+from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.situation import Situation
+from planner.tasking.task_plan import RefutedStep
+
+Way = tuple[str, str, str]  # a thing, the place that it comes from, the place that it is brought to
+
+
+@dataclass(frozen=True)
+class Answers:
+    """The answers of geometry so far.
+
+    Attributes
+    ----------
+    commands : about how many commands a way takes, as geometry found it in the state where it was asked last.
+    hoped : the ways over floor that is only hoped to be free.
+    refutations : the refuted ways, in the order in which they were refuted.
+    """
+
+    commands: Mapping[Way, int] = field(default_factory=dict)
+    hoped: AbstractSet[Way] = frozenset()
+    refutations: tuple[RefutedStep, ...] = ()
+
+
+def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situation: Situation) -> tuple[str, ...]:
+    """Return the facts of a problem that stay the same while answers come in, without full stops.
+
+    Parameters
+    ----------
+    problem : things, places and goals.
+    aside : by object and place: the places where an object is out of the way.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    facts = [f"place({ROBOT},{HERE})"]
+    facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
+    facts += [f"place({name},{place})" for name, place in problem.places]
+    facts += [f"place({ROBOT},{place})" for place in problem.stands]
+    facts += [f"aside({name},{place})" for name, place in aside]
+    ranks: dict[str, int] = {}
+    for number, goal in enumerate(problem.goals):
+        ranks.setdefault(goal.subject, number)
+        facts.append(f"goal({goal.name})")
+        if goal.holds:
+            facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
+    facts += [f"rank({name},{number})" for name, number in ranks.items()]
+    facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
+    return (*facts, *_room_facts(problem, situation))
+
+
+def answer_facts(answers: Answers) -> Iterator[str]:
+    """Yield what geometry said as facts, without full stops."""
+    for (name, origin, place), commands in answers.commands.items():
+        yield f"estimate({name},{origin},{place},{commands})"
+    for name, origin, place in sorted(answers.hoped):
+        yield f"hoped({name},{origin},{place})"
+    for number, refutation in enumerate(answers.refutations):
+        yield f"refuted({number},{refutation.subject},{refutation.origin},{refutation.place})"
+        yield from (f"given({number},{name},{place})" for name, place in refutation.given)
+        yield from (f"shut({number},{door})" for door in refutation.shut)
+        if refutation.stood is not None:
+            yield f"stood({number},{refutation.stood})"
+
+
+def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
+    """Yield which doors connect which rooms, and in which room each place lies, where one room holds most of it."""
+    rooms, model = situation.rooms, situation.model
+    for door in rooms.doors:
+        if NO_ROOM not in door.sides and door.sides[0] != door.sides[1]:
+            yield f"connects({door.name},r{door.sides[0]},r{door.sides[1]})"
+    robot = int(rooms.labels[model.view.locate(*model.place)])
+    if robot != NO_ROOM:
+        yield f"lies({ROBOT},{HERE},r{robot})"
+    for name, place, mask in _masks(problem, rooms.labels.shape):
+        counts = np.bincount(rooms.labels[mask].astype(np.int64), minlength=1)
+        room = int(counts.argmax())
+        if room != NO_ROOM and 2 * counts[room] > counts.sum():
+            yield f"lies({name},{place},r{room})"
+
+
+def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, str, Bools]]:
+    """Yield each place with the squares that it takes up, (rows, columns) bool on the arrays of the view."""
+    rows, columns = shape
+    for name, lying in problem.state.things.items():
+        yield name, HERE, squares(lying.outline, columns, rows)
+    for (name, place), end in problem.places.items():
+        yield name, place, _squares_of(end, problem.state.things[name].outline, (rows, columns))
+    for place, stand in problem.stands.items():
+        mask: Bools = np.zeros((rows, columns), np.bool_)
+        mask.flat[stand] = True
+        yield ROBOT, place, mask
+
+
+def _squares_of(end: End, outline: object, shape: tuple[int, int]) -> Bools:
+    """Return the squares that an end takes up; of a corner those near it, as far as the object reaches."""
+    rows, columns = shape
+    if isinstance(end, Inside):
+        return squares(end.polygon, columns, rows)
+    if isinstance(end, At):
+        return squares(shape_at_pose(outline, end.pose), columns, rows)
+    mask: Bools = np.zeros(shape, np.bool_)
+    if isinstance(end, InCorner):
+        row, column = int(end.y - 0.5 * end.sy), int(end.x - 0.5 * end.sx)
+        mask[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2] = True
+    return mask

@@ -1,0 +1,262 @@
+"""The intention: the task plan under way. It is kept while what it rests on stands, and made anew when that falls."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from geometry.manipulation.goals import End, moved
+from kb.world.model import Node
+from planner.goals.placement import meets_end
+from planner.oracles.carry import CarryOracle
+from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.screen.projection import UNSEEN_LEVEL
+from planner.situation import Situation
+from planner.stages import Stage
+from planner.tasking.search import make_plan
+from planner.tasking.setting import OriginFunction, PlaceFunction, place_name, problem_of
+from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+
+MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
+
+
+class NextErrand(NamedTuple):
+    """The next errand of a plan, and the end that it leads to.
+
+    Attributes
+    ----------
+    errand : the step of the plan.
+    node : the object that is brought.
+    end : where it shall lie, in squares, view frame.
+    goal : the number of the carried goal of the stage whose own end this is; None for a spot that the planner chose.
+    end_name : the name of that end among the ends of the goal; "" for a spot.
+    """
+
+    errand: Errand
+    node: Node
+    end: End
+    goal: int | None
+    end_name: str
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """A plan with what it rests on; all geometry in squares, map frame.
+
+    Attributes
+    ----------
+    plan : the plan.
+    stage : for which it was made.
+    names : the things that may be carried.
+    places : the places of goals that were known.
+    spots : the end of each place that the planner chose, by object and place.
+    bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
+    ways : the squares (x, y) that each errand crosses, (n, 2).
+    number : the errand that is done now.
+    """
+
+    plan: TaskPlan
+    stage: Stage
+    names: tuple[str, ...]
+    places: frozenset[tuple[str, str]]
+    spots: Mapping[tuple[str, str], End]
+    bounds: tuple[Mapping[str, tuple[float, ...]], ...]
+    ways: tuple[Any, ...]
+    number: int = 0
+
+
+class Intention:
+    """Owns the task plan under way, and what was tried in vain."""
+
+    def __init__(self, pull: bool = True) -> None:
+        """Make an intention without a plan.
+
+        pull : whether a held object may be pulled.
+        """
+        self._pull = pull
+        self._kept: _Kept | None = None
+        self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
+        self._hopeless: Any = None  # what was believed when no plan was found last
+
+    @property
+    def plan(self) -> TaskPlan | None:
+        """The plan under way, from its present errand on; None for none."""
+        if self._kept is None:
+            return None
+        return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
+
+    def next_errand(
+        self,
+        stage: Stage,
+        situation: Situation,
+        place: PlaceFunction,
+        origin: OriginFunction,
+        avoid: Mapping[str, Any],
+        turn: float,
+    ) -> NextErrand | None:
+        """Return the next errand of the plan, which is made anew when it no longer holds; None when there is no plan.
+
+        None, too, when the next step is the robot's own, or while it is open what a goal means or where it holds.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        place, origin : as in planner.tasking.setting.problem_of.
+        avoid : by the names of objects, the grasps that failed.
+        turn : how many commands a turn counts for.
+        """
+        problem = problem_of(stage, situation, place, origin)
+        if problem is None:
+            self._kept = None
+            return None
+        self._kept = self._kept_still(stage, problem, situation)
+        if self._kept is None:
+            self._kept = self._made(stage, problem, situation, avoid, turn)
+        kept = self._kept
+        if kept is None or kept.number >= len(kept.plan.errands):
+            return None
+        errand = kept.plan.errands[kept.number]
+        if errand.subject == ROBOT:
+            return None
+        spot = kept.spots.get((errand.subject, errand.place))
+        node = problem.nodes[errand.subject]
+        if spot is not None:
+            return NextErrand(errand, node, _moved_to_view(spot, situation), None, "")
+        goal, end_name = _goal_of(errand, stage, problem, situation, place, origin)
+        return NextErrand(errand, node, problem.places[errand.subject, errand.place], goal, end_name)
+
+    def failed(self, errand: Errand, situation: Situation) -> None:
+        """Note that an errand cannot be done as things lie now; the plan is made anew without it.
+
+        Parameters
+        ----------
+        errand : the present errand.
+        situation : what is believed: world model, rooms, doors, corners and track.
+        """
+        model = situation.model
+        others = [node.name for node in model.objects if node.polygon is not None and node.name != errand.subject]
+        given = tuple((name, HERE) for name in sorted(others))
+        self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
+        self._kept = None
+
+    def _kept_still(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
+        """Return the plan under way, moved on over errands that are done; None when what it rests on fell."""
+        kept = self._kept
+        if kept is None or kept.stage != stage or kept.names != tuple(problem.nodes):
+            return None
+        if kept.places != frozenset(problem.places):
+            return None
+        while kept.number < len(kept.plan.errands):
+            errand = kept.plan.errands[kept.number]
+            if errand.subject == ROBOT:
+                break
+            spot = kept.spots.get((errand.subject, errand.place))
+            end = problem.places[errand.subject, errand.place] if spot is None else _moved_to_view(spot, situation)
+            if not meets_end(end, problem.state.things[errand.subject].outline):
+                break
+            kept = replace(kept, number=kept.number + 1)
+        return kept if self._stands(kept, problem, situation) else None
+
+    def _stands(self, kept: _Kept, problem: TaskProblem, situation: Situation) -> bool:
+        """Return whether all things lie as the plan expects, and no way that is left is seen to be blocked."""
+        if kept.number >= len(kept.plan.errands):
+            return all(goal.holds or goal.subject == ROBOT for goal in problem.goals)
+        subject = kept.plan.errands[kept.number].subject
+        now = _bounds(problem, situation)
+        for name, expected in kept.bounds[kept.number].items():
+            off = max(abs(a - b) for a, b in zip(now[name], expected, strict=True))
+            if name != subject and off > MAX_DISPLACEMENT:
+                return False
+        view, model = situation.model.view, situation.model
+        open_ = situation.cost_maps.free(UNSEEN_LEVEL)
+        for node in problem.nodes.values():
+            open_ |= model.mask(node.patch)
+        for way in kept.ways[kept.number :]:
+            columns, rows = way[:, 0] - view.west, way[:, 1] - view.south
+            inside = (columns >= 0) & (rows >= 0) & (columns < open_.shape[1]) & (rows < open_.shape[0])
+            if not open_[rows[inside], columns[inside]].all():
+                return False
+        return True
+
+    def _made(
+        self, stage: Stage, problem: TaskProblem, situation: Situation, avoid: Mapping[str, Any], turn: float
+    ) -> _Kept | None:
+        """Return a new plan with what it rests on; None when there is none that attains all goals."""
+        if all(goal.holds for goal in problem.goals):
+            return None
+        lying = _lying(situation)
+        believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
+        if believed == self._hopeless:
+            return None
+        oracle = CarryOracle(problem, situation, self._pull, avoid, turn)
+        tried = [refutation for where, refutation in self._tried if where == lying]
+        made = make_plan(problem, situation, oracle, tried)
+        self._hopeless = believed if made.plan.unmet else None
+        if made.plan.unmet:
+            return None
+        view = situation.model.view
+        west, south = view.west, view.south
+        spots = {key: moved(end, west, south) for key, end in made.places.items() if key not in problem.places}
+        bounds = tuple(
+            {name: _shifted(one.outline.bounds, west, south) for name, one in state.things.items()}
+            for state in made.states
+        )
+        ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
+        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways)
+
+
+def _goal_of(
+    errand: Errand,
+    stage: Stage,
+    problem: TaskProblem,
+    situation: Situation,
+    place: PlaceFunction,
+    origin: OriginFunction,
+) -> tuple[int | None, str]:
+    """Return the number of the carried goal that an errand attains, and the name of its end there."""
+    for number, goal in enumerate(stage.carried):
+        prefix = f"g{number + 1}"
+        if not errand.place.startswith(f"{prefix}_"):
+            continue
+        node = problem.nodes[errand.subject]
+        land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
+        for name in (*land.ends, *land.loose):
+            if place_name(prefix, name) == errand.place:
+                return number, name
+    return None, ""
+
+
+def _moved_to_view(end: End, situation: Situation) -> End:
+    """Return an end in the view frame, from the map frame."""
+    view = situation.model.view
+    return moved(end, -view.west, -view.south)
+
+
+def _lying(situation: Situation) -> Any:
+    """Return where all things lie, to whole squares, as something that can be compared."""
+    return tuple(
+        (node.name, *(round(v) for v in node.polygon.bounds))
+        for node in situation.model.objects
+        if node.polygon is not None
+    )
+
+
+def _bounds(problem: TaskProblem, situation: Situation) -> dict[str, tuple[float, ...]]:
+    """Return the bounds of all things now, in squares, map frame."""
+    view = situation.model.view
+    return {name: _shifted(one.outline.bounds, view.west, view.south) for name, one in problem.state.things.items()}
+
+
+def _shifted(bounds: tuple[float, ...], dx: float, dy: float) -> tuple[float, ...]:
+    """Return bounds (west, south, east, north) translated by (dx, dy)."""
+    west, south, east, north = bounds
+    return west + dx, south + dy, east + dx, north + dy
+
+
+def _squares_of(mask: Bools, dx: int, dy: int) -> Any:
+    """Return the squares (x, y) of a mask, translated by (dx, dy), (n, 2)."""
+    rows, columns = np.nonzero(mask)
+    return np.column_stack([columns + dx, rows + dy])

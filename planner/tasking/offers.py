@@ -1,0 +1,94 @@
+"""Places that a search offers for things in the way: aside, and apart from each other within a goal's region."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from geometry.manipulation.goals import End, Inside
+from geometry.motion.se2 import Translate
+from geometry.raster.rasterize import squares
+from planner.oracles.carry import Certainty, Floors
+from planner.oracles.problem import TaskProblem
+from planner.oracles.spots import covered_by, spots
+
+SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
+
+
+class Offers:
+    """Remembers what is in the way of what, and for which things places were offered.
+
+    Attributes
+    ----------
+    aside : by object and place: the offered places where an object is out of the way.
+    fresh : whether places were offered since this was set to False.
+    shape : (rows, columns) of the floors.
+    """
+
+    def __init__(self, floors: Floors) -> None:
+        """Make offers for some floors; nothing is in the way."""
+        sure = floors.by_certainty[Certainty.SURE]
+        self.aside: list[tuple[str, str]] = []
+        self.fresh = False
+        self.shape = (sure.shape[0], sure.shape[1])
+        self._floors = floors
+        self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
+        self._in_way: list[str] = []
+        self._offered: set[str] = set()
+
+    def keep_clear(self, way: Bools) -> None:
+        """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
+        self._needed |= way
+
+    def note_in_way(self, names: Sequence[str]) -> None:
+        """Note that things are in the way of others where a plan leaves them."""
+        self._in_way += [name for name in names if name not in self._in_way]
+
+    def places(self, problem: TaskProblem) -> TaskProblem | None:
+        """Return the problem with places for things that are in the way; None when none is new.
+
+        For a thing that has a goal in a region, places within that region are offered, too.
+
+        Parameters
+        ----------
+        problem : things, places and goals.
+        """
+        new: dict[tuple[str, str], End] = {}
+        fulfils = dict(problem.fulfils)
+        for name in [name for name in self._in_way if name not in self._offered]:
+            self._offered.add(name)
+            self.fresh = True
+            for number, end in enumerate(self._spots_aside(name, problem), 1):
+                new[name, f"spot{number}"] = end
+                self.aside.append((name, f"spot{number}"))
+            for (thing, place), region in problem.places.items():
+                if thing == name and isinstance(region, Inside):
+                    for number, end in enumerate(self._spots_within(name, region, problem), 1):
+                        new[name, f"{place}_{number}"] = end
+                        fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
+        return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
+
+    def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
+        """Return places on sure floor, off the ways of others where that can be, and off other things."""
+        floor = self._floors.by_certainty[Certainty.SURE]
+        others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
+        return self._spots(name, problem, floor & ~covered_by(others, self.shape), floor)
+
+    def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
+        """Return places within the region of a goal."""
+        floor = self._floors.by_certainty[Certainty.HOPED]
+        inside = squares(self._carry(region.polygon), self.shape[1], self.shape[0])
+        return self._spots(name, problem, floor & inside, floor)
+
+    def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
+        """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""
+        outline = problem.state.things[name].outline
+        moves = spots(self._carry(outline), floor, around, self._needed)
+        shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
+        return [Inside(shape.buffer(SPOT_SLACK, join_style="mitre")) for shape in shapes]
+
+    def _carry(self, shape: Any) -> Any:
+        """Return a shape (shapely geometry, view frame) in the frame of the floors."""
+        return Translate(float(self._floors.margin), float(self._floors.margin)).carry(shape)

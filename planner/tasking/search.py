@@ -1,0 +1,247 @@
+"""The search for a task plan: the encoding proposes, geometry verifies or refutes, until a plan is verified.
+
+Geometry checks the steps in their order, each in the state that the steps before it lead to. A refutation comes back as
+a fact with the least circumstances on which it rests: other things where they lie, where the robot stands, doors that
+are not passed. Places to put things aside are offered for what is in the way, and for nothing else.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from geometry.manipulation.goals import End
+from geometry.motion.se2 import Translate
+from kb.reasoning.solver import solve
+from kb.tracing.decisions import record_decisions
+from planner.carrying.manipulation_oracle import swept_squares
+from planner.navigation.subgoals import PLANNER_ASP
+from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
+from planner.oracles.problem import HERE, ROBOT, TableState, TaskProblem
+from planner.situation import Situation
+from planner.tasking.facts import Answers, answer_facts, problem_facts
+from planner.tasking.offers import Offers
+from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+
+TASK_ENCODING = PLANNER_ASP / "task.lp"
+MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
+MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
+MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
+LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
+
+
+class MadePlan(NamedTuple):
+    """A plan with the geometry that it rests on, in squares, view frame.
+
+    Attributes
+    ----------
+    plan : the plan.
+    places : the end of each place of each object: those of the goals, and those that the search offered.
+    states : how everything lies at the beginning of each errand.
+    ways : the squares that each errand crosses, (rows, columns) bool with a margin.
+    margin : squares that were added to the arrays of the view on each side.
+    """
+
+    plan: TaskPlan
+    places: Mapping[tuple[str, str], End]
+    states: tuple[TableState, ...] = ()
+    ways: tuple[Bools, ...] = ()
+    margin: int = 0
+
+
+class Proposal(NamedTuple):
+    """A plan as the encoding proposes it.
+
+    Attributes
+    ----------
+    errands : its steps, in order.
+    unmet : the goals that do not hold after them.
+    facts : what the encoding was given.
+    """
+
+    errands: tuple[Errand, ...]
+    unmet: tuple[str, ...]
+    facts: tuple[str, ...]
+
+
+class PlanSearch:
+    """Searches a plan for one problem; owns what geometry said so far."""
+
+    def __init__(
+        self, problem: TaskProblem, situation: Situation, oracle: CarryOracle, tried: Sequence[RefutedStep] = ()
+    ) -> None:
+        """Make a search that knows nothing but what was tried.
+
+        Parameters
+        ----------
+        problem : things, places and goals.
+        situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
+        oracle : verifies the steps.
+        tried : steps that failed when they were carried out, as refutations.
+        """
+        self._problem, self._situation, self._oracle = problem, situation, oracle
+        self._answers = Answers(refutations=tuple(tried))
+        self._offers = Offers(oracle.floors)
+        self._facts = problem_facts(problem, (), situation)
+
+    def run(self) -> MadePlan:
+        """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
+        out_of_place = {goal.subject for goal in self._problem.goals if not goal.holds}
+        horizon = max(1, len(out_of_place))
+        most = horizon + MAX_MORE_ERRANDS
+        best: TaskPlan | None = None
+        facts: tuple[str, ...] = ()
+        better, least, proved, number = 0, 0, False, 0
+        while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
+            number += 1
+            proposal = self._propose(horizon)
+            if proposal.unmet and best is None and (self._offer() or horizon < most):
+                horizon += not self._offers.fresh
+                self._offers.fresh = False
+                continue
+            if proposal.unmet:
+                best, proved = best or TaskPlan(proposal.errands, proposal.unmet), True
+                facts = facts or proposal.facts
+                continue
+            least = least or self._estimated(proposal.errands)
+            verified = self._verify(proposal.errands)
+            if verified is None:
+                continue
+            better += 1
+            proved = best is not None and verified == best.errands
+            cost = sum(errand.commands for errand in verified)
+            if best is None or cost < best.cost or proved:
+                best, facts = TaskPlan(verified, (), cost), proposal.facts
+        if best is None:
+            best = TaskPlan((), tuple(goal.name for goal in self._problem.goals if not goal.holds))
+        if facts:  # the same answer again, from memory: this decision alone belongs into the record
+            solve([TASK_ENCODING, *self._situation.rules], facts, about=self._about())
+        refutations = self._answers.refutations
+        plan = replace(best, least=min(least, best.cost), proved=proved, refutations=refutations, rounds=number)
+        return self._with_geometry(plan)
+
+    def _propose(self, horizon: int) -> Proposal:
+        """Return the plan of the encoding with at most `horizon` errands."""
+        facts = (f"horizon({horizon})", *self._facts, *answer_facts(self._answers))
+        with record_decisions():  # of all proposals, only the last one is recorded
+            atoms = solve([TASK_ENCODING, *self._situation.rules], facts) or []
+        met = {str(atom.arguments[0]) for atom in atoms if atom.name == "met"}
+        doors: dict[int, list[str]] = {}
+        found: dict[int, Errand] = {}
+        for atom in (atom for atom in atoms if atom.name == "occurs"):
+            step, time = atom.arguments[0], atom.arguments[1].number
+            words = [str(word) for word in step.arguments]
+            if step.name == "go":
+                doors.setdefault(time, []).append(words[0])
+            else:
+                found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
+        errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
+        return Proposal(errands, tuple(goal.name for goal in self._problem.goals if goal.name not in met), facts)
+
+    def _offer(self) -> bool:
+        """Offer places for things that are in the way; return whether any is new."""
+        offered = self._offers.places(self._problem)
+        if offered is None:
+            return False
+        self._problem = offered
+        self._facts = problem_facts(offered, self._offers.aside, self._situation)
+        return True
+
+    def _estimated(self, errands: Sequence[Errand]) -> int:
+        """Return how many commands the encoding reckons for some errands."""
+        place = dict.fromkeys((*self._problem.nodes, ROBOT), HERE)
+        total = 0
+        for errand in errands:
+            way = errand.subject, place[errand.subject], errand.place
+            total += self._answers.commands.get(way, LEAST_COMMANDS) + len(errand.doors)
+            place[errand.subject] = errand.place
+        return total
+
+    def _verify(self, errands: Sequence[Errand]) -> tuple[Errand, ...] | None:
+        """Return the errands with what geometry says of each; None when one is refuted. Changes the answers."""
+        state, found = self._problem.state, list[Errand]()
+        for errand in errands:
+            origin = HERE if errand.subject == ROBOT else state.things[errand.subject].place
+            answer = self._ask(state, errand, self._shut(errand))
+            known = self._answers
+            if answer.after is None:
+                refutation = self._least_refutation(state, errand, origin)
+                self._answers = replace(known, refutations=(*known.refutations, refutation))
+                return None
+            way = errand.subject, origin, errand.place
+            hoped = known.hoped | {way} if answer.certainty == Certainty.HOPED else known.hoped
+            self._answers = replace(known, commands={**known.commands, way: answer.commands}, hoped=hoped)
+            found.append(replace(errand, certainty=answer.certainty, commands=answer.commands))
+            state = answer.after
+        return tuple(found)
+
+    def _shut(self, errand: Errand) -> frozenset[str]:
+        """Return the doors that an errand does not pass, where users' rules may forbid some; else none is shut."""
+        doors = {door.name for door in self._situation.rooms.doors} if self._situation.rules else set()
+        return frozenset(doors - set(errand.doors))
+
+    def _ask(self, state: TableState, errand: Errand, shut: frozenset[str]) -> OracleAnswer:
+        """Return what geometry says of an errand in a state, with some doors shut."""
+        if errand.subject == ROBOT:
+            return self._oracle.arrive(state, self._problem.stands[errand.place], shut)
+        end = self._problem.places[errand.subject, errand.place]
+        return self._oracle.bring(state, errand.subject, end, errand.place, shut)
+
+    def _least_refutation(self, state: TableState, errand: Errand, origin: str) -> RefutedStep:
+        """Return the refutation of an errand: each circumstance is left out while geometry still refuses."""
+        shut = self._shut(errand)
+        if shut and self._ask(state, errand, frozenset()).after is None:
+            shut = frozenset()
+        others = frozenset(name for name in state.things if name != errand.subject)
+        alone = self._ask(state.without(others), errand, shut)
+        gone = others if alone.after is None else frozenset[str]()
+        if alone.plan is not None:
+            margin = self._oracle.floors.margin
+            outline = Translate(margin, margin).carry(state.things[errand.subject].outline)
+            self._offers.keep_clear(swept_squares(alone.plan, outline, self._offers.shape))
+        for name in sorted(others - gone):
+            if self._ask(state.without(gone | {name}), errand, shut).after is None:
+                gone |= {name}
+        given = tuple((name, state.things[name].place) for name in sorted(others - gone))
+        self._offers.note_in_way([name for name, _ in given])
+        last = self._ask(state.without(gone), errand, shut)
+        return RefutedStep(
+            errand.subject, origin, errand.place, given, None if last.body else state.last, tuple(sorted(shut))
+        )
+
+    def _about(self) -> list[str]:
+        """Return the goals in words, by their number from 1, for the record."""
+        return [f"{goal.name}: {goal.words}" for goal in self._problem.goals]
+
+    def _with_geometry(self, plan: TaskPlan) -> MadePlan:
+        """Return a plan with the states that it leads to and the squares that it crosses."""
+        margin, state = self._oracle.floors.margin, self._problem.state
+        states, ways = list[TableState](), list[Bools]()
+        for errand in plan.errands if not plan.unmet else ():
+            answer = self._ask(state, errand, self._shut(errand))
+            assert answer.after is not None
+            way: Bools = np.zeros(self._offers.shape, np.bool_)
+            if answer.plan is not None:
+                outline = Translate(margin, margin).carry(state.things[errand.subject].outline)
+                way = swept_squares(answer.plan, outline, self._offers.shape)
+            states.append(state)
+            ways.append(way)
+            state = answer.after
+        return MadePlan(plan, self._problem.places, tuple(states), tuple(ways), margin)
+
+
+def make_plan(
+    problem: TaskProblem, situation: Situation, oracle: CarryOracle, tried: Sequence[RefutedStep] = ()
+) -> MadePlan:
+    """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all of them.
+
+    Parameters
+    ----------
+    problem : things, places and goals.
+    situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
+    oracle : verifies the steps.
+    tried : steps that failed when they were carried out, as refutations.
+    """
+    return PlanSearch(problem, situation, oracle, tried).run()
