@@ -15,7 +15,7 @@ from kb.language.reader import parse_facts
 from kb.language.source_text import Source, source_from_bytes
 from kb.language.terms import Fact, Number, Symbol
 from kb.language.vocabulary import BELIEF_PREDICATES, THING_ARGUMENT, Signature, check_facts, thing_positions
-from kb.reasoning.interfaces import DEFINING_FACTS, USER_RULE_INTERFACES
+from kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_THERE, USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, INTERNAL_PREDICATES, PREDICATES_BY_ENCODING, QUERY_INTERFACE
 from kb.reasoning.user_rules import read_rules, read_tested_sources, sources_of
 
@@ -26,7 +26,12 @@ EQUIVALENTS: Mapping[Signature, Callable[[Fact], str]] = {
     ("colour", 3): lambda fact: f"has({fact.args[0]},colour,{fact.args[1]},{fact.args[2]})",
     ("movable", 2): lambda fact: f"fixed({fact.args[0]})" if str(fact.args[1]) == "0" else "",
 }
-ENCODING_PREDICATES = frozenset(signature for interface in USER_RULE_INTERFACES.values() for signature in interface)
+ENCODING_PREDICATES = frozenset(
+    signature
+    for name, interface in USER_RULE_INTERFACES.items()
+    for signature in interface
+    if signature not in READ_ONLY_THERE.get(name, ())
+)
 
 
 class Assumption(NamedTuple):

@@ -10,10 +10,13 @@ from kb.language.arguments import (
     COLOUR_ARGUMENT,
     NAME_ARGUMENT,
     ArgumentType,
+    Complaint,
+    abbreviated,
     integer_argument,
     pattern_argument,
     word_argument,
 )
+from kb.language.terms import Symbol, Term
 from kb.language.vocabulary import (
     CONFIDENCE_ARGUMENT,
     CORNER_NAMES,
@@ -53,6 +56,23 @@ NODE_ARGUMENT = pattern_argument("thing", "o[0-9]+", "o1")  # an object of the w
 NECK_ARGUMENT, CONVEX_CORNER_ARGUMENT = _number_argument("neck"), _number_argument("convex corner")
 PROPERTY_ARGUMENT = word_argument("property", ("shape", "colour"))  # what claims are about
 SHAPE_ARGUMENT = word_argument("shape", SHAPE_CLASSES)  # a shape class
+MOVER_ARGUMENT = pattern_argument("thing or utak", "o[0-9]+|utak|start", "o1")  # a thing of the task plan, or the robot
+PLACE_ARGUMENT, GOAL_ARGUMENT = _name_argument("place"), _name_argument("goal")
+PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT = _name_argument("room"), _name_argument("door")
+REFUTATION_ARGUMENT, TIME_ARGUMENT = _number_argument("refutation"), _number_argument("time")
+# The steps of a task plan, with their numbers of arguments.
+PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1}
+
+
+def _check_step(term: Term) -> Complaint | None:
+    """Return the complaint about a term, or None when it is a step of a task plan."""
+    if isinstance(term, Symbol) and PLAN_STEPS.get(term.name) == len(term.args):
+        return None
+    steps = ", ".join(f"{name}/{count}" for name, count in PLAN_STEPS.items())
+    return Complaint(term.span, f"unknown step {abbreviated(term)}", f"steps are {steps}")
+
+
+STEP_ARGUMENT = ArgumentType("step", _check_step)
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),
@@ -111,8 +131,56 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("unmovable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("measurable", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
     },
+    "task": {
+        ("horizon", 1): (AMOUNT_ARGUMENT,),
+        ("thing", 1): (NODE_ARGUMENT,),
+        ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
+        ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
+        ("goal", 1): (GOAL_ARGUMENT,),
+        ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
+        ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
+        ("estimate", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, AMOUNT_ARGUMENT),
+        ("hoped", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
+        ("lies", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("width", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
+        ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
+        ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("refuted", 4): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
+        ("given", 3): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
+        ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
+        ("shut", 2): (REFUTATION_ARGUMENT, PLAN_DOOR_ARGUMENT),
+        ("time", 1): (TIME_ARGUMENT,),
+        ("joined", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
+        ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
+        ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
+        ("brought", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
+        ("busy", 1): (TIME_ARGUMENT,),
+        ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
+        ("robot_in", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
+        ("needed", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
+        ("reached", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
+        ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
+        ("met", 1): (GOAL_ARGUMENT,),
+        ("unmet", 1): (GOAL_ARGUMENT,),
+    },
+}
+# Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
+PLAN_FACTS = frozenset(
+    [
+        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects",
+        "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
+        "robot_in", "needed", "reached", "otherwise", "unmet",
+    ]
+)  # fmt: skip
+# By the name of an encoding: predicates that users' rules may read there, but not derive.
+READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
+    "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("bound", 2)}),
 }
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
     {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
+    | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
 )

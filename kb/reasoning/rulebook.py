@@ -14,7 +14,13 @@ from kb.language.reader import facts_from_text
 from kb.language.source_text import Source
 from kb.language.terms import Fact
 from kb.language.vocabulary import BELIEF_PREDICATES, Signature
-from kb.reasoning.interfaces import DEFINING_FACTS, READ_ONLY_PREDICATES, TRANSIENT_NUMBERS, USER_RULE_INTERFACES
+from kb.reasoning.interfaces import (
+    DEFINING_FACTS,
+    READ_ONLY_PREDICATES,
+    READ_ONLY_THERE,
+    TRANSIENT_NUMBERS,
+    USER_RULE_INTERFACES,
+)
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
 # Predicates of encodings that users' rules do not reach, and those encodings.
@@ -167,7 +173,10 @@ class Rulebook:
         problems = [problem for one in self.statements for problem in self._invalid_parts(one)]
         if problems:
             raise BadInputError(problems)
-        self._counting = {name: self._applicable(known) for name, known in PREDICATES_BY_ENCODING.items()}
+        self._counting = {
+            name: self._applicable(known, READ_ONLY_THERE.get(name, frozenset()))
+            for name, known in PREDICATES_BY_ENCODING.items()
+        }
         problems = [problem for one in self.statements for problem in self._without_effect(one)]
         if problems:
             raise BadInputError(problems)
@@ -194,7 +203,7 @@ class Rulebook:
 
         () when there are none. They state only predicates of the user's own.
         """
-        return self._applicable(frozenset())
+        return self._applicable(frozenset(), frozenset())
 
     @property
     def query_rules(self) -> tuple[Statement, ...]:
@@ -259,30 +268,34 @@ class Rulebook:
                 elif all(complaint is not None for complaint in complaints) and complaints[0] is not None:
                     yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
 
-    def _applicable(self, known: frozenset[Signature]) -> tuple[Statement, ...]:
+    def _applicable(self, known: frozenset[Signature], read_only: frozenset[Signature]) -> tuple[Statement, ...]:
         """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself.
 
         In the order of the files; () when none remains. Predicates of `#defined` count as defined.
 
         known : the predicates (name, number of arguments) that exist without these statements.
+        read_only : those of them that no rule derives.
         """
         found = self.statements
         while True:
             defined = {atom.signature for one in found for atom in one.heads} & self.own_predicates | self._declared
-            left = tuple(one for one in found if self._counts(one, known, defined))
+            left = tuple(one for one in found if self._counts(one, known, defined, read_only))
             if left == found:
                 return found
             found = left
 
-    def _counts(self, one: Statement, known: frozenset[Signature], defined: set[Signature]) -> bool:
+    def _counts(
+        self, one: Statement, known: frozenset[Signature], defined: set[Signature], read_only: frozenset[Signature]
+    ) -> bool:
         """Return whether all predicates of a statement count.
 
         Those of its heads must be in `known` or the user's own, those of its body in `known` or in `defined`.
 
         known : the predicates (name, number of arguments) of an encoding.
         defined : the user's own predicates that the statements under consideration define.
+        read_only : predicates of the encoding that no rule derives.
         """
-        stated = all(atom.signature in known or atom.signature in self.own_predicates for atom in one.heads)
+        stated = all(atom.signature in known - read_only or atom.signature in self.own_predicates for atom in one.heads)
         return stated and all(atom.signature in known | defined for atom in one.body)
 
     def _without_effect(self, one: Statement) -> Iterator[Problem]:

@@ -17,6 +17,17 @@ KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of t
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 
 
+def encoding_path(name: str) -> Path:
+    """Return the path of one of our encodings; FileNotFoundError when there is none of that name.
+
+    name : without `.lp`.
+    """
+    found = next((path for folder in ENCODING_FOLDERS if (path := folder / f"{name}.lp").is_file()), None)
+    if found is None:
+        raise FileNotFoundError(f"there is no encoding {name}")
+    return found
+
+
 class EncodingError(Exception):
     """An encoding is wrong, or it contradicts the facts: an error in our encodings or in a user's rules."""
 

@@ -25,7 +25,7 @@ from kb.language.vocabulary import Signature
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
 from kb.reasoning.sentences import RuleWords, read_sentences
-from kb.reasoning.solver import KB_ENCODINGS
+from kb.reasoning.solver import encoding_path
 from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
@@ -108,7 +108,7 @@ def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIM
         _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
         if reaching := rules.rules_reaching(name):
-            encoding = (KB_ENCODINGS / f"{name}.lp").read_text()
+            encoding = encoding_path(name).read_text()
             _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
     if rules.query_rules:
         asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules], "number": 0}

@@ -9,6 +9,8 @@ import numpy as np
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
 from geometry.raster.rasterize import squares
+from kb.world.facts import FELT_COLOUR_CONFIDENCE
+from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
 from planner.oracles.problem import HERE, ROBOT, TaskProblem
 from planner.situation import Situation
@@ -55,7 +57,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
-    return (*facts, *_room_facts(problem, situation))
+    return (*facts, *_room_facts(problem, situation), *_world_facts(situation))
 
 
 def answer_facts(answers: Answers) -> Iterator[str]:
@@ -86,6 +88,18 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
         room = int(counts.argmax())
         if room != NO_ROOM and 2 * counts[room] > counts.sum():
             yield f"lies({name},{place},r{room})"
+
+
+def _world_facts(situation: Situation) -> Iterator[str]:
+    """Yield what is believed of the objects and of what the task calls them, for users' rules."""
+    for parameter, name in sorted(situation.binding.items()):
+        if situation.model.object(name) is not None:
+            yield f"bound({parameter},{name})"
+    for node in situation.model.objects:
+        yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
+        if node.colour is not None:
+            yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
+    yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)
 
 
 def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, str, Bools]]:

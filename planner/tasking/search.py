@@ -127,7 +127,7 @@ class PlanSearch:
         facts = (f"horizon({horizon})", *self._facts, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
             atoms = solve([TASK_ENCODING, *self._situation.rules], facts) or []
-        met = {str(atom.arguments[0]) for atom in atoms if atom.name == "met"}
+        unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
         doors: dict[int, list[str]] = {}
         found: dict[int, Errand] = {}
         for atom in (atom for atom in atoms if atom.name == "occurs"):
@@ -138,7 +138,7 @@ class PlanSearch:
             else:
                 found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
         errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
-        return Proposal(errands, tuple(goal.name for goal in self._problem.goals if goal.name not in met), facts)
+        return Proposal(errands, unmet, facts)
 
     def _offer(self) -> bool:
         """Offer places for things that are in the way; return whether any is new."""
