@@ -39,6 +39,7 @@ from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
 from planner.stages import ORIGIN_GOALS, TRACK_GOALS, Stage, stages
 from planner.subgoal_kind import SubgoalKind
+from planner.tasking.task_plan import TaskPlan
 
 
 class Decider:
@@ -94,6 +95,11 @@ class Decider:
         self._errands = ErrandRunner(pull)
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
+
+    @property
+    def plan(self) -> TaskPlan | None:
+        """The task plan under way, from its present errand on; None while there is none."""
+        return self._errands.plan
 
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
