@@ -35,6 +35,7 @@ class Situation:
     task : the task, with its constraints.
     rules : the user's rule files, read by every encoding.
     track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
+    closed : the names of doors that users' rules close to every plan.
     """
 
     model: WorldModel
@@ -45,6 +46,7 @@ class Situation:
     task: Task
     rules: tuple[Path, ...] = ()
     track: tuple[XY, ...] = ()
+    closed: frozenset[str] = frozenset()
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:
@@ -145,6 +147,19 @@ class Situation:
         if actor == "utak":
             return self.avoided[:1] or self.rooms.doors
         return tuple(door for door in self.rooms.doors if door.likely)
+
+    def shut(self, actor: str) -> tuple[Door, ...]:
+        """Return the doors that neither the constraints of the task nor users' rules let the robot or an object pass.
+
+        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
+        sides, and its confidence in percent.
+
+        Parameters
+        ----------
+        actor : "utak" for the robot, or the name of a node.
+        """
+        forbidden = self.forbidden(actor)
+        return (*forbidden, *(door for door in self.rooms.doors if door.name in self.closed and door not in forbidden))
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:

@@ -165,6 +165,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("otherwise", 2): (REFUTATION_ARGUMENT, TIME_ARGUMENT),
         ("met", 1): (GOAL_ARGUMENT,),
         ("unmet", 1): (GOAL_ARGUMENT,),
+        ("asked", 1): (PLAN_DOOR_ARGUMENT,),
+        ("closed", 1): (PLAN_DOOR_ARGUMENT,),
     },
 }
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
@@ -172,7 +174,7 @@ PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
-        "robot_in", "needed", "reached", "otherwise", "unmet",
+        "robot_in", "needed", "reached", "otherwise", "unmet", "asked", "closed",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

@@ -8,7 +8,7 @@ too much memory or is no rule at all is only an error of its file. The rules are
 import atexit
 import re
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -234,6 +234,44 @@ def solve_with_user_rules(
     reaching = rules.rules_reaching(encoding.stem)
     if not reaching:
         return None
+    return _solved(encoding, reaching, facts, limits)
+
+
+def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
+    """Return whether any of some users' rules takes part in an encoding; its name is given without `.lp`.
+
+    Raises CannotOpenError or BadInputError when the files are not valid.
+    """
+    return bool(users) and bool(read_rules(users).rules_reaching(encoding))
+
+
+def rules_to_blame(
+    encoding: Path, users: Sequence[Path], facts: Sequence[str], is_bad: Callable[[list[clingo.Symbol]], bool]
+) -> tuple[str, ...]:
+    """Return the places of the rules because of which an answer is bad, such as `rules.lp:3`; () without such rules.
+
+    Without any one of them the answer would not be bad. Of several such sets the one that is left when rules are left
+    out in turn, from the last to the first.
+
+    Parameters
+    ----------
+    encoding : the path of the encoding.
+    users : the paths of the users' rules.
+    facts : the facts of the encoding, without full stops.
+    is_bad : says of the shown atoms whether they are a bad answer; they are one with all rules.
+    """
+    left = list(read_rules(users).rules_reaching(encoding.stem))
+    for one in reversed(left):
+        fewer = [other for other in left if other is not one]
+        if is_bad(_solved(encoding, fewer, facts, RULE_LIMITS)):
+            left = fewer
+    return tuple(f"{one.source.file}:{one.at[0]}" for one in left)
+
+
+def _solved(
+    encoding: Path, reaching: Sequence[Statement], facts: Sequence[str], limits: RuleLimits
+) -> list[clingo.Symbol]:
+    """Return the shown atoms of the best answer set of an encoding with some rules; errors as solve_with_user_rules."""
     program = "\n".join([encoding.read_text(), *(f"{fact}." for fact in facts)])
     found = _solved_by_worker(encoding.name, program, reaching, limits)
     given: dict[Signature, list[Fact]] = {}

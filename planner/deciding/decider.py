@@ -139,6 +139,8 @@ class Decider:
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
+                if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
+                    decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
                 unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
                 return replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
             self.attained += 1
@@ -165,6 +167,10 @@ class Decider:
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
             return conflict
+        situation = self._errands.update(stage, situation, self._transporter, self._tools)
+        if self._errands.is_shut_out:
+            why = f"{stage} cannot be attained: {self._errands.blamed}"
+            return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
         errand = self._errands.next(stage, situation, reconciled, self._transporter, self._tools)
         if errand is not None:
             return errand

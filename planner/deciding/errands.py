@@ -58,11 +58,10 @@ class ErrandRunner:
         transporter : brings objects where goals hold.
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
-        for _ in range(MAX_FAILURES):
-            avoid = {node.name: tools.executor.failed.grasps(node) for node in situation.model.objects if node.polygon}
-            found = self._intention.next_errand(
-                stage, situation, transporter.place, transporter.origin_of, avoid, turn_cost(situation.model)
-            )
+        for attempt in range(MAX_FAILURES):
+            if attempt:
+                self.update(stage, situation, transporter, tools)
+            found = self._intention.next_errand(stage, situation, transporter.place, transporter.origin_of)
             if found is None:
                 return None
             decision = self._follow(found, stage, situation, reconciled, transporter, tools)
@@ -70,6 +69,33 @@ class ErrandRunner:
                 return decision
             self._intention.failed(found.errand, situation)
         return None
+
+    def update(self, stage: Stage, situation: Situation, transporter: Transporter, tools: Tools) -> Situation:
+        """Make the plan anew where it no longer holds; return the situation with the doors that users' rules close.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        transporter : knows where goals hold.
+        tools : executor, pursuer and verifier.
+        """
+        avoid = {node.name: tools.executor.failed.grasps(node) for node in situation.model.objects if node.polygon}
+        turn = turn_cost(situation.model)
+        return self._intention.update(stage, situation, transporter.place, transporter.origin_of, avoid, turn)
+
+    @property
+    def blamed(self) -> str:
+        """The users' rules because of which there is no plan for all goals, in words; "" for none."""
+        blamed = self._intention.rules.blamed
+        rules = "the rule" if len(blamed) == 1 else "the rules"
+        return f"{rules} at {' and '.join(blamed)} leave{'s' * (len(blamed) == 1)} no plan" if blamed else ""
+
+    @property
+    def is_shut_out(self) -> bool:
+        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for."""
+        rules = self._intention.rules
+        return bool(rules.blamed and not rules.closed)
 
     def _follow(
         self,

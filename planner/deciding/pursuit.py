@@ -233,7 +233,7 @@ class Pursuer:
         situation : what is believed: world model, rooms, doors, corners and track.
         """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
-        return self.choose_route([rest], situation) if rest is not None and situation.forbidden("utak") else rest
+        return self.choose_route([rest], situation) if rest is not None and situation.shut("utak") else rest
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
         """Remember the present route.
@@ -263,7 +263,7 @@ class Pursuer:
         if not offered:
             return None
         before = frozenset(self._kept.path(situation.model))
-        forbidden = frozenset(door.name for door in situation.forbidden("utak"))
+        forbidden = frozenset(door.name for door in situation.shut("utak"))
         return choose_route(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)
 
 

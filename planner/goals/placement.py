@@ -233,7 +233,7 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
         (rows, columns) bool on the arrays of the view; all False when no door is forbidden.
     """
     columns, rows = situation.model.labels.shape[::-1]
-    doors = (*situation.forbidden("utak"), *situation.forbidden(node.name))
+    doors = (*situation.shut("utak"), *situation.shut(node.name))
     necks = (shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH) for door in doors)
     none = np.zeros((rows, columns), bool)
     mask: Bools = np.any([squares(neck, columns, rows) for neck in necks] or [none], axis=0)

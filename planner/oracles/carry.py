@@ -21,7 +21,7 @@ from geometry.raster.rasterize import squares
 from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
-from planner.oracles.problem import Lying, TableState, TaskProblem
+from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 
@@ -233,7 +233,8 @@ class CarryOracle:
         for other, lying in state.things.items():
             if other != name:
                 free &= ~self._covered(other, lying, (rows, columns))
-        for door in shut & self._doors.keys():
+        names = shut | {door.name for actor in (ROBOT, name) if actor for door in self._situation.shut(actor)}
+        for door in names & self._doors.keys():
             free &= ~self._neck(self._doors[door], (rows, columns))
         x, y = (int(v) + margin for v in state.robot)
         if 0 <= x < columns and 0 <= y < rows:

@@ -4,6 +4,7 @@ setting       problem_of: the problem of a stage, from what is believed
 task_plan     TaskPlan, Errand, RefutedStep: the values
 facts         the facts of the encoding
 offers        Offers: places for things that are in the way
+rule_effects  doors that users' rules close, and rules that leave no plan
 search        make_plan: the encoding proposes, geometry verifies or refutes
 intention     Intention: the plan under way, kept while it holds
 """

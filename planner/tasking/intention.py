@@ -15,6 +15,7 @@ from planner.oracles.problem import HERE, ROBOT, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
+from planner.tasking.rule_effects import RuleEffects, effects_of_rules
 from planner.tasking.search import make_plan
 from planner.tasking.setting import OriginFunction, PlaceFunction, place_name, problem_of
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
@@ -68,7 +69,12 @@ class _Kept:
 
 
 class Intention:
-    """Owns the task plan under way, and what was tried in vain."""
+    """Owns the task plan under way, and what was tried in vain.
+
+    Attributes
+    ----------
+    rules : what users' rules did to the plan that was made last.
+    """
 
     def __init__(self, pull: bool = True) -> None:
         """Make an intention without a plan.
@@ -79,6 +85,8 @@ class Intention:
         self._kept: _Kept | None = None
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
+        self._problem: TaskProblem | None = None  # of the present situation
+        self.rules = RuleEffects()
 
     @property
     def plan(self) -> TaskPlan | None:
@@ -87,7 +95,7 @@ class Intention:
             return None
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
 
-    def next_errand(
+    def update(
         self,
         stage: Stage,
         situation: Situation,
@@ -95,10 +103,10 @@ class Intention:
         origin: OriginFunction,
         avoid: Mapping[str, Any],
         turn: float,
-    ) -> NextErrand | None:
-        """Return the next errand of the plan, which is made anew when it no longer holds; None when there is no plan.
+    ) -> Situation:
+        """Make the plan anew where it no longer holds; return the situation with the doors that users' rules close.
 
-        None, too, when the next step is the robot's own, or while it is open what a goal means or where it holds.
+        There is no plan while it is open what a goal means or where it holds.
 
         Parameters
         ----------
@@ -108,15 +116,26 @@ class Intention:
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
-        problem = problem_of(stage, situation, place, origin)
-        if problem is None:
+        self._problem = problem_of(stage, situation, place, origin)
+        if self._problem is None:
             self._kept = None
-            return None
-        self._kept = self._kept_still(stage, problem, situation)
-        if self._kept is None:
-            self._kept = self._made(stage, problem, situation, avoid, turn)
-        kept = self._kept
-        if kept is None or kept.number >= len(kept.plan.errands):
+        else:
+            self._kept = self._kept_still(stage, self._problem, situation)
+            if self._kept is None:
+                self._kept = self._made(stage, self._problem, situation, avoid, turn)
+        return replace(situation, closed=self.rules.names_of_closed(situation))
+
+    def next_errand(
+        self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction
+    ) -> NextErrand | None:
+        """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own.
+
+        Parameters
+        ----------
+        stage, situation, place, origin : as for `update`, which is called before.
+        """
+        kept, problem = self._kept, self._problem
+        if kept is None or problem is None or kept.number >= len(kept.plan.errands):
             return None
         errand = kept.plan.errands[kept.number]
         if errand.subject == ROBOT:
@@ -136,9 +155,8 @@ class Intention:
         errand : the present errand.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
-        model = situation.model
-        others = [node.name for node in model.objects if node.polygon is not None and node.name != errand.subject]
-        given = tuple((name, HERE) for name in sorted(others))
+        others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
+        given = tuple((name, HERE) for name in others)
         self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
         self._kept = None
 
@@ -194,6 +212,7 @@ class Intention:
         oracle = CarryOracle(problem, situation, self._pull, avoid, turn)
         tried = [refutation for where, refutation in self._tried if where == lying]
         made = make_plan(problem, situation, oracle, tried)
+        self.rules = effects_of_rules(made, situation)
         self._hopeless = believed if made.plan.unmet else None
         if made.plan.unmet:
             return None

@@ -15,6 +15,7 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Translate
 from kb.reasoning.solver import solve
+from kb.reasoning.user_rules import rules_reach
 from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
 from planner.navigation.subgoals import PLANNER_ASP
@@ -42,6 +43,7 @@ class MadePlan(NamedTuple):
     states : how everything lies at the beginning of each errand.
     ways : the squares that each errand crosses, (rows, columns) bool with a margin.
     margin : squares that were added to the arrays of the view on each side.
+    facts : what the encoding was given, without full stops.
     """
 
     plan: TaskPlan
@@ -49,6 +51,7 @@ class MadePlan(NamedTuple):
     states: tuple[TableState, ...] = ()
     ways: tuple[Bools, ...] = ()
     margin: int = 0
+    facts: tuple[str, ...] = ()
 
 
 class Proposal(NamedTuple):
@@ -85,6 +88,7 @@ class PlanSearch:
         self._answers = Answers(refutations=tuple(tried))
         self._offers = Offers(oracle.floors)
         self._facts = problem_facts(problem, (), situation)
+        self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
@@ -120,7 +124,7 @@ class PlanSearch:
             solve([TASK_ENCODING, *self._situation.rules], facts, about=self._about())
         refutations = self._answers.refutations
         plan = replace(best, least=min(least, best.cost), proved=proved, refutations=refutations, rounds=number)
-        return self._with_geometry(plan)
+        return self._with_geometry(plan, facts)
 
     def _propose(self, horizon: int) -> Proposal:
         """Return the plan of the encoding with at most `horizon` errands."""
@@ -179,7 +183,7 @@ class PlanSearch:
 
     def _shut(self, errand: Errand) -> frozenset[str]:
         """Return the doors that an errand does not pass, where users' rules may forbid some; else none is shut."""
-        doors = {door.name for door in self._situation.rooms.doors} if self._situation.rules else set()
+        doors = {door.name for door in self._situation.rooms.doors} if self._ruled else set()
         return frozenset(doors - set(errand.doors))
 
     def _ask(self, state: TableState, errand: Errand, shut: frozenset[str]) -> OracleAnswer:
@@ -215,7 +219,7 @@ class PlanSearch:
         """Return the goals in words, by their number from 1, for the record."""
         return [f"{goal.name}: {goal.words}" for goal in self._problem.goals]
 
-    def _with_geometry(self, plan: TaskPlan) -> MadePlan:
+    def _with_geometry(self, plan: TaskPlan, facts: tuple[str, ...]) -> MadePlan:
         """Return a plan with the states that it leads to and the squares that it crosses."""
         margin, state = self._oracle.floors.margin, self._problem.state
         states, ways = list[TableState](), list[Bools]()
@@ -229,7 +233,7 @@ class PlanSearch:
             states.append(state)
             ways.append(way)
             state = answer.after
-        return MadePlan(plan, self._problem.places, tuple(states), tuple(ways), margin)
+        return MadePlan(plan, self._problem.places, tuple(states), tuple(ways), margin, facts)
 
 
 def make_plan(
