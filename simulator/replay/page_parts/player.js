@@ -81,9 +81,7 @@ function startPlayer(episode) {
   function showField() {
     const number = fieldNumber.value === "" ? -1 : Number(fieldNumber.value);
     output.textContent = fields[number] ? fieldInWords(number, fields[number]) : "";
-    for (const { parts } of Object.values(retina)) {
-      parts.forEach((part, i) => part.frame.classList.toggle("picked", i === number));
-    }
+    for (const { pick } of Object.values(retina)) pick(number);
   }
 
   // Goes to a step and writes it into the address, so that the back button leads back.

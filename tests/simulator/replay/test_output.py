@@ -190,5 +190,5 @@ def test_every_part_of_the_page_is_in_the_package() -> None:
     from importlib.resources import files
 
     parts = files("simulator.replay") / "page_parts"
-    assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "inflate.js"}
+    assert {part.name for part in parts.iterdir()} >= {"page.html", "body.html", "style.css", "player.js", "expand.js"}
     assert all(part.read_text(encoding="utf-8") for part in parts.iterdir())
