@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
+from simulator.replay.packed.decisions import DETAILS, by_encoding, route_points, trimmed
 from simulator.replay.packed.delta import GONE, difference
 from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
@@ -131,7 +131,7 @@ def _decisions(lines: Sequence[EpisodeLine], detail: tuple[int, int]) -> list[An
     for line in lines:
         solved = kept_line(line, detail)["belief"].get("solved")
         if isinstance(solved, list):
-            before = by_encoding(solved, before)
+            before = by_encoding(solved, before, route_points(line))
         values.append(before if isinstance(solved, list) else _Absent)
     return [[["packed", "solved"], _differences(values)]] if before is not None else []
 

@@ -1,7 +1,7 @@
 """JSON values as short texts: LZMA, then base 85 without the signs that mean something in HTML.
 
-LZMA finds again what stood long before, which deflate does not beyond 32 KB: blocks of noisy runs are a quarter shorter.
-`page_parts/expand.js` reads such texts.
+LZMA finds again what stood long before, which deflate does not beyond 32 KB: blocks of noisy runs are a quarter
+shorter. `page_parts/expand.js` reads such texts.
 """
 
 import base64
@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 NO_HTML = str.maketrans("&<>`", ".,/:")  # what takes the place of the signs of base 85 that mean something in HTML
+FROM_HTML = str.maketrans(".,/:", "&<>`")
 WINDOW_BYTES = 1 << 23  # how far back copies may begin; more than a block has
 LONGEST_SOUGHT_COPY = 273  # bytes; the greatest value, which packs best
 
@@ -32,17 +33,22 @@ def short_text(values: Sequence[Any]) -> str:
     import lzma  # which a Python that was built from its source may lack
 
     lines = "\n".join(json.dumps(value, separators=(",", ":"), allow_nan=False) for value in values)
-    filters = [
-        {
-            "id": lzma.FILTER_LZMA1,
-            "dict_size": WINDOW_BYTES,
-            "lc": 0,
-            "lp": 0,
-            "pb": 0,
-            "mode": lzma.MODE_NORMAL,
-            "mf": lzma.MF_BT4,
-            "nice_len": LONGEST_SOUGHT_COPY,
-        }
-    ]
-    packed = lzma.compress(lines.encode("ascii"), format=lzma.FORMAT_RAW, filters=filters)
+    packed = lzma.compress(lines.encode("ascii"), format=lzma.FORMAT_RAW, filters=_filters())
     return base64.b85encode(packed).decode("ascii").translate(NO_HTML)
+
+
+def values_of(text: str) -> list[Any]:
+    """Return the JSON values from which `short_text` made a text."""
+    import lzma
+
+    packed = base64.b85decode(text.translate(FROM_HTML))
+    lines = lzma.decompress(packed, format=lzma.FORMAT_RAW, filters=_filters()).decode("ascii")
+    return [json.loads(line) for line in lines.split("\n")]
+
+
+def _filters() -> list[dict[str, Any]]:
+    """Return how LZMA packs: no bits of the place or of the byte before choose among chances."""
+    import lzma
+
+    settings = {"dict_size": WINDOW_BYTES, "lc": 0, "lp": 0, "pb": 0, "mode": lzma.MODE_NORMAL, "mf": lzma.MF_BT4}
+    return [{"id": lzma.FILTER_LZMA1, **settings, "nice_len": LONGEST_SOUGHT_COPY}]

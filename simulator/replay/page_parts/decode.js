@@ -71,9 +71,23 @@ function joinedFacts(others, corners, confidences) {
   return facts.sort();
 }
 
-// Digits, each by so much above that of another text, modulo 8.
-const raised = (digits, below) => Array.from(digits, (digit, i) => (Number(digit) + Number(below[i])) % 8).join("");
 const isDigits = (text) => typeof text === "string" && /^[0-7]{160}$/.test(text);
+const LEVEL_SIGNS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#"; // simulator/replay/packed/impressions.py
+const LEVEL_BOUNDS = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((more) => [0, 1, 2, 3, 4, 5, 6, 7].slice(more).map((most) => [most - more, most]));
+
+// The least and the greatest predicted level and the one observed, of each field, as three texts of digits.
+function levelsOf(signs) {
+  let least = "", most = "", retina = "";
+  for (let i = 0; i < signs.length; i += 1) {
+    const between = signs[i] === "'", number = LEVEL_SIGNS.indexOf(signs[between ? i + 1 : i]), low = number >= LEVEL_BOUNDS.length;
+    const bounds = LEVEL_BOUNDS[low ? number - LEVEL_BOUNDS.length + 8 : number];
+    least += bounds[0];
+    most += bounds[1];
+    retina += between ? signs[i + 2] : bounds[low ? 0 : 1];
+    if (between) i += 2;
+  }
+  return [least, most, retina];
+}
 
 // The status of each field: as levels and bounds tell it, but for exceptions such as "12p40e"
 // (simulator/replay/packed/impressions.py).
@@ -101,6 +115,11 @@ function offsetFacts(place) {
   return [`offset(org,${east},${north}).`, `offset(floor,${0 - east},${0 - north}).`];
 }
 
+// A decision as the episode has it: what it was about may be told by the routes of the step.
+function withRoutes([encoding, facts, answer, about, ...left], routes) {
+  return [encoding, facts, answer, about === "routes" ? routes.map((route) => route.points) : about, ...left];
+}
+
 // A line of an episode from its columns by path, and what the index tells of it.
 function lineOf(columns, step, index, movable) {
   const line = { step, action: index.action[step], motion: index.motion[step], utak: index.utak[step] }, belief = {};
@@ -118,14 +137,9 @@ function lineOf(columns, step, index, movable) {
   if (get("facts", "others") !== undefined) {
     belief.facts = joinedFacts([...get("facts", "others"), ...(get("facts", "offsets") ? offsetFacts(belief.place) : [])], get("facts", "corners"), get("facts", "confidences"));
   }
-  let below = "";
-  for (const name of ["least", "most", "retina"]) {
-    let text = get("packed", name);
-    if (isDigits(text)) below = text = below ? raised(text, below) : text;
-    else below = "";
-    if (name === "retina") line.retina = Array.from(text, Number);
-    else if (text !== undefined) belief[name] = text;
-  }
+  let retina = get("packed", "retina");
+  if (get("packed", "levels") !== undefined) [belief.least, belief.most, retina] = levelsOf(get("packed", "levels"));
+  line.retina = Array.from(retina, Number);
   if (get("packed", "status") !== undefined) {
     belief.status = statusOf(line, get("packed", "status"));
     if (belief.cells === undefined) belief.cells = countsOf(belief.status);
@@ -139,7 +153,7 @@ function lineOf(columns, step, index, movable) {
     belief.explained = Object.fromEntries(found);
   }
   const solved = get("packed", "solved");
-  if (solved) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : solved.last[key]));
+  if (solved) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : withRoutes(solved.last[key], belief.routes)));
   return line;
 }
 
