@@ -12,7 +12,7 @@ from simulator.episode.episode import EpisodeLine
 
 # What is kept of one decision, from much to little: so many candidates besides those chosen, and so many other facts.
 # With none of either, its answer alone is kept. Conventions; docs/replay.md.
-DETAILS = ((6, 60), (2, 20), (0, 0))
+DETAILS = ((6, 60), (3, 30), (1, 12), (0, 6), (0, 0))
 AS_ROUTES = "routes"  # stands for what a decision was about where the routes of its step are just that
 CANDIDATE_NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 

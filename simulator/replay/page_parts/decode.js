@@ -115,9 +115,14 @@ function offsetFacts(place) {
   return [`offset(org,${east},${north}).`, `offset(floor,${0 - east},${0 - north}).`];
 }
 
-// A decision as the episode has it: what it was about may be told by the routes of the step.
-function withRoutes([encoding, facts, answer, about, ...left], routes) {
-  return [encoding, facts, answer, about === "routes" ? routes.map((route) => route.points) : about, ...left];
+// Decisions as the episode has them; undefined where no step records any in the usual form. What one was about may be told
+// by the routes of the step.
+function decisionsOf(solved, routes) {
+  return solved && solved.order.map((key) => {
+    if (Array.isArray(key)) return key[0];
+    const [encoding, facts, answer, about, ...left] = solved.last[key];
+    return [encoding, facts, answer, about === "routes" ? routes().map((route) => route.points) : about, ...left];
+  });
 }
 
 // A line of an episode from its columns by path, and what the index tells of it.
@@ -152,8 +157,8 @@ function lineOf(columns, step, index, movable) {
     });
     belief.explained = Object.fromEntries(found);
   }
-  const solved = get("packed", "solved");
-  if (solved) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : withRoutes(solved.last[key], belief.routes)));
+  const solved = decisionsOf(get("packed", "solved"), () => belief.routes);
+  if (solved) belief.solved = solved;
   return line;
 }
 
@@ -199,11 +204,12 @@ function placesSeen(place, anew) {
   };
 }
 
-// The steps of one block, from its text: state(n), the columns by path at its nth step; prepare() does a small part of what
-// later calls would have to do, and returns whether something is left. What is damaged throws an Error at each call.
+// The steps of one block, from its text: state(n), the columns by path at its nth step; column(path, n), one of them;
+// prepare() does a small part of what later calls would have to do, and returns whether something is left. What is damaged
+// throws an Error at each call.
 function openBlock(text, steps) {
   const work = unpacking(text), states = new Map();
-  let paths = null, parts = null, damage = null, ahead = 0;
+  let paths = null, parts = null, damage = null, ahead = 0, recent = [];
 
   // Does a part of the unpacking; returns whether all is done.
   function unpack(bytes) {
@@ -219,22 +225,41 @@ function openBlock(text, steps) {
       throw error;
     }
   }
-  // The values of all columns at a step: from the nearest step before it at which they are kept.
-  function values(local) {
+  const next = (how, at, old) => (how[at] === 0 ? old : how[at] === -1 ? undefined : patched(old, how[at]));
+  // The last step, up to a step, at which the values of all columns are kept.
+  function keptBefore(local) {
     let at = local - (local % CHECKPOINT);
     while (!states.has(at)) at -= CHECKPOINT;
-    let found = states.get(at);
+    return at;
+  }
+  // The values of all columns at a step. Those asked for last and those before them are kept: they are often asked for next.
+  function values(local) {
+    let at = keptBefore(local), found = states.get(at), before = null;
+    for (const one of recent) if (one.at > at && one.at <= local) ({ at, found } = one);
     while (at < local) {
+      before = { at, found };
       at += 1;
-      found = parts.map((how, i) => (how[at] === 0 ? found[i] : how[at] === -1 ? undefined : patched(found[i], how[at])));
+      found = parts.map((how, i) => next(how, at, before.found[i]));
       if (at % CHECKPOINT === 0) states.set(at, found);
     }
+    if (before) recent = [before, { at, found }];
     return found;
   }
-  function state(local) {
+  function whole() {
     while (!parts) unpack(Infinity);
+  }
+  function state(local) {
+    whole();
     const found = values(local);
     return new Map(paths.map((path, i) => [path, found[i]]));
+  }
+  function column(path, local) {
+    whole();
+    const number = paths.indexOf(path);
+    if (number < 0) return undefined;
+    let at = keptBefore(local), found = states.get(at)[number];
+    while (at < local) found = next(parts[number], (at += 1), found);
+    return found;
   }
   function prepare() {
     if (!parts) return unpack(PIECE_BYTES) || true;
@@ -242,12 +267,13 @@ function openBlock(text, steps) {
     values((ahead += CHECKPOINT));
     return true;
   }
-  return { state, prepare };
+  return { state, column, prepare };
 }
 
 // An episode, from the texts of its index and of its blocks: what the index has; line(step), the line of a step as
-// the episode has it; trees(step), the explanations that were given with it; seen(step), see placesSeen; and prepare(),
-// which does a small part of what later calls would have to do, and returns whether something is left.
+// the episode has it; solved(step), its decisions alone, which is faster; trees(step), the explanations that were given with
+// it; seen(step), see placesSeen; and prepare(), which does a small part of what later calls would have to do, and returns
+// whether something is left.
 function openEpisode([packedIndex, ...packedBlocks]) {
   const [index] = unpacked(packedIndex), columns = filledIn(index.columns), blocks = [], lines = new Map();
   const seen = (columns.seen = placesSeen(columns.place, columns.seen_from));
@@ -265,6 +291,11 @@ function openEpisode([packedIndex, ...packedBlocks]) {
     }
     return lines.get(step);
   }
+  function solved(step) {
+    if (lines.has(step)) return lines.get(step).line.belief.solved;
+    const get = (path) => block(Math.floor(step / index.block)).column(JSON.stringify(path), step % index.block);
+    return decisionsOf(get(["packed", "solved"]), () => get(["belief", "routes"])) || get(["belief", "solved"]);
+  }
   function prepare() {
     if (ahead === Math.min(packedBlocks.length, MAX_BLOCKS_AHEAD)) {
       seen(index.steps - 1);
@@ -277,5 +308,5 @@ function openEpisode([packedIndex, ...packedBlocks]) {
     }
     return true;
   }
-  return { ...index, columns, seen, prepare, line: (step) => read(step).line, trees: (step) => read(step).trees };
+  return { ...index, columns, seen, solved, prepare, line: (step) => read(step).line, trees: (step) => read(step).trees };
 }

@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 from replay_episodes import hostile, same
 
+from benchmarks.episodes.replay import moved_back
 from benchmarks.harness.browser import CHROMIUM, Browser
-from simulator.episode.episode import Episode
+from simulator.episode.episode import Episode, EpisodeLine
 from simulator.replay.packed.events import episode_events
-from simulator.replay.packed.packing import kept_line, slim
+from simulator.replay.packed.packing import STEPS_PER_BLOCK, kept_line, slim
 from simulator.replay.packed.short_texts import short_text
 from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE
 from simulator.replay.page import replay_page
@@ -34,6 +35,21 @@ def page(carried: tuple[Path, Episode], tmp_path_factory: pytest.TempPathFactory
     path = tmp_path_factory.mktemp("page") / "run.html"
     trees = {1: [{"text": "why <b>", "children": [{"text": "for", "children": [{"text": "that"}]}]}]}
     path.write_text(replay_page(carried[1], trees), encoding="utf-8")
+    return path
+
+
+def long_episode(episode: Episode) -> Episode:
+    """Return an episode of more steps than a block has: one again and again."""
+    lines: list[EpisodeLine] = []
+    while len(lines) <= STEPS_PER_BLOCK + 10:
+        lines += moved_back(episode.steps, len(lines), [line["belief"].get("place") for line in lines])
+    return Episode(episode.header, tuple(lines), None)
+
+
+@pytest.fixture(scope="module")
+def long_page(carried: tuple[Path, Episode], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "long.html"
+    path.write_text(replay_page(long_episode(carried[1])), encoding="utf-8")
     return path
 
 
@@ -66,6 +82,44 @@ def test_the_page_has_every_step_as_the_episode_has_it(
     assert browser.run("utak.episode.events") == episode_events(episode)
     assert browser.run("document.querySelectorAll('.map svg').length") == 2
     assert browser.run("utak.episode.header.world") == slim(episode.header["world"])
+
+
+@pytest.mark.parametrize("idle", ["() => 0", "undefined", "window.requestIdleCallback"])
+def test_steps_are_the_same_before_and_after_reading_ahead(
+    browser: Browser, carried: tuple[Path, Episode], long_page: Path, idle: str
+) -> None:
+    """A page that never is idle reads no step ahead; one whose browser does not tell when it is idle does."""
+    added = browser.call("Page.addScriptToEvaluateOnNewDocument", source=f"window.requestIdleCallback = {idle};")
+    try:
+        browser.open(long_page)
+        if idle != "() => 0":
+            browser.wait("utak.ready")
+        last = browser.run("utak.episode.steps") - 1
+        chance = random.Random(idle)
+        steps = [last, 0, STEPS_PER_BLOCK, STEPS_PER_BLOCK - 1, *(chance.randrange(last) for _ in range(6))]
+        assert_shows(browser, long_episode(carried[1]), steps)
+        assert browser.run("utak.ready") == (idle != "() => 0")
+        for number in steps:
+            alone, whole = (f"utak.episode.{what}" for what in (f"solved({number})", f"line({number}).belief.solved"))
+            assert browser.run(f"JSON.stringify({alone}) === JSON.stringify({whole})")
+    finally:
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added["identifier"])
+
+
+def test_a_damaged_block_leaves_the_other_ones(browser: Browser, long_page: Path, tmp_path: Path) -> None:
+    head, _, rest = long_page.read_text(encoding="utf-8").partition('id="episode">')
+    index, first, second = rest[: rest.index("</script>")].split()
+    path = tmp_path / "damaged.html"
+    path.write_text(head + 'id="episode">' + rest.replace(second, second[: len(second) // 2]), encoding="utf-8")
+    browser.open(path)
+    browser.wait("utak.ready")
+    for _ in range(2):
+        browser.run(f"utak.player.show({STEPS_PER_BLOCK + 7})")
+        told = browser.run("document.getElementById('status').textContent")
+        assert told.startswith(f"Step {STEPS_PER_BLOCK + 7} cannot be read, as this page is damaged")
+        browser.run("utak.player.show(3)")
+        assert (step(browser), browser.run("document.getElementById('status').textContent")) == (3, "")
+    assert index and first
 
 
 def test_texts_of_strangers_do_nothing(browser: Browser, carried: tuple[Path, Episode], tmp_path: Path) -> None:
