@@ -6,8 +6,9 @@
 For each episode, and for long ones that are put together from runs of an example with noise, one line: the bytes of
 the episode and of its page, what is kept of decisions, and the processor's seconds to make it; then milliseconds of the
 page's main thread in headless Chromium: until the first picture (the best of three), of a seek before the page has read
-ahead (median and worst), of reading ahead in all, and of a seek after that. The page of the first example is made with
-all lengths, those of the others with the first length alone.
+ahead (median and worst), of reading ahead in all, and of a seek after that. Each seek is made in three rounds, of which
+the best one counts; between rounds the page is opened anew, or has forgotten the step. The page of the first example is
+made with all lengths, those of the others with the first length alone.
 
 Runs differ by their seeds. They are repeated only when they have MIN_STEPS_OF_RUNS steps together, which is as long as
 a block of a page, so that no block has a run twice.
@@ -36,12 +37,12 @@ from simulator.replay.page import replay_page
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
 # With noise these take many steps, and their steps need the most bytes; the first one is the one measured at length.
-EXAMPLES = ("push_l_tight_door", "push_square_blocked_door", "push_l_next_room")
+LONG_EXAMPLES = ("push_l_tight_door", "push_square_blocked_door", "push_l_next_room")
 MAX_RUN_STEPS = 150  # of one run; a convention
 MIN_STEPS_OF_RUNS = STEPS_PER_BLOCK
 SEEKS = 100  # steps that are looked at in random order after the page has read ahead
-EARLY_SEEKS = 10  # steps that are looked at after each of EARLY_OPENINGS before the page has read ahead
-EARLY_OPENINGS = 3
+EARLY_SEEKS = 10  # steps that are looked at after a page was opened, before it has read ahead
+ROUNDS = 3  # in which the same is done; the best time of each seek counts, as other work on the machine disturbs
 # Takes from a page what it would read ahead by.
 NEVER_IDLE = "window.requestIdleCallback = () => 0;"
 HEAD = f"{'episode':<36} steps   episode      page a step   kept    s  first  early worst  ahead  seek worst"
@@ -72,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog="python -m benchmarks.episodes.replay", description="Size and speed of replay pages."
     )
     parser.add_argument("episodes", nargs="*", type=Path, help="episodes to measure")
-    parser.add_argument("--examples", default=",".join(EXAMPLES), help="of which episodes are made (default: three)")
+    parser.add_argument("--examples", default=",".join(LONG_EXAMPLES), help="of which episodes are made")
     parser.add_argument("--steps", default="500,5000", help="lengths of made episodes (default %(default)s)")
     parser.add_argument(
         "--noise", default="0.05", help="noise of the runs that they are made from (default %(default)s)"
@@ -117,20 +118,22 @@ def show(name: str, episode: Episode, page: Path, columns: bool) -> None:
 def timed(page: Path, steps: int) -> SeekTimes:
     """Return what the processor does for a page: see the docstring of this module."""
     chance = random.Random(0)
-    first, early = [], []
+    early, late = ([chance.randrange(steps) for _ in range(number)] for number in (EARLY_SEEKS, SEEKS))
+    first, early_rounds = [], []
     with Browser() as browser:
         added = browser.call("Page.addScriptToEvaluateOnNewDocument", source=NEVER_IDLE)
-        for _ in range(EARLY_OPENINGS):
+        for _ in range(ROUNDS):
             browser.open(page)
             first.append(browser.busy())
-            early += [seek(browser, chance.randrange(steps)) for _ in range(EARLY_SEEKS)]
+            early_rounds.append([seek(browser, step) for step in early])
         browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added["identifier"])
         browser.open(page)
         browser.wait("utak.ready")
         ahead = browser.busy() - min(first)
-        seeks = [seek(browser, chance.randrange(steps)) for _ in range(SEEKS)]
+        rounds = [[seek(browser, step) for step in late] for _ in range(ROUNDS)]
+    before, after = (list(map(min, zip(*found, strict=True))) for found in (early_rounds, rounds))
     return SeekTimes(
-        min(first), statistics.median(early), max(early), max(ahead, 0.0), statistics.median(seeks), max(seeks)
+        min(first), statistics.median(before), max(before), max(ahead, 0.0), statistics.median(after), max(after)
     )
 
 

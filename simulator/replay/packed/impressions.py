@@ -18,7 +18,9 @@ LEVELS = 8  # that a field can show
 BOUNDS = {
     (least, least + more): n for n, (more, least) in enumerate((m, k) for m in range(LEVELS) for k in range(LEVELS - m))
 }
-SIGNS = string.digits + string.ascii_letters + "!#"  # for each bounds with the greatest level, then with the least
+LEVEL_SIGNS = (
+    string.digits + string.ascii_letters + "!#"
+)  # for each bounds with the greatest level, then with the least
 BETWEEN = "'"  # before the sign of bounds with the greatest level, and the level, where it is neither
 STATUS_WORDS = {"p": "predicted", "e": "explained", "n": "noise"}
 MAX_LETTERS = 26  # facts that can explain fields of one impression, by a letter each
@@ -94,11 +96,11 @@ def level_signs(least: Any, most: Any, retina: str) -> str | None:
         if number is None:
             return None
         if level == high:
-            signs.append(SIGNS[number])
+            signs.append(LEVEL_SIGNS[number])
         elif level == low:
-            signs.append(SIGNS[len(BOUNDS) + number - LEVELS])
+            signs.append(LEVEL_SIGNS[len(BOUNDS) + number - LEVELS])
         else:
-            signs.append(BETWEEN + SIGNS[number] + level)
+            signs.append(BETWEEN + LEVEL_SIGNS[number] + level)
     return "".join(signs)
 
 

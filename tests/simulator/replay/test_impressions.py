@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.replay.packed.impressions import BETWEEN, FIELD_COUNT, SIGNS, level_signs
+from simulator.replay.packed.impressions import BETWEEN, FIELD_COUNT, LEVEL_SIGNS, level_signs
 
 DIGITS = st.lists(st.integers(0, 7), min_size=FIELD_COUNT, max_size=FIELD_COUNT)
 
@@ -16,7 +16,7 @@ def read(signs: str) -> tuple[str, str, str]:
     while rest:
         first = rest.pop(0)
         sign, level = (rest.pop(0), rest.pop(0)) if first == BETWEEN else (first, "")
-        number = SIGNS.index(sign)
+        number = LEVEL_SIGNS.index(sign)
         low, high = bounds[number] if number < len(bounds) else bounds[number - len(bounds) + 8]
         found.append((str(low), str(high), level or str(high if number < len(bounds) else low)))
     least, most, retina = map("".join, zip(*found, strict=True))
