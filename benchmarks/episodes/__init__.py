@@ -2,5 +2,6 @@
 
 explanations  trees of reasons, confirmed node by node
 killing       runs and sweeps that are killed at random moments, and resumed
+columns       which columns of a replay page need its bytes
 replay        size and speed of replay pages
 """

@@ -36,10 +36,20 @@ def _is_shallow(value: Any) -> bool:
 
 
 def write_page(path: Path | str, episode: Episode, force: bool = False) -> None:
-    """Write the page of an episode, with trees of reasons; `force` overwrites no-pages. Raises CannotOpenError."""
+    """Write the page of an episode, with trees of reasons; `force` overwrites no-pages.
+
+    Raises CannotOpenError, also when this Python has not its module lzma.
+    """
     from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
 
-    write_whole(path, replay_page(episode, trees_of_episode(episode)), is_page, "page of HTML", force)
+    try:
+        page = replay_page(episode, trees_of_episode(episode))
+    except ModuleNotFoundError as error:
+        if error.name not in ("lzma", "_lzma"):
+            raise
+        what = "pages need Python's own module lzma, without which this Python was built; --text does not"
+        raise CannotOpenError(str(path), what) from None
+    write_whole(path, page, is_page, "page of HTML", force)
 
 
 def check_page_path(path: Path | str, force: bool = False) -> None:

@@ -1,7 +1,7 @@
 """The page of an episode: one HTML file that needs nothing else, neither a server nor a network.
 
-The parts of the page lie in the folder `page_parts` as a browser reads them. They are put together here: what inflates
-stands in the page as it is, the player and the episode are deflated. A policy in the page allows no script
+The parts of the page lie in the folder `page_parts` as a browser reads them. They are put together here: what expands
+stands in the page as it is, the player and the episode are packed. A policy in the page allows no script
 and no style but these, and no request at all; so no text of an episode can do anything.
 """
 
@@ -16,11 +16,12 @@ from typing import Any
 
 from simulator.episode.episode import Episode
 from simulator.replay.packed.events import episode_events
-from simulator.replay.packed.packing import deflated, packed_episode
+from simulator.replay.packed.packing import packed_episode
+from simulator.replay.packed.short_texts import short_text
 from simulator.terminal.streams import escape_controls
 
-LOADER = ("inflate.js", "loader.js")  # the scripts that stand in a page as they are
-# The scripts that stand in it deflated, in the order in which they need one another.
+LOADER = ("expand.js", "loader.js")  # the scripts that stand in a page as they are
+# The scripts that stand in it packed, in the order in which they need one another.
 PLAYER = ("decode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js", "player.js", "start.js")
 MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convention
 
@@ -57,7 +58,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
         style_hash=_hash(style),
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",
-        player=deflated({"style": style, "body": body, "script": player}),
+        player=short_text([{"style": style, "body": body, "script": player}]),
         episode="\n".join(packed_episode(episode, episode_events(episode), trees)),
     )
 
@@ -73,8 +74,10 @@ def _part(name: str) -> str:
 
 
 def _script(names: Sequence[str]) -> str:
-    """Return some scripts as one, whose names no other script sees."""
-    return f'"use strict";\n(() => {{\n{"".join(map(_part, names))}}})();\n'
+    """Return some scripts as one, whose names no other script sees, without indentation and lines of comments."""
+    lines = [line.strip() for name in names for line in _part(name).splitlines()]
+    bare = "\n".join(line for line in lines if line and not line.startswith("//"))
+    return f'"use strict";\n(() => {{\n{bare}\n}})();\n'
 
 
 def _hash(text: str) -> str:

@@ -8,5 +8,6 @@ outlines     facts with their outlines apart, so that little changes
 impressions  what the fields of the retina observe, what was predicted, how it was explained
 decisions    decisions as far as a page keeps them
 tracks       places and motions
+short_texts  JSON values as short texts
 packing      an episode as the texts that a page holds
 """

@@ -5,11 +5,15 @@ index]]` for one that was taken before. A decision among hundreds of candidates 
 """
 
 import re
+from collections.abc import Sequence
 from typing import Any
+
+from simulator.episode.episode import EpisodeLine
 
 # What is kept of one decision, from much to little: so many candidates besides those chosen, and so many other facts.
 # With none of either, its answer alone is kept. Conventions; docs/replay.md.
-DETAILS = ((6, 60), (2, 20), (0, 0))
+DETAILS = ((6, 60), (3, 30), (1, 12), (0, 6), (0, 0))
+AS_ROUTES = "routes"  # stands for what a decision was about where the routes of its step are just that
 CANDIDATE_NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 
 
@@ -57,27 +61,40 @@ def _candidate(fact: Any) -> str:
     return first if CANDIDATE_NUMBER.fullmatch(first) else ""
 
 
-def by_encoding(solved: list[Any], before: dict[str, Any] | None) -> dict[str, Any]:
+def by_encoding(
+    solved: list[Any], before: dict[str, Any] | None, routes: Sequence[Any] | None = None
+) -> dict[str, Any]:
     """Return the decisions of a step, with each kept by its encoding until the encoding is asked again.
 
     Parameters
     ----------
     solved : `belief.solved` of the step, trimmed.
     before : what this function returned for the step before; None at first.
+    routes : the points of each route of the step, which a decision among them need not tell once more.
 
     Returns
     -------
     `{"order": [...], "last": {...}}`. `order` has, for each decision, its key in `last`, or the decision itself where
-    it refers to an earlier one. What encodings were given that were not asked at this step stays in `last`, so that the
-    next time only differences need be told.
+    it refers to an earlier one or has another form. What encodings were given that were not asked at this step stays in
+    `last`, so that the next time only differences need be told.
     """
     last = dict(before["last"]) if before is not None else {}
     order: list[Any] = []
     for entry in solved:
-        if isinstance(entry, list) and len(entry) > 2 and isinstance(entry[0], str):
+        if isinstance(entry, list) and len(entry) > 3 and isinstance(entry[0], str) and entry[3] != AS_ROUTES:
+            if routes and entry[3] == routes:
+                entry = [*entry[:3], AS_ROUTES, *entry[4:]]
             key = f"{entry[0]} {len(order)}" if entry[0] in order else entry[0]
             last[key] = entry
             order.append(key)
         else:
             order.append([entry])
     return {"order": order, "last": last}
+
+
+def route_points(line: EpisodeLine) -> list[Any] | None:
+    """Return the points of each route that was weighed at a step, robot frame; None where it states none."""
+    routes = line["belief"].get("routes")
+    if not isinstance(routes, list) or not all(isinstance(route, dict) and "points" in route for route in routes):
+        return None
+    return [route["points"] for route in routes]

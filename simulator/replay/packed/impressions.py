@@ -1,18 +1,27 @@
 """Impressions with few characters: what 160 fields observe, what was predicted for them, and how it was explained.
 
-Digits are written as what they are above others: the greatest level above the least, what is observed above the
-greatest. `status` is told by these but for exceptions, and `cells` by `status`. `explained` is told by a letter for
-each explained field. What has not the form that an episode of ours has stays as it is.
+The least and the greatest level that were predicted for a field and the one observed are mostly one sign: see
+`level_signs`. `status` is told by these but for exceptions, and `cells` by `status`. `explained` is told by a letter
+for each explained field. What has not the form that an episode of ours has stays as it is.
 """
 
 import re
+import string
 from collections import Counter
 from typing import Any
 
 from simulator.episode.episode import EpisodeLine
 
 FIELD_COUNT = 160
-DIGIT_KEYS = ("least", "most", "retina")  # each is written as what it is above the one before, in this order
+LEVELS = 8  # that a field can show
+# The bounds that can be predicted for a field, least and most, each with its number: those that agree come first.
+BOUNDS = {
+    (least, least + more): n for n, (more, least) in enumerate((m, k) for m in range(LEVELS) for k in range(LEVELS - m))
+}
+LEVEL_SIGNS = (
+    string.digits + string.ascii_letters + "!#"
+)  # for each bounds with the greatest level, then with the least
+BETWEEN = "'"  # before the sign of bounds with the greatest level, and the level, where it is neither
 STATUS_WORDS = {"p": "predicted", "e": "explained", "n": "noise"}
 MAX_LETTERS = 26  # facts that can explain fields of one impression, by a letter each
 
@@ -26,20 +35,18 @@ def pack_impression(line: EpisodeLine) -> tuple[dict[str, Any], dict[str, Any]]:
 
     Returns
     -------
-    A dictionary with the keys `least`, `most`, `retina`, `status` and `explained`, as far as they can be packed, of
+    A dictionary with the keys `levels` or else `retina`, and `status` and `explained`, as far as they can be packed, of
     which `explained` is [facts, letters]; and the rest of the belief.
     """
     belief = dict(line["belief"])
     packed: dict[str, Any] = {}
-    below = ""
-    for key in DIGIT_KEYS:
-        text = "".join(map(str, line["retina"])) if key == "retina" else belief.get(key)
-        if isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text):
-            packed[key] = _above(text, below) if below else text
-            belief.pop(key if key != "retina" else "", None)
-            below = text
-        else:
-            below = ""
+    retina = "".join(map(str, line["retina"]))
+    signs = level_signs(belief.get("least"), belief.get("most"), retina)
+    if signs is None:
+        packed["retina"] = retina
+    else:
+        packed["levels"] = signs
+        del belief["least"], belief["most"]
     status = belief.get("status")
     if isinstance(status, str) and re.fullmatch(f"[pen]{{{FIELD_COUNT}}}", status):
         packed["status"] = _exceptions(status, expected_status(line))
@@ -68,9 +75,33 @@ def expected_status(line: EpisodeLine) -> str:
     )
 
 
-def _above(digits: str, below: str) -> str:
-    """Return by how much each of some digits is above another one, modulo 8, as digits."""
-    return "".join(str((int(a) - int(b)) % 8) for a, b in zip(digits, below, strict=True))
+def level_signs(least: Any, most: Any, retina: str) -> str | None:
+    """Return a text that tells, for each field, the least and the greatest predicted level and the one observed.
+
+    Parameters
+    ----------
+    least, most, retina : the levels, a digit for each field.
+
+    Returns
+    -------
+    One sign for each field at which a bound was observed, three for others. None where a text has another form, or
+    where a least level is above the greatest.
+    """
+    texts = (least, most, retina)
+    if not all(isinstance(text, str) and re.fullmatch(f"[0-7]{{{FIELD_COUNT}}}", text) for text in texts):
+        return None
+    signs = []
+    for low, high, level in zip(*texts, strict=True):
+        number = BOUNDS.get((int(low), int(high)))
+        if number is None:
+            return None
+        if level == high:
+            signs.append(LEVEL_SIGNS[number])
+        elif level == low:
+            signs.append(LEVEL_SIGNS[len(BOUNDS) + number - LEVELS])
+        else:
+            signs.append(BETWEEN + LEVEL_SIGNS[number] + level)
+    return "".join(signs)
 
 
 def _exceptions(status: str, expected: str) -> str:

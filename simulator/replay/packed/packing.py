@@ -1,27 +1,25 @@
 """An episode packed for a page: what changes from step to step, in blocks that are read one by one.
 
-A packed episode is a list of texts, each deflated JSON in base 85: an index, then the blocks. The index has
+A packed episode is a list of texts (`simulator.replay.packed.short_texts`): an index, then the blocks. The index has
 
 - `header`, `result`: those of the episode;
 - `columns`: `action`, `motion`, `utak`, `place` and `seen_from` of all steps (`simulator.replay.packed.tracks`);
 - `events`: the steps of each kind of event; `bounds`: the least and greatest coordinates of floor and things;
 - `steps`, `block`: how many steps the episode and a block have; `detail`: what is kept of decisions.
 
-A block is a list with one column for every key of its lines, `[path, differences]`, each difference from the value of
+A block has one column for every key of its lines, `[path, differences]`, each difference from the value of
 the step before in the same block; the first step of a block differs from nothing. `page_parts/decode.js` reads this.
 """
 
-import base64
-import json
-import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from simulator.episode.episode import Episode, EpisodeLine
-from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
+from simulator.replay.packed.decisions import DETAILS, by_encoding, route_points, trimmed
 from simulator.replay.packed.delta import GONE, difference
 from simulator.replay.packed.impressions import pack_impression
 from simulator.replay.packed.outlines import split_facts
+from simulator.replay.packed.short_texts import short_text
 from simulator.replay.packed.tracks import believed_place, offset_facts, places_anew, poses, track_columns
 
 STEPS_PER_BLOCK = (
@@ -29,10 +27,9 @@ STEPS_PER_BLOCK = (
 )
 # Bytes of a packed episode of up to STEPS_PER_BLOCK steps, and for each step more, that may be exceeded only when no
 # detail of decisions is left to leave out. With the player, 500 steps have 150 KB and 5,000 steps 1.5 MB; a convention.
-PACKED_BYTES = 110_000
+PACKED_BYTES = 115_000
 BYTES_PER_STEP = 285
 MAX_SAFE_INTEGER = 2**53  # the greatest integer that a browser's numbers hold exactly
-NO_HTML = str.maketrans("&<>`", ".,/:")  # what takes the place of the signs of base 85 that mean something in HTML
 Path = tuple[str, ...]  # the keys that lead to a value of a step's line
 
 
@@ -68,7 +65,7 @@ def packed_episode(
     texts: list[str] = []
     for detail in DETAILS:
         parts = [columns[n] + _decisions(block, detail) for n, block in enumerate(blocks)]
-        texts = [deflated({**index, "detail": list(detail)}), *map(deflated, parts)]
+        texts = [short_text([{**index, "detail": list(detail)}]), *map(short_text, parts)]
         if sum(map(len, texts)) <= budget:
             break
     return texts
@@ -80,13 +77,6 @@ def kept_line(line: EpisodeLine, detail: tuple[int, int] = DETAILS[0]) -> Episod
     if not isinstance(solved, list):
         return line
     return line | {"belief": line["belief"] | {"solved": [trimmed(entry, detail) for entry in solved]}}
-
-
-def deflated(value: Any) -> str:
-    """Return a JSON value as text: deflated without a head (RFC 1951), in base 85 without signs of HTML."""
-    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9)
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return base64.b85encode(packer.compress(text.encode("ascii")) + packer.flush()).decode("ascii").translate(NO_HTML)
 
 
 def slim(value: Any) -> Any:
@@ -141,7 +131,7 @@ def _decisions(lines: Sequence[EpisodeLine], detail: tuple[int, int]) -> list[An
     for line in lines:
         solved = kept_line(line, detail)["belief"].get("solved")
         if isinstance(solved, list):
-            before = by_encoding(solved, before)
+            before = by_encoding(solved, before, route_points(line))
         values.append(before if isinstance(solved, list) else _Absent)
     return [[["packed", "solved"], _differences(values)]] if before is not None else []
 

@@ -1,30 +1,38 @@
 // Reads the packed episode (simulator/replay/packed/packing.py): the lines of its steps, one at a time.
 
-const CHECKPOINT = 25; // steps between states that are kept once they were read
+const CHECKPOINT = 20; // steps between states that are kept once they were read
+const PLACES_CHECKPOINTS = 100; // lists of places that are kept at most
+const PIECE_BYTES = 1 << 15; // of a block that are unpacked at once while nobody waits
+const MAX_BLOCKS_AHEAD = 20; // that are read before somebody asks for one of their steps
 const MAX_LINES_KEPT = 50; // lines that are kept once they were read
 const DIGITS = 1e6; // places are rounded to so many parts of a square
 
 // The value to which a difference leads (simulator/replay/packed/delta.py).
 function patched(old, how) {
-  if (Array.isArray(how)) {
-    if (how.length === 1) return how[0];
-    const result = [];
-    let at = 0;
-    for (const edit of how) {
-      if (Array.isArray(edit)) for (const item of edit) result.push(item);
-      else if (edit > 0) for (const end = at + edit; at < end; at += 1) result.push(old[at]);
-      else at -= edit;
-    }
-    for (; at < old.length; at += 1) result.push(old[at]);
-    return result;
-  }
+  if (Array.isArray(how)) return how.length === 1 ? how[0] : edited(old, how);
   if (how === null || typeof how !== "object") return old;
-  const found = new Map(Object.entries(old));
-  for (const [key, part] of Object.entries(how)) {
-    if (part === -1) found.delete(key);
-    else found.set(key, patched(found.get(key), part));
+  const found = { ...old };
+  for (const key of Object.keys(how)) {
+    const part = how[key];
+    if (part === -1) delete found[key];
+    else if (key === "__proto__") Object.defineProperty(found, key, { value: patched(found[key], part), writable: true, enumerable: true, configurable: true });
+    else found[key] = patched(found[key], part);
   }
-  return Object.fromEntries(found);
+  return found;
+}
+
+// A list after the edits of a difference.
+function edited(old, how) {
+  let at = typeof how[0] === "number" && how[0] > 0 ? how[0] : 0;
+  const result = old.slice(0, at);
+  for (let i = at ? 1 : 0; i < how.length; i += 1) {
+    const edit = how[i];
+    if (Array.isArray(edit)) for (const item of edit) result.push(item);
+    else if (edit > 0) for (const end = at + edit; at < end; at += 1) result.push(old[at]);
+    else at -= edit;
+  }
+  for (; at < old.length; at += 1) result.push(old[at]);
+  return result;
 }
 
 // The edges of an outline: [east, north, east, north], from corners as simulator/replay/packed/outlines.py writes them.
@@ -63,9 +71,23 @@ function joinedFacts(others, corners, confidences) {
   return facts.sort();
 }
 
-// Digits, each by so much above that of another text, modulo 8.
-const raised = (digits, below) => Array.from(digits, (digit, i) => (Number(digit) + Number(below[i])) % 8).join("");
 const isDigits = (text) => typeof text === "string" && /^[0-7]{160}$/.test(text);
+const LEVEL_SIGNS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ!#"; // simulator/replay/packed/impressions.py
+const LEVEL_BOUNDS = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((more) => [0, 1, 2, 3, 4, 5, 6, 7].slice(more).map((most) => [most - more, most]));
+
+// The least and the greatest predicted level and the one observed, of each field, as three texts of digits.
+function levelsOf(signs) {
+  let least = "", most = "", retina = "";
+  for (let i = 0; i < signs.length; i += 1) {
+    const between = signs[i] === "'", number = LEVEL_SIGNS.indexOf(signs[between ? i + 1 : i]), low = number >= LEVEL_BOUNDS.length;
+    const bounds = LEVEL_BOUNDS[low ? number - LEVEL_BOUNDS.length + 8 : number];
+    least += bounds[0];
+    most += bounds[1];
+    retina += between ? signs[i + 2] : bounds[low ? 0 : 1];
+    if (between) i += 2;
+  }
+  return [least, most, retina];
+}
 
 // The status of each field: as levels and bounds tell it, but for exceptions such as "12p40e"
 // (simulator/replay/packed/impressions.py).
@@ -93,6 +115,16 @@ function offsetFacts(place) {
   return [`offset(org,${east},${north}).`, `offset(floor,${0 - east},${0 - north}).`];
 }
 
+// Decisions as the episode has them; undefined where no step records any in the usual form. What one was about may be told
+// by the routes of the step.
+function decisionsOf(solved, routes) {
+  return solved && solved.order.map((key) => {
+    if (Array.isArray(key)) return key[0];
+    const [encoding, facts, answer, about, ...left] = solved.last[key];
+    return [encoding, facts, answer, about === "routes" ? routes().map((route) => route.points) : about, ...left];
+  });
+}
+
 // A line of an episode from its columns by path, and what the index tells of it.
 function lineOf(columns, step, index, movable) {
   const line = { step, action: index.action[step], motion: index.motion[step], utak: index.utak[step] }, belief = {};
@@ -110,14 +142,9 @@ function lineOf(columns, step, index, movable) {
   if (get("facts", "others") !== undefined) {
     belief.facts = joinedFacts([...get("facts", "others"), ...(get("facts", "offsets") ? offsetFacts(belief.place) : [])], get("facts", "corners"), get("facts", "confidences"));
   }
-  let below = "";
-  for (const name of ["least", "most", "retina"]) {
-    let text = get("packed", name);
-    if (isDigits(text)) below = text = below ? raised(text, below) : text;
-    else below = "";
-    if (name === "retina") line.retina = Array.from(text, Number);
-    else if (text !== undefined) belief[name] = text;
-  }
+  let retina = get("packed", "retina");
+  if (get("packed", "levels") !== undefined) [belief.least, belief.most, retina] = levelsOf(get("packed", "levels"));
+  line.retina = Array.from(retina, Number);
   if (get("packed", "status") !== undefined) {
     belief.status = statusOf(line, get("packed", "status"));
     if (belief.cells === undefined) belief.cells = countsOf(belief.status);
@@ -130,8 +157,8 @@ function lineOf(columns, step, index, movable) {
     });
     belief.explained = Object.fromEntries(found);
   }
-  const solved = get("packed", "solved");
-  if (solved) belief.solved = solved.order.map((key) => (Array.isArray(key) ? key[0] : solved.last[key]));
+  const solved = decisionsOf(get("packed", "solved"), () => belief.routes);
+  if (solved) belief.solved = solved;
   return line;
 }
 
@@ -161,56 +188,125 @@ function placed([x, y, degrees], first) {
 // Where all impressions up to a step were received, as believed at that step: a function of the step. What was believed
 // anew at a step is told as a difference from the places before and the place of the step.
 function placesSeen(place, anew) {
+  const every = Math.max(CHECKPOINT, Math.ceil(place.length / PLACES_CHECKPOINTS)), kept = new Map();
   let at = -1, places = [];
   return (step) => {
-    if (step < at) [at, places] = [-1, []];
+    const before = step - (step % every);
+    if (kept.has(before) && (step < at || before > at)) [at, places] = [before, kept.get(before).slice()];
+    else if (step < at) [at, places] = [-1, []];
     while (at < step) {
       at += 1;
-      if (anew[at] === 0) places.push(place[at]);
-      else places = patched([...places, place[at]], anew[at]).slice();
+      places.push(place[at]);
+      if (anew[at] !== 0) places = patched(places, anew[at]).slice();
+      if (at % every === 0 && !kept.has(at)) kept.set(at, places.slice());
     }
     return places.slice();
   };
 }
 
+// The steps of one block, from its text: state(n), the columns by path at its nth step; column(path, n), one of them;
+// prepare() does a small part of what later calls would have to do, and returns whether something is left. What is damaged
+// throws an Error at each call.
+function openBlock(text, steps) {
+  const work = unpacking(text), states = new Map();
+  let paths = null, parts = null, damage = null, ahead = 0, recent = [];
+
+  // Does a part of the unpacking; returns whether all is done.
+  function unpack(bytes) {
+    if (damage) throw damage;
+    try {
+      if (!work.more(bytes)) return false;
+      paths = work.values().map(([path]) => JSON.stringify(path));
+      parts = work.values().map(([, how]) => how);
+      states.set(0, parts.map((how) => (how[0] === -1 ? undefined : how[0][0])));
+      return true;
+    } catch (error) {
+      damage = error;
+      throw error;
+    }
+  }
+  const next = (how, at, old) => (how[at] === 0 ? old : how[at] === -1 ? undefined : patched(old, how[at]));
+  // The last step, up to a step, at which the values of all columns are kept.
+  function keptBefore(local) {
+    let at = local - (local % CHECKPOINT);
+    while (!states.has(at)) at -= CHECKPOINT;
+    return at;
+  }
+  // The values of all columns at a step. Those asked for last and those before them are kept: they are often asked for next.
+  function values(local) {
+    let at = keptBefore(local), found = states.get(at), before = null;
+    for (const one of recent) if (one.at > at && one.at <= local) ({ at, found } = one);
+    while (at < local) {
+      before = { at, found };
+      at += 1;
+      found = parts.map((how, i) => next(how, at, before.found[i]));
+      if (at % CHECKPOINT === 0) states.set(at, found);
+    }
+    if (before) recent = [before, { at, found }];
+    return found;
+  }
+  function whole() {
+    while (!parts) unpack(Infinity);
+  }
+  function state(local) {
+    whole();
+    const found = values(local);
+    return new Map(paths.map((path, i) => [path, found[i]]));
+  }
+  function column(path, local) {
+    whole();
+    const number = paths.indexOf(path);
+    if (number < 0) return undefined;
+    let at = keptBefore(local), found = states.get(at)[number];
+    while (at < local) found = next(parts[number], (at += 1), found);
+    return found;
+  }
+  function prepare() {
+    if (!parts) return unpack(PIECE_BYTES) || true;
+    if (ahead + CHECKPOINT >= steps) return false;
+    values((ahead += CHECKPOINT));
+    return true;
+  }
+  return { state, column, prepare };
+}
+
 // An episode, from the texts of its index and of its blocks: what the index has; line(step), the line of a step as
-// the episode has it; trees(step), the explanations that were given with it; and seen(step), see placesSeen.
+// the episode has it; solved(step), its decisions alone, which is faster; trees(step), the explanations that were given with
+// it; seen(step), see placesSeen; and prepare(), which does a small part of what later calls would have to do, and returns
+// whether something is left.
 function openEpisode([packedIndex, ...packedBlocks]) {
-  const index = unpacked(packedIndex), columns = filledIn(index.columns), blocks = [], lines = new Map();
+  const [index] = unpacked(packedIndex), columns = filledIn(index.columns), blocks = [], lines = new Map();
   const seen = (columns.seen = placesSeen(columns.place, columns.seen_from));
+  let ahead = 0;
 
   function block(number) {
-    if (!blocks[number]) {
-      const parts = unpacked(packedBlocks[number]).map(([path, how]) => [JSON.stringify(path), how]);
-      blocks[number] = { parts, states: [] };
-    }
+    if (!blocks[number]) blocks[number] = openBlock(packedBlocks[number], Math.min(index.block, index.steps - number * index.block));
     return blocks[number];
-  }
-  // The state of all columns at a step: from the nearest state before it that is kept.
-  function state(step) {
-    const { parts, states } = block(Math.floor(step / index.block)), local = step % index.block;
-    let at = Math.floor(local / CHECKPOINT) * CHECKPOINT;
-    while (at > 0 && !states[at]) at -= CHECKPOINT;
-    let found = states[at] || null;
-    if (!found) {
-      found = parts.map(([, how]) => (how[0] === -1 ? undefined : how[0][0]));
-      at = 0;
-      states[0] = found;
-    }
-    while (at < local) {
-      at += 1;
-      found = parts.map(([, how], i) => (how[at] === -1 ? undefined : patched(found[i], how[at])));
-      if (at % CHECKPOINT === 0) states[at] = found;
-    }
-    return new Map(parts.map(([path], i) => [path, found[i]]));
   }
   function read(step) {
     if (!lines.has(step)) {
       if (lines.size >= MAX_LINES_KEPT) lines.delete(lines.keys().next().value);
-      const found = state(step);
+      const found = block(Math.floor(step / index.block)).state(step % index.block);
       lines.set(step, { line: lineOf(found, step, columns, index.header.world.movable), trees: found.get('["replay","trees"]') || [] });
     }
     return lines.get(step);
   }
-  return { ...index, columns, seen, line: (step) => read(step).line, trees: (step) => read(step).trees };
+  function solved(step) {
+    if (lines.has(step)) return lines.get(step).line.belief.solved;
+    const get = (path) => block(Math.floor(step / index.block)).column(JSON.stringify(path), step % index.block);
+    return decisionsOf(get(["packed", "solved"]), () => get(["belief", "routes"])) || get(["belief", "solved"]);
+  }
+  function prepare() {
+    if (ahead === Math.min(packedBlocks.length, MAX_BLOCKS_AHEAD)) {
+      seen(index.steps - 1);
+      return false;
+    }
+    try {
+      if (!block(ahead).prepare()) ahead += 1;
+    } catch { // whoever asks for a step of this block is told
+      ahead += 1;
+    }
+    return true;
+  }
+  return { ...index, columns, seen, solved, prepare, line: (step) => read(step).line, trees: (step) => read(step).trees };
 }

@@ -1,7 +1,7 @@
-// Inflates the player and runs it. The policy of the page allows just this style and this script.
+// Expands the player and runs it. The policy of the page allows just this style and this script.
 
-window.unpacked = unpacked;
-const parts = unpacked(document.getElementById("player").textContent.trim());
+Object.assign(window, { unpacked, unpacking });
+const [parts] = unpacked(document.getElementById("player").textContent.trim());
 for (const [name, place] of [["style", document.head], ["script", document.body]]) {
   if (name === "script") document.body.insertAdjacentHTML("afterbegin", parts.body);
   const element = document.createElement(name);

@@ -39,7 +39,7 @@ function drawTruth(at) {
     group.append(label(at, ring, places.table, held ? `${name} held` : name));
   }
   if (at.layers.has("track")) {
-    group.append(svg("path", { class: "track", d: pathOf([episode.columns.utak.slice(0, step + 1)], places.table, false) }));
+    group.append(svg("path", { class: "track", d: trackOf(episode.columns.utak.slice(0, step + 1), places.table) }));
   }
   return group;
 }
@@ -112,7 +112,7 @@ function drawBelief(at) {
   if (at.layers.has("routes")) group.append(drawRoutes(at));
   if (at.layers.has("track")) {
     const track = at.episode.seen(at.step).filter(isPoint);
-    group.append(svg("path", { class: "track", d: pathOf([track], place, false) }));
+    group.append(svg("path", { class: "track", d: trackOf(track, place) }));
   }
   for (const [name, edges] of outlines) {
     if (!["floor", "verge"].includes(name)) group.append(label(at, edges.map((edge) => edge.from), place, nameOf(said, name)));
@@ -144,22 +144,37 @@ function nameOf(said, name) {
 
 // Hatching where no impression reached, as far as the places of impressions are known.
 function drawUnseen(at) {
-  const { west, north, width, height } = at.area, { belief } = at.line, places = new Set();
+  const { west, north, width, height } = at.area, { belief } = at.line, windows = new Map();
   const angle = ((isNumber(belief.lattice) ? belief.lattice : 0) * Math.PI) / 180, origin = isPoint(belief.origin) ? belief.origin : [0.5, 0.5];
-  const cosine = Math.cos(angle), sine = Math.sin(angle), windows = [];
-  for (const [east, to] of at.episode.seen(at.step).slice(isNumber(belief.map_from) ? belief.map_from : 0).filter(isPoint)) {
-    const x = Math.floor(east * cosine - to * sine + origin[0] + 1e-6) + 0.5 - origin[0];
-    const y = Math.floor(east * sine + to * cosine + origin[1] + 1e-6) + 0.5 - origin[1];
-    if (places.has(`${x},${y}`)) continue;
-    places.add(`${x},${y}`);
-    const middle = [x * cosine + y * sine, y * cosine - x * sine];
-    windows.push(squareOf(middle[0] - RETINA_REACH - 0.5, middle[1] - RETINA_REACH - 0.5, 2 * RETINA_REACH));
+  const windowOf = windowsSeen(at.places.robot, angle, origin);
+  for (const place of at.episode.seen(at.step).slice(isNumber(belief.map_from) ? belief.map_from : 0).filter(isPoint)) {
+    const { square, path } = windowOf(place);
+    windows.set(square, path);
   }
   const all = { x: rounded(west), y: rounded(north), width: rounded(width), height: rounded(height) };
   return svg("g", {},
     svg("mask", { id: "never-seen", maskUnits: "userSpaceOnUse", ...all },
-      svg("rect", { ...all, fill: "white" }), svg("path", { d: pathOf(windows, at.places.robot, true), fill: "black" })),
+      svg("rect", { ...all, fill: "white" }), svg("path", { d: [...windows.values()].join(""), fill: "black" })),
     svg("rect", { class: "unseen", ...all, fill: "url(#hatch)", mask: "url(#never-seen)" }));
+}
+
+// What an impression covers that was received at a place: a function of the place, to the square in which that lies and
+// path data. What it found is kept as long as the frame of squares stays the same.
+const windowsKept = { frame: "", found: new WeakMap() };
+function windowsSeen(place, angle, origin) {
+  const frame = [angle, ...origin].join(), cosine = Math.cos(angle), sine = Math.sin(angle);
+  if (windowsKept.frame !== frame) Object.assign(windowsKept, { frame, found: new WeakMap() });
+  const { found } = windowsKept;
+  return (point) => {
+    if (!found.has(point)) {
+      const x = Math.floor(point[0] * cosine - point[1] * sine + origin[0] + 1e-6) + 0.5 - origin[0];
+      const y = Math.floor(point[0] * sine + point[1] * cosine + origin[1] + 1e-6) + 0.5 - origin[1];
+      const middle = [x * cosine + y * sine, y * cosine - x * sine];
+      const ring = squareOf(middle[0] - RETINA_REACH - 0.5, middle[1] - RETINA_REACH - 0.5, 2 * RETINA_REACH);
+      found.set(point, { square: `${x},${y}`, path: pathOf([ring], place, true) });
+    }
+    return found.get(point);
+  };
 }
 
 // The pathgraph of the believed floor. Facts name the ends of a link, not its way: links are drawn straight.

@@ -125,7 +125,7 @@ function treeOf(tree, depth) {
 function decision(at, number, entry) {
   if (!Array.isArray(entry)) return html("p", {}, shown(entry));
   const [name] = entry, again = entry.length === 2 && Array.isArray(entry[1]) ? entry[1] : null;
-  const whole = again && again[0] < at.step ? (at.episode.line(again[0]).belief.solved || [])[again[1]] || entry : entry;
+  const whole = again && again[0] < at.step ? (at.episode.solved(again[0]) || [])[again[1]] || entry : entry;
   const [, facts, answer, about, left] = whole.length > 2 ? whole : [name, [], [], []];
   const named = (atom) => {
     const number = /\((\d{1,9})\)$/.exec(atom), text = number && Array.isArray(about) ? about[Number(number[1])] : undefined;

@@ -19,7 +19,16 @@ function startPlayer(episode) {
   // Shows a step. Errors in a panel are shown there, and the other panels are still drawn.
   function show(step) {
     state.step = Math.min(Math.max(step, 0), last);
-    const line = episode.line(state.step), said = byPredicate(line.belief.facts);
+    let line = null;
+    try {
+      if (state.step) episode.line(state.step - 1); // read first, as it is faster in this order
+      line = episode.line(state.step);
+    } catch (error) {
+      if (!state.at) throw error;
+      byId("status").textContent = `Step ${state.step} cannot be read, as this page is damaged: ${error.message}`;
+      return;
+    }
+    const said = byPredicate(line.belief.facts);
     const at = { episode, step: state.step, line, said, outlines: outlinesOf(said), places, area, layers: state.layers };
     state.at = at;
     draw();
@@ -81,9 +90,7 @@ function startPlayer(episode) {
   function showField() {
     const number = fieldNumber.value === "" ? -1 : Number(fieldNumber.value);
     output.textContent = fields[number] ? fieldInWords(number, fields[number]) : "";
-    for (const { parts } of Object.values(retina)) {
-      parts.forEach((part, i) => part.frame.classList.toggle("picked", i === number));
-    }
+    for (const { pick } of Object.values(retina)) pick(number);
   }
 
   // Goes to a step and writes it into the address, so that the back button leads back.

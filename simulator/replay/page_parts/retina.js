@@ -2,7 +2,7 @@
 
 const ZONES = [[4, 1], [8, 2], [16, 4]]; // how far a zone reaches, and the side of its fields, in squares
 const FIELDS = retinaFields();
-const STATUS = { p: "predicted", e: "explained", n: "noise" };
+const STATUS = { p: "predicted", e: "explained", n: "noise" }, STATUS_MARKS = { explained: "dot", noise: "cross" };
 const ALL_FIELDS = "-16 -16 32 32", INNER_FIELDS = "-8 -8 16 16";
 
 // East, north and side of each field, in squares from the robot's own square; zone by zone, from north to south and from
@@ -21,34 +21,36 @@ function retinaFields() {
   return fields;
 }
 
-// A picture of the retina. A field shows the least level, its north-east half the greatest one, and a mark.
-function retinaPicture(name, onField) {
-  const parts = FIELDS.map(({ east, north, side }) => {
-    const [x, y] = [east, -north - side], [right, bottom] = [x + side, y + side], [cx, cy] = [x + side / 2, y + side / 2];
-    const size = side * 0.22, far = side * 0.3;
+// Path data of each field: its square, its north-east half, and the marks in its middle or, where a number takes that, in
+// its north-west corner.
+const SHAPES = FIELDS.map(({ east, north, side }) => {
+  const [x, y] = [east, -north - side], marks = (cx, cy, size) => {
+    const [r, far] = [0.22 * size, 0.3 * size];
     return {
-      least: svg("rect", { class: "level", x, y, width: side, height: side }),
-      most: svg("path", { class: "level", d: `M${x} ${y}H${right}V${bottom}Z` }),
-      frame: svg("rect", { class: "field", x, y, width: side, height: side }),
-      dot: svg("circle", { class: "dot", cx, cy, r: size }),
-      cross: svg("path", { class: "cross", d: `M${cx - far} ${cy - far}L${cx + far} ${cy + far}M${cx - far} ${cy + far}L${cx + far} ${cy - far}` }),
-      digit: svg("text", { class: "digit", x: cx, y: cy }),
-      // In the north-west corner, where a number takes the middle.
-      corner: `translate(${x + side * 0.22 - cx * 0.5} ${y + side * 0.22 - cy * 0.5}) scale(0.5)`, side,
+      dot: `M${cx - r} ${cy}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`,
+      cross: `M${cx - far} ${cy - far}l${2 * far} ${2 * far}M${cx - far} ${cy + far}l${2 * far} ${-2 * far}`,
     };
-  });
-  const own = svg("rect", { class: "own", x: 0, y: -1, width: 1, height: 1 });
-  const picture = svg("svg", { viewBox: ALL_FIELDS, role: "img", "aria-label": name });
-  for (const part of parts) picture.append(part.least, part.most);
-  for (const part of parts) picture.append(part.frame, part.dot, part.cross, part.digit);
-  picture.append(own);
+  };
+  return {
+    x, y, side, square: `M${x} ${y}h${side}v${side}h${-side}Z`, half: `M${x} ${y}h${side}v${side}Z`,
+    full: marks(x + side / 2, y + side / 2, side), small: marks(x + side * 0.22, y + side * 0.22, side / 2),
+  };
+});
+const GRID = SHAPES.map((shape) => shape.square).join("");
+
+// A picture of the retina. A field shows the least level, its north-east half the greatest one, and a mark. Fields that look
+// alike are one path: a browser styles few elements faster than many.
+function retinaPicture(name, onField) {
+  const levels = svg("g"), marks = svg("g"), picked = svg("path", { class: "field picked" });
+  const picture = svg("svg", { viewBox: ALL_FIELDS, role: "img", "aria-label": name },
+    levels, svg("path", { class: "field", d: GRID }), marks, picked, svg("rect", { class: "own", x: 0, y: -1, width: 1, height: 1 }));
   picture.addEventListener("pointerdown", (event) => {
     const box = picture.getBoundingClientRect(), [west, , width] = picture.getAttribute("viewBox").split(" ").map(Number);
     const x = west + ((event.clientX - box.left) / box.width) * width, y = west + ((event.clientY - box.top) / box.height) * width;
     const field = FIELDS.findIndex(({ east, north, side }) => x >= east && x < east + side && -y >= north && -y < north + side);
     if (field >= 0) onField(field);
   });
-  return { picture, parts, name };
+  return { picture, levels, marks, name, drawn: "", pick: (field) => picked.setAttribute("d", SHAPES[field] ? SHAPES[field].square : "") };
 }
 
 // What is known of each field at a step: level, least and most (null where not recorded), status, surplus and the fact
@@ -69,23 +71,28 @@ function fieldsOf(line) {
 }
 
 // Sets the levels and marks of a picture: of each field [least, most, status, text].
-function fillRetina({ picture, parts, name }, values, summary, { marks, digits, inner }) {
+function fillRetina(retina, values, summary, { marks, digits, inner }) {
+  const { picture, name } = retina, drawn = JSON.stringify([values, marks, digits]);
   picture.setAttribute("viewBox", inner ? INNER_FIELDS : ALL_FIELDS);
   picture.setAttribute("aria-label", `${name}: ${summary}`);
+  if (retina.drawn === drawn) return;
+  retina.drawn = drawn;
+  const levels = new Map(), marked = new Map(), numbers = [];
+  const add = (paths, key, data) => paths.set(key, (paths.get(key) || "") + data);
   values.forEach(([least, most, status, text], field) => {
-    const part = parts[field], key = [least, most, status, text, marks, digits].join();
-    if (part.key === key) return; // as it is drawn already
-    part.key = key;
-    part.least.style.fillOpacity = least === null ? 0 : least / 7;
-    part.most.style.fillOpacity = most === least ? 0 : (most - least) / (7 - least); // over the least level
-    part.frame.setAttribute("class", marks && status ? `field ${status}` : "field");
-    part.dot.style.display = marks && status === "explained" ? "" : "none";
-    part.cross.style.display = marks && status === "noise" ? "" : "none";
-    part.digit.textContent = digits ? text : "";
-    part.digit.setAttribute("font-size", (text.length > 2 ? 0.42 : 0.7) * Math.min(part.side, 2));
-    for (const mark of [part.dot, part.cross]) mark.setAttribute("transform", digits && text ? part.corner : "");
-    part.digit.setAttribute("class", Math.max(least, most) > 3 ? "digit light" : "digit");
+    const shape = SHAPES[field], size = digits && text ? "small" : "full";
+    if (least) add(levels, least / 7, shape.square);
+    if (most !== least) add(levels, (most - least) / (7 - least), shape.half); // over the least level
+    if (marks && STATUS_MARKS[status]) {
+      add(marked, `field ${status}`, shape.square);
+      add(marked, `${STATUS_MARKS[status]} ${size}`, shape[size][STATUS_MARKS[status]]);
+    }
+    if (digits && text) numbers.push([shape, text, Math.max(least, most) > 3]);
   });
+  retina.levels.replaceChildren(...[...levels].map(([opacity, d]) => svg("path", { class: "level", d, "fill-opacity": rounded(opacity) })));
+  const order = [...marked].sort(([a], [b]) => b.startsWith("field") - a.startsWith("field")); // frames first, marks over them
+  retina.marks.replaceChildren(...order.map(([kind, d]) => svg("path", { class: kind, d })), ...numbers.map(([{ x, y, side }, text, dark]) =>
+    svg("text", { class: dark ? "digit light" : "digit", x: x + side / 2, y: y + side / 2, "font-size": (text.length > 2 ? 0.42 : 0.7) * Math.min(side, 2) }, text)));
 }
 
 // Fills the three pictures; returns what is known of the fields.

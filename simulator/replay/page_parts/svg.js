@@ -29,6 +29,19 @@ function pathOf(lines, place, closed) {
   }).join("");
 }
 
+// Path data of one line of points that mostly were placed before: what each becomes is kept, by place and point.
+const placedTexts = new WeakMap();
+function trackOf(points, place) {
+  if (!placedTexts.has(place)) placedTexts.set(place, new WeakMap());
+  const known = placedTexts.get(place);
+  const texts = points.map((point) => {
+    const found = known.get(point) || place(point).map(rounded).join(" ");
+    known.set(point, found);
+    return found;
+  });
+  return texts.length ? `M${texts.join("L")}` : "";
+}
+
 // Converts points of the robot's frame, which has its origin where the robot woke, to the picture of the table, in which
 // y runs south.
 function placing(header, origin) {

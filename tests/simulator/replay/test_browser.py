@@ -2,8 +2,6 @@
 
 import json
 import random
-import zlib
-from base64 import b85encode
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,10 +9,12 @@ from typing import Any
 import pytest
 from replay_episodes import hostile, same
 
+from benchmarks.episodes.replay import moved_back
 from benchmarks.harness.browser import CHROMIUM, Browser
-from simulator.episode.episode import Episode
+from simulator.episode.episode import Episode, EpisodeLine
 from simulator.replay.packed.events import episode_events
-from simulator.replay.packed.packing import NO_HTML, kept_line, slim
+from simulator.replay.packed.packing import STEPS_PER_BLOCK, kept_line, slim
+from simulator.replay.packed.short_texts import short_text
 from simulator.replay.packed.tracks import KEPT_OUTLINE_TOLERANCE
 from simulator.replay.page import replay_page
 
@@ -35,6 +35,21 @@ def page(carried: tuple[Path, Episode], tmp_path_factory: pytest.TempPathFactory
     path = tmp_path_factory.mktemp("page") / "run.html"
     trees = {1: [{"text": "why <b>", "children": [{"text": "for", "children": [{"text": "that"}]}]}]}
     path.write_text(replay_page(carried[1], trees), encoding="utf-8")
+    return path
+
+
+def long_episode(episode: Episode) -> Episode:
+    """Return an episode of more steps than a block has: one again and again."""
+    lines: list[EpisodeLine] = []
+    while len(lines) <= STEPS_PER_BLOCK + 10:
+        lines += moved_back(episode.steps, len(lines), [line["belief"].get("place") for line in lines])
+    return Episode(episode.header, tuple(lines), None)
+
+
+@pytest.fixture(scope="module")
+def long_page(carried: tuple[Path, Episode], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("page") / "long.html"
+    path.write_text(replay_page(long_episode(carried[1])), encoding="utf-8")
     return path
 
 
@@ -67,6 +82,44 @@ def test_the_page_has_every_step_as_the_episode_has_it(
     assert browser.run("utak.episode.events") == episode_events(episode)
     assert browser.run("document.querySelectorAll('.map svg').length") == 2
     assert browser.run("utak.episode.header.world") == slim(episode.header["world"])
+
+
+@pytest.mark.parametrize("idle", ["() => 0", "undefined", "window.requestIdleCallback"])
+def test_steps_are_the_same_before_and_after_reading_ahead(
+    browser: Browser, carried: tuple[Path, Episode], long_page: Path, idle: str
+) -> None:
+    """A page that never is idle reads no step ahead; one whose browser does not tell when it is idle does."""
+    added = browser.call("Page.addScriptToEvaluateOnNewDocument", source=f"window.requestIdleCallback = {idle};")
+    try:
+        browser.open(long_page)
+        if idle != "() => 0":
+            browser.wait("utak.ready")
+        last = browser.run("utak.episode.steps") - 1
+        chance = random.Random(idle)
+        steps = [last, 0, STEPS_PER_BLOCK, STEPS_PER_BLOCK - 1, *(chance.randrange(last) for _ in range(6))]
+        assert_shows(browser, long_episode(carried[1]), steps)
+        assert browser.run("utak.ready") == (idle != "() => 0")
+        for number in steps:
+            alone, whole = (f"utak.episode.{what}" for what in (f"solved({number})", f"line({number}).belief.solved"))
+            assert browser.run(f"JSON.stringify({alone}) === JSON.stringify({whole})")
+    finally:
+        browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=added["identifier"])
+
+
+def test_a_damaged_block_leaves_the_other_ones(browser: Browser, long_page: Path, tmp_path: Path) -> None:
+    head, _, rest = long_page.read_text(encoding="utf-8").partition('id="episode">')
+    index, first, second = rest[: rest.index("</script>")].split()
+    path = tmp_path / "damaged.html"
+    path.write_text(head + 'id="episode">' + rest.replace(second, second[: len(second) // 2]), encoding="utf-8")
+    browser.open(path)
+    browser.wait("utak.ready")
+    for _ in range(2):
+        browser.run(f"utak.player.show({STEPS_PER_BLOCK + 7})")
+        told = browser.run("document.getElementById('status').textContent")
+        assert told.startswith(f"Step {STEPS_PER_BLOCK + 7} cannot be read, as this page is damaged")
+        browser.run("utak.player.show(3)")
+        assert (step(browser), browser.run("document.getElementById('status').textContent")) == (3, "")
+    assert index and first
 
 
 def test_texts_of_strangers_do_nothing(browser: Browser, carried: tuple[Path, Episode], tmp_path: Path) -> None:
@@ -182,7 +235,9 @@ def test_a_field_of_the_retina_is_explained(browser: Browser, page: Path, carrie
     told = browser.run("document.getElementById('field-text').textContent")
     assert f"explained, by {fact}" in told
     assert f"Observed {line['retina'][fields[0]]}," in told
-    assert browser.run("document.querySelectorAll('#observed .field').length") == 160
+    assert browser.run("document.querySelector('#observed .field').getAttribute('d').split('M').length") == 161
+    picked = browser.run("document.querySelector('#observed .picked').getAttribute('d')")
+    assert picked and picked in browser.run("document.querySelector('#observed .field').getAttribute('d')")
 
 
 def test_speed(browser: Browser, page: Path) -> None:
@@ -199,24 +254,32 @@ def test_speed(browser: Browser, page: Path) -> None:
     assert min(seeks) < MAX_SEEK_MILLISECONDS
 
 
-@pytest.mark.parametrize("level", [0, 1, 9])
-@pytest.mark.parametrize("strategy", [zlib.Z_DEFAULT_STRATEGY, zlib.Z_FIXED, zlib.Z_HUFFMAN_ONLY])
-def test_inflate_agrees_with_zlib(browser: Browser, page: Path, level: int, strategy: int) -> None:
-    chance = random.Random(level * 10 + strategy)
-    values: list[Any] = [
-        "",
-        "a" * 70_000,
-        [chance.random() for _ in range(500)],
-        [chance.randrange(3)] * 999,
-        {"x": None},
-    ]
+@pytest.mark.parametrize("kind", ["short", "again", "numbers", "words", "odd"])
+def test_what_is_made_short_is_expanded(browser: Browser, page: Path, kind: str) -> None:
+    """All at once, and a few bytes at a time."""
+    chance = random.Random(kind)
+    values: dict[str, list[Any]] = {
+        "short": [""],
+        "again": ["a" * 70_000, "ab" * 300, ["a" * 300] * 40, None],
+        "numbers": [[chance.random() for _ in range(500)], [chance.randrange(3) for _ in range(999)]],
+        "words": [[chance.choice(["node(o1).", "kind(o2,object,95).", "x"]) for _ in range(400)] for _ in range(9)],
+        "odd": ["\x1b \u202e \ud800 \n", {"__proto__": {"x": [1e300, -0.5]}}, "".join(chance.choices("<>&`~", k=500))],
+    }
+    text = short_text(values[kind])
+    assert text.isascii() and not set("<>&` \n") & set(text)
     if browser.run("typeof unpacked") != "function":
         browser.open(page)
-    for value in values:
-        packer = zlib.compressobj(level, zlib.DEFLATED, -zlib.MAX_WBITS, 9, strategy)
-        packed = packer.compress(json.dumps(value).encode()) + packer.flush()
-        text = b85encode(packed).decode().translate(NO_HTML)
-        assert browser.run(f"unpacked({json.dumps(text)})") == value
+    assert browser.run(f"unpacked({json.dumps(text)})") == values[kind]
+    pieces = f"(() => {{ const w = unpacking({json.dumps(text)}); while (!w.more(7)); return w.values(); }})()"
+    assert browser.run(pieces) == values[kind]
+
+
+def test_damaged_texts_end_in_errors(browser: Browser, page: Path) -> None:
+    text = short_text([[f"fact({number % 7},{number})." for number in range(300)]])
+    browser.open(page)
+    for damaged in (text[:-40], text[: len(text) // 2], "zzzzz" + text[5:], "", "0"):
+        tried = f"(() => {{ try {{ return unpacked({json.dumps(damaged)}); }} catch (e) {{ return e.message; }} }})()"
+        assert isinstance(browser.run(tried), str)
 
 
 def test_a_damaged_page_says_so(browser: Browser, page: Path, tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from simulator.replay.packed.decisions import DETAILS, by_encoding, trimmed
+from simulator.replay.packed.decisions import AS_ROUTES, DETAILS, by_encoding, trimmed
 
 MANY = [
     "accommodation",
@@ -46,3 +46,17 @@ def test_an_encoding_that_is_not_asked_is_remembered() -> None:
     assert second["order"] == [[["rooms", [1, 0]]], "shapes", [7]]
     assert second["last"]["rooms"] == ["rooms", ["a"], [], []]
     assert second["last"]["shapes"] == ["shapes", ["d"], [], []]
+
+
+def test_routes_are_told_once() -> None:
+    routes = [[[0, 0], [3, 4]], [[0, 0], [5, 0], [3, 4]]]
+    entry = ["routes", ["route(0,5)"], ["choose(0)"], routes]
+    assert by_encoding([entry], None, routes)["last"] == {"routes": [*entry[:3], AS_ROUTES]}
+    assert by_encoding([entry], None, routes[:1])["last"] == {"routes": entry}
+    assert by_encoding([entry], None)["last"] == {"routes": entry}
+    assert by_encoding([["x", [], [], []]], None, [])["last"] == {"x": ["x", [], [], []]}
+
+
+def test_an_entry_that_looks_like_told_by_routes_is_kept_whole() -> None:
+    entry = ["routes", [], [], AS_ROUTES]
+    assert by_encoding([entry], None, [[[0, 0]]]) == {"order": [[entry]], "last": {}}
