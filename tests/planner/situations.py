@@ -1,11 +1,16 @@
 """Situations, rooms and robots for the tests of the planner."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import shapely
 
 from kb.body import Body
+from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import corners
-from kb.world.model import WorldModel
+from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
 from planner.carrying.plan_executor import PlanExecutor
 from planner.carrying.remaining_plan import PlanOperations
@@ -19,6 +24,7 @@ from planner.situation import Situation
 from simulator.run.session import RobotMaker
 from simulator.run.warming import warm
 from simulator.scenario.settings import Settings
+from tests.kb.drawings import known_model
 
 NO_TASK = Task({}, (), ())
 BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
@@ -35,6 +41,20 @@ BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
     """Return the situation of a world model, with its rooms and corners. bound : what the task's parameters mean."""
     return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
+
+
+def known_situation(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:
+    """Return the situation of a robot that has seen all of a drawing, in which each letter but b is an object."""
+    marks, model = np.array([list(row) for row in reversed(rows)]), known_model(rows, objects=False)
+    nodes = []
+    for letter in sorted(set(marks.ravel()) - set("b.U")):
+        south, west = np.argwhere(marks == letter).min(0)
+        north, east = np.argwhere(marks == letter).max(0) + 1
+        mask = marks[south:north, west:east] == letter
+        patch = Patch(int(west) + model.view.west, int(south) + model.view.south, mask)
+        box = shapely.box(patch.west, patch.south, patch.west + mask.shape[1], patch.south + mask.shape[0])
+        nodes.append(Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, movable=movable))
+    return situation_of(replace(model, objects=tuple(nodes), held=held))
 
 
 def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 import shapely
 import shapely.affinity
@@ -13,14 +12,12 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import covered_areas
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.reader import facts_from_text
-from kb.mapping.patch import Patch
-from kb.world.model import Node
 from planner.deciding.clearing import Obstacle, ObstacleClearer, obstacles
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from planner.situation import Situation
 from planner.stages import Stage
-from tests.kb.drawings import known_model
+from tests.planner.situations import known_situation as known
 from tests.planner.situations import situation_of, tools_with
 
 WALL = "b" * 12 + "bb" + "b" * 12
@@ -39,20 +36,6 @@ WITHIN = rooms(["b" + "." * 9 + "ggb" + "." * 12 + "b"] * 3)  # one column of th
 AGAINST = rooms(["b" + "." * 9 + "gg" + "bb" + "." * 11 + "b"] * 3)  # a wall
 UTAK = Stage(facts_from_text("in(utak, room(next))."))
 GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
-
-
-def known(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:
-    """Return the situation of a robot that has seen all of a drawing, in which each letter but b is an object."""
-    marks, model = np.array([list(row) for row in reversed(rows)]), known_model(rows, objects=False)
-    nodes = []
-    for letter in sorted(set(marks.ravel()) - set("b.U")):
-        south, west = np.argwhere(marks == letter).min(0)
-        north, east = np.argwhere(marks == letter).max(0) + 1
-        mask = marks[south:north, west:east] == letter
-        patch = Patch(int(west) + model.view.west, int(south) + model.view.south, mask)
-        box = shapely.box(patch.west, patch.south, patch.west + mask.shape[1], patch.south + mask.shape[0])
-        nodes.append(Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, movable=movable))
-    return situation_of(replace(model, objects=tuple(nodes), held=held))
 
 
 class Clearing:

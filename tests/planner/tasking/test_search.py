@@ -1,0 +1,195 @@
+"""Task plans: order, places and what is moved aside, in small worlds that are wholly known."""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import pytest
+import shapely
+
+from geometry.manipulation.goals import At, End, Inside, is_goal_met
+from geometry.motion.se2 import Pose
+from planner.goals.placement import to_view_frame
+from planner.oracles.carry import CarryOracle, Certainty
+from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
+from planner.situation import Situation
+from planner.tasking.search import MadePlan, make_plan
+from planner.tasking.task_plan import RefutedStep
+from tests.planner.situations import known_situation
+
+WALL = "b" * 24
+DEAD_END = [  # g must go to the far end of the corridor, h right into its mouth
+    WALL,
+    *["b..........bbbbbbbbbbbbb"] * 3,
+    "b.ggg......bbbbbbbbbbbbb",
+    "b.ggg.U....bbbbbbbbbbbbb",
+    "b.ggg......bbbbbbbbbbbbb",
+    *["b..........bbbbbbbbbbbbb"] * 2,
+    *["b......................b"] * 2,
+    "b.hhh..................b",
+    "b.hhh..................b",
+    "b.hhh..................b",
+    *["b......................b"] * 2,
+    WALL,
+]
+BLOCKED = [  # h stands in the corridor through which g must go
+    WALL,
+    *["b..........bbbbbbbbbbbbb"] * 2,
+    "b.ggg......bbbbbbbbbbbbb",
+    "b.ggg.U....bbbbbbbbbbbbb",
+    "b.ggg......bbbbbbbbbbbbb",
+    *["b..........bbbbbbbbbbbbb"] * 2,
+    *["b............hhh.......b"] * 3,
+    *["b......................b"] * 2,
+    WALL,
+]
+SWAPPED = [
+    WALL,
+    *["b......................b"] * 3,
+    *["b.ggg.....U......hhh...b"] * 3,
+    *["b......................b"] * 3,
+    WALL,
+]
+WALLED_IN = [  # the robot cannot come to h
+    WALL,
+    *["b.............b........b"] * 3,
+    *["b.ggg.....U...b..hhh...b"] * 3,
+    *["b.............b........b"] * 3,
+    WALL,
+]
+
+
+def moved(dx: float, dy: float) -> At:
+    """Return the end of a thing that is moved by (dx, dy) squares."""
+    return At(Pose(dx, dy, 0.0))
+
+
+def problem_for(situation: Situation, ends: Mapping[str, End]) -> TaskProblem:
+    """Return the problem that each of some things is brought to its one end."""
+    nodes = {node.name: node for node in situation.model.objects}
+    things = {name: Lying(to_view_frame(node.polygon, situation), Pose(0.0, 0.0, 0.0)) for name, node in nodes.items()}
+    goals = tuple(PlacedGoal(f"g{n}", f"pose({x})", x, False) for n, x in enumerate(ends, 1))
+    places = {(goal.subject, f"{goal.name}_pose"): ends[goal.subject] for goal in goals}
+    fulfils = {(goal.subject, f"{goal.name}_pose"): (goal.name,) for goal in goals}
+    return TaskProblem(nodes, goals, places, fulfils, {}, TableState(things, situation.model.place_on_view))
+
+
+def planned(rows: list[str], ends: Mapping[str, End], pull: bool = True) -> tuple[MadePlan, TaskProblem, Situation]:
+    """Return the plan in a drawn world, with its problem and situation."""
+    situation = known_situation(rows)
+    problem = problem_for(situation, ends)
+    return make_plan(problem, situation, CarryOracle(problem, situation, pull)), problem, situation
+
+
+def steps(made: MadePlan) -> list[str]:
+    """Return the steps of a plan as text."""
+    return [str(errand) for errand in made.plan.errands]
+
+
+@pytest.mark.parametrize("order", [("g", "h"), ("h", "g")])
+def test_what_would_block_the_rest_goes_last_whatever_the_order_of_the_task(order: tuple[str, str]) -> None:
+    ends = {"g": moved(17, -7), "h": moved(10, 0)}
+    made, _, _ = planned(DEAD_END, {name: ends[name] for name in order})
+    number = {name: n for n, name in enumerate(order, 1)}
+    assert steps(made) == [f"carry(g,g{number['g']}_pose)", f"carry(h,g{number['h']}_pose)"]
+    assert made.plan.proved and not made.plan.unmet
+
+
+def test_an_obstacle_is_moved_aside_first() -> None:
+    made, _, _ = planned(BLOCKED, {"g": moved(17, -5)})
+    actions = [(errand.action, errand.subject) for errand in made.plan.errands]
+    assert actions == [("clear", "h"), ("carry", "g")]
+    assert made.plan.verified
+
+
+def test_two_things_change_places_by_way_of_a_third_place() -> None:
+    made, _, _ = planned(SWAPPED, {"g": moved(15, 0), "h": moved(-15, 0)})
+    subjects = [errand.subject for errand in made.plan.errands]
+    assert len(subjects) == 3 and subjects[0] == subjects[2] != subjects[1]
+    assert made.plan.errands[0].action == "clear"
+
+
+def test_as_many_goals_as_possible_are_attained_and_the_others_named() -> None:
+    made, _, _ = planned(WALLED_IN, {"g": moved(3, 0), "h": moved(1, 0)})
+    assert made.plan.unmet == ("g2",)
+    assert RefutedStep("h", "here", "g2_pose", (), "start") in made.plan.refutations
+
+
+def test_things_that_need_not_move_stay() -> None:
+    made, _, _ = planned(SWAPPED, {"g": moved(0, 2)})
+    assert steps(made) == ["carry(g,g1_pose)"]
+
+
+@pytest.mark.parametrize("rows", [DEAD_END, BLOCKED, SWAPPED])
+@pytest.mark.parametrize("pull", [True, False])
+def test_states_follow_from_each_other_and_end_at_the_goals(rows: list[str], pull: bool) -> None:
+    ends = (
+        {"g": moved(17, -7), "h": moved(10, 0)} if rows is DEAD_END else {"g": moved(15, -5 if rows is BLOCKED else 0)}
+    )
+    if rows is SWAPPED:
+        ends["h"] = moved(-15, 0)
+    made, problem, situation = planned(rows, ends, pull)
+    if made.plan.unmet:  # without pulling some things cannot be brought away from walls
+        assert not pull
+        return
+    oracle = CarryOracle(problem, situation, pull)
+    state = problem.state
+    for errand, before in zip(made.plan.errands, made.states, strict=True):
+        assert state.things == before.things
+        answer = oracle.bring(state, errand.subject, made.places[errand.subject, errand.place], errand.place)
+        assert answer.certainty == errand.certainty == Certainty.SURE and answer.after is not None
+        moved_things = [name for name, one in answer.after.things.items() if one != state.things[name]]
+        assert moved_things == [errand.subject]
+        state = answer.after
+    for name, end in ends.items():
+        start = problem.state.things[name].outline
+        assert is_goal_met(state.things[name].reach(end), state.things[name].outline, state.things[name].outline), start
+    outlines = [one.outline for one in state.things.values()]
+    assert all(a.intersection(b).area < 1e-9 for a, b in pairwise(outlines))
+
+
+@pytest.mark.parametrize(("rows", "ends"), [(DEAD_END, {"h": (10, 0), "g": (17, -7)}), (BLOCKED, {"g": (17, -5)})])
+def test_each_circumstance_of_a_refutation_matters(rows: list[str], ends: Mapping[str, tuple[int, int]]) -> None:
+    made, problem, situation = planned(rows, {name: moved(*end) for name, end in ends.items()})
+    oracle = CarryOracle(problem, situation)
+    checked = 0
+    for refutation in made.plan.refutations:
+        others = {name for name, _ in refutation.given}
+        if any(place not in ("here", f"g{n}_pose") for _, place in refutation.given for n in (1,)):
+            continue
+        state = problem.state
+        for name, place in refutation.given:
+            if place != "here":
+                answer = oracle.bring(state, name, made.places[name, place], place)
+                assert answer.after is not None
+                state = answer.after
+        unrelated = frozenset(state.things) - others - {refutation.subject}
+        end = made.places[refutation.subject, refutation.place]
+        bring = refutation.subject, end, refutation.place
+        assert oracle.bring(state.without(unrelated), *bring).certainty == Certainty.REFUTED
+        for name in others:
+            assert oracle.bring(state.without(unrelated | {name}), *bring).certainty != Certainty.REFUTED
+            checked += 1
+    assert checked
+
+
+def test_a_place_within_a_region_is_chosen_so_that_others_pass() -> None:
+    rows = [row.replace("hhh", "...") if n < 11 else row for n, row in enumerate(DEAD_END)]
+    situation = known_situation(rows)
+    region = Inside(to_view_frame(shapely.box(0, 0, 1, 1), situation).envelope.buffer(0))
+    x0, y0, _, _ = to_view_frame(situation.model.objects[1].polygon, situation).bounds
+    region = Inside(shapely.box(x0 + 9, y0 - 2, x0 + 21, y0 + 5))  # the corridor
+    made, _, _ = planned(rows, {"h": region, "g": region})
+    assert not made.plan.unmet
+    assert {errand.subject for errand in made.plan.errands} == {"g", "h"}
+
+
+def test_the_robot_itself_goes_last() -> None:
+    situation = known_situation(SWAPPED)
+    problem = problem_for(situation, {"g": moved(0, 2)})
+    row, column = situation.model.view.locate(*situation.model.place)
+    stand = [row * situation.model.labels.shape[1] + column + 3]
+    goals = (PlacedGoal("g2", "at(utak,start)", ROBOT, False), *problem.goals)
+    fulfils = {**problem.fulfils, (ROBOT, "g2_there"): ("g2",)}
+    problem = TaskProblem(problem.nodes, goals, problem.places, fulfils, {"g2_there": stand}, problem.state)
+    made = make_plan(problem, situation, CarryOracle(problem, situation))
+    assert steps(made) == ["carry(g,g1_pose)", "arrive(g2_there)"]
