@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 from kb.body import Body, Command, Impression
@@ -82,20 +82,18 @@ class FollowingRobotProtocol(Protocol):
 
 @runtime_checkable
 class AdoptingRobotProtocol(Protocol):
-    """A robot that takes other rules and another task while it runs."""
+    """A robot that takes another task and other options while it runs."""
 
-    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
-        """Take other rules, and another task unless None, for all that comes after the next impression."""
+    def adopt(self, task: Task, settings: Settings) -> StepReportProtocol:
+        """Interpret the newest impression anew, as if task and options were these; return the new report on it."""
 
 
 class CannotAdoptError(Exception):
-    """Raised by a robot that takes no other rules and no other task while it runs."""
+    """Raised where a robot does not take another task or other options while it runs."""
 
 
 # Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
-# Lets a robot go on with another task or other options of the run.
-RobotRedirector = Callable[[RobotProtocol, Task, Settings], None]
 
 
 @dataclass(frozen=True)
@@ -161,15 +159,39 @@ class Session:
         self._log.write(header(self.scenario, self.settings) if head is None else head)
         return self._record(self.robot.wake())
 
-    def change(self, scenario: Scenario, settings: Settings, redirect: RobotRedirector) -> None:
-        """Go on with another scenario in the same world, and with other options.
+    def adopt(self, scenario: Scenario, settings: Settings) -> EpisodeLine:
+        """Go on from the present step with another scenario in the same world, and with other options.
 
-        scenario : the task and the expectations from now on. settings : the options from now on; with another seed, the
-        randomness begins anew. redirect : lets the robot go on with them.
+        This is the one way in which a run is changed from outside. The change counts from the present step on: what
+        happened in the world stays, its impression is interpreted anew, and the next command is decided anew. Other
+        noise counts from the next command on.
+
+        Parameters
+        ----------
+        scenario : the task and the expectations from now on; its world is the same.
+        settings : the options from now on. With another seed, the randomness begins anew.
+
+        Returns
+        -------
+        The last line, with what is believed now. It is not written: the line of before may stand in the episode.
+
+        Raises
+        ------
+        CannotAdoptError : the robot cannot do that.
+        BadInputError : users' rules have errors. The session must not be used any more.
         """
+        if not isinstance(self.robot, AdoptingRobotProtocol):
+            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
+        report = self.robot.adopt(scenario.task, settings)
         self.table.disturb(settings.noise, settings.seed if settings.seed != self.settings.seed else None)
         self.scenario, self.settings = scenario, settings
-        redirect(self.robot, scenario.task, settings)
+        self.line = self.line | {"belief": report.belief, "why": report.why}
+        return self.line
+
+    def write_to(self, log: EpisodeLog) -> None:
+        """Write the lines from now on, the last one first, to another episode."""
+        self._log = log
+        log.write(self.line)
 
     def step(self) -> EpisodeLine:
         """Let the robot act once, write what happened, and return the last line.
@@ -225,24 +247,6 @@ class Session:
         """
         nothing = EpisodeLog(None)
         return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
-
-    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
-        """Let the robot use other rules, and another task, for all that comes after its next impression.
-
-        Parameters
-        ----------
-        kb_files : paths of users' rules, all of them.
-        task : the new task; None to keep the old one. With another task nothing is expected of the truth any more.
-
-        Raises
-        ------
-        CannotAdoptError : the robot cannot do that.
-        """
-        if not isinstance(self.robot, AdoptingRobotProtocol):
-            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
-        self.robot.adopt(kb_files, task)
-        if task is not None:
-            self.scenario = replace(self.scenario, task=task, expectations=None)
 
     def _record(self, report: StepReportProtocol) -> EpisodeLine:
         """Write a step and return its line."""

@@ -135,7 +135,7 @@ def _run(
     """Run from the start, or go on from the episode that --log names; return the result."""
     from simulator.episode.episode import EpisodeLog
     from simulator.run.forking import repeat_stages, stages_until
-    from simulator.run.robots import make_robot, redirect_robot
+    from simulator.run.robots import make_robot
     from simulator.run.session import Session
 
     head = _recorded_header(options) or {}
@@ -145,7 +145,7 @@ def _run(
     with EpisodeLog(options.log, options.resume, options.force, listen) as log:
         if not before:
             return Session(scenario, settings, make_robot, log).run(watch)
-        return repeat_stages(before, scenario, settings, make_robot, redirect_robot, log).go_on(watch)
+        return repeat_stages(before, scenario, settings, make_robot, log).go_on(watch)
 
 
 def _run_fork(
@@ -154,13 +154,13 @@ def _run_fork(
     """Repeat the episode of --from up to --at, go on with the options given now, and return the result."""
     from simulator.episode.episode import EpisodeLog, read_episode
     from simulator.run.forking import options_at, repeat_until
-    from simulator.run.robots import make_robot, redirect_robot
+    from simulator.run.robots import make_robot
 
     episode = read_episode(options.origin)
     settings = settings_of(options, options_at(episode.header, options.at))
     with EpisodeLog(options.log, force=options.force, listen=listen) as log:
         session = repeat_until(
-            options.origin, episode, options.at, scenario, settings, make_robot, redirect_robot, log, options.from_kb
+            options.origin, episode, options.at, scenario, settings, make_robot, log, options.from_kb
         )
         return session.go_on(watch)
 
