@@ -10,6 +10,7 @@ from kb.task.task import Task
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
+from simulator.run.time_limit import TimeLimit
 from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
 from simulator.scenario.points import ExpectationOutcome, judge_expectations
 from simulator.scenario.scenario import Scenario
@@ -110,6 +111,7 @@ class Result:
     unmet : the expectations that the truth does not meet, as text.
     came : what came instead of each of them, in words.
     outcomes : what came of each expectation that a test tests, with its points.
+    seconds : the limit of time that ended the run; None when the robot ended it.
     """
 
     believed: bool
@@ -120,12 +122,23 @@ class Result:
     unmet: tuple[str, ...] = field(default=())
     came: tuple[str, ...] = field(default=())
     outcomes: tuple[ExpectationOutcome, ...] = field(default=())
+    seconds: float | None = None
 
     @property
     def line(self) -> EpisodeLine:
         """The last line of the episode."""
         names = ("believed", "achieved", "verdict", "reason", "steps")
-        return {"result": {name: getattr(self, name) for name in names}}
+        values = {name: getattr(self, name) for name in names}
+        return {"result": values if self.seconds is None else {**values, "seconds": self.seconds}}
+
+
+@dataclass(frozen=True)
+class _LimitVerdict:
+    """The verdict of a run that ended before the robot had one. reason : why, in words."""
+
+    reason: str
+    believed: bool = False
+    verdict: str = "limit"
 
 
 class Session:
@@ -206,37 +219,64 @@ class Session:
         """Whether the robot has a verdict."""
         return self.robot.finished
 
-    def end(self) -> Result:
-        """Compare the verdict with the truth, write the result and return it."""
-        verdict = self.robot.verdict
+    def end(self, limit: TimeLimit | None = None) -> Result:
+        """Compare the verdict with the truth, write the result and return it.
+
+        limit : the limit of time that ends the run before the robot has a verdict; None when the robot has one.
+        """
+        verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit)
         expected = self.scenario.expectations or ()
         missed = shortfalls(expected, self.scenario.world, self._track, str(verdict.verdict))
         achieved = None if self.scenario.expectations is None else not missed and not should_fail(expected)
         outcomes = judge_expectations(expected, missed, verdict.believed, verdict.reason)
         steps = self._track[-1].step
         unmet, came = tuple(map(str, missed)), tuple(missed.values())
-        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes)
+        seconds = None if limit is None else limit.seconds
+        result = Result(
+            verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes, seconds
+        )
         self._log.write(result.line)
         return result
 
-    def run(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+    def run(self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None) -> Result:
         """Run from waking to the end, and return the result.
 
-        watch : called with this session after every step.
+        watch : called with this session after every step. limit : the time that the run may take, waking included.
         """
+        if limit is not None:
+            limit.begin()
         self.wake()
         watch(self)
-        return self.go_on(watch)
+        return self._to_the_end(watch, limit)
 
-    def go_on(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+    def go_on(
+        self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None
+    ) -> Result:
         """Run from the present step to the end, and return the result.
 
-        watch : called with this session after every step.
+        watch : called with this session after every step. limit : the time that the run may take from now on. Steps
+        that the episode held before, when it is resumed, do not count.
         """
+        if limit is not None:
+            limit.begin()
+        return self._to_the_end(watch, limit)
+
+    def _to_the_end(self, watch: Callable[["Session"], None], limit: TimeLimit | None) -> Result:
+        """Take steps until there is a verdict or the time is over, and return the result."""
         while not self.finished:
+            if limit is not None and self._log.is_repeating:
+                limit.begin()
+            elif limit is not None and limit.is_over:
+                return self.end(limit)
             self.step()
             watch(self)
         return self.end()
+
+    def _verdict_of(self, limit: TimeLimit) -> "_LimitVerdict":
+        """Return the verdict of a run that a limit of time ends."""
+        decision = getattr(self.robot, "decision", None)
+        coming = "" if decision is None else f"; the next command would be: {decision.why}"
+        return _LimitVerdict(f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}")
 
     def fork(self) -> "Session":
         """Return a copy of this run that goes on by itself and writes no episode; this run is not changed.
