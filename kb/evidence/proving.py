@@ -9,6 +9,9 @@ from kb.explanation.programs import decision_program
 from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
 from kb.explanation.wording import atom_words
+from kb.language.diagnostics import Problem, SourceSpan, did_you_mean
+from kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from kb.reasoning.user_rules import read_rules
 from kb.tracing.decisions import SolverCall
 
 KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
@@ -59,6 +62,44 @@ def words_of(encoding: str, atom: str) -> str:
     """
     words = atom_words(atom, decision_program(encoding).words)
     return "" if words == atom else words
+
+
+def query_predicates(rule_files: Sequence[str]) -> frozenset[Signature]:
+    """Return the predicates that users' rules define for queries, by name and number of arguments."""
+    rules = read_rules(tuple(rule_files)).query_rules if rule_files else ()
+    return frozenset(head.signature for one in rules for head in one.heads)
+
+
+def call_deriving(calls: Sequence[SolverCall], signature: Signature, rule_files: Sequence[str]) -> SolverCall | None:
+    """Return the newest of some answers in whose encoding users' rules define a predicate; None for none.
+
+    None also for predicates that they define for queries, too. calls : the answers, oldest first.
+    """
+    if not rule_files or signature in query_predicates(rule_files):
+        return None
+    rules, newest_first = read_rules(tuple(rule_files)), tuple(reversed(calls))
+    names = {call.encoding for call in newest_first}
+    deriving = {
+        name
+        for name in names
+        if any(head.signature == signature for one in rules.rules_reaching(name) for head in one.heads)
+    }
+    return next((call for call in newest_first if call.encoding in deriving), None)
+
+
+def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]) -> Problem:
+    """Return the problem that neither the world model nor users' rules have a predicate. text : the question."""
+    name, arity = signature
+    named = read_rules(tuple(rule_files)).own_predicates if rule_files else frozenset[Signature]()
+    known = {one for one, _ in (*BELIEF_PREDICATES, *named)}
+    arities = sorted(count for one, count in (*BELIEF_PREDICATES, *named) if one == name)
+    what = f"unknown predicate {name}/{arity}"
+    hint = did_you_mean(name, known - {name})
+    if signature in named:
+        what, hint = f"nothing that was asked so far knows {name}/{arity}", ""
+    elif arities:
+        hint = f"{name} has {' or '.join(map(str, arities))} argument{'s' * (arities != [1])}"
+    return Problem("why", SourceSpan(1, 1, max(1, len(text))), what, text, hint)
 
 
 def prove_query_atom(

@@ -12,9 +12,16 @@ from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
 from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
-from kb.evidence.proving import EncodingProver, prove_query_atom
+from kb.evidence.proving import (
+    EncodingProver,
+    call_deriving,
+    prove_query_atom,
+    query_predicates,
+    unknown_predicate,
+)
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import MissingRecordError, Record
+from kb.explanation.belief import certain_atoms
 from kb.explanation.programs import ExplanationError
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
@@ -114,6 +121,9 @@ class Questions:
         with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
                 return self._why_not_verdict(wanted)
+            signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
+            if (signature not in BELIEF_PREDICATES or signature[0] == "object") and _has_variables(wanted):
+                raise _problem(fact, "one atom at a time: give values in the place of variables")
             believed = self._instance(wanted, at)
             if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
@@ -149,6 +159,18 @@ class Questions:
             found = self.beliefs.reason(fact, step)
             return found or Reason(fact, "it is assumed", ReasonKind.TASK, "what was assumed")
 
+        name, arguments = atom_parts(atom)
+        signature = name, len(arguments)
+        call = call_deriving(self.beliefs.record.decisions(step), signature, self._rule_files)
+        if call is not None:
+            return self.beliefs.prove(call, atom, step)
+        if signature not in BELIEF_PREDICATES and signature not in query_predicates(self._rule_files):
+            raise BadInputError([unknown_predicate(atom, signature, self._rule_files)])
+        if _has_variables(atom):
+            holding = certain_atoms(facts, self._rule_files)
+            atom = next((one for one in holding if _fits(atom, one)), atom)
+            if _has_variables(atom):
+                raise _problem(atom, "no atom of this form certainly holds by what is believed")
         return prove_query_atom(facts, atom, leaf, self._rule_files)
 
     def _why_verdict(self, wanted: str) -> Reason:
@@ -210,6 +232,11 @@ def _fits(wanted: str, fact: str) -> bool:
         if argument != "_" and (known.setdefault(argument, value) if is_variable else argument) != value:
             return False
     return True
+
+
+def _has_variables(atom: str) -> bool:
+    """Return whether an argument of an atom stands for anything."""
+    return any(QUESTION_VARIABLE.fullmatch(argument) for argument in atom_parts(atom)[1])
 
 
 def _is_weak(wanted: str, believed: str) -> bool:
