@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 
-from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.inputs import Given, input_reason
 from kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
@@ -10,6 +9,7 @@ from kb.evidence.reason import Reason, ReasonKind
 from kb.explanation.query_absence import explain_query_absence
 from kb.explanation.values import Absence
 from kb.explanation.whynot import explain_absence
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from kb.tracing.decisions import SolverCall

@@ -51,7 +51,7 @@ class EncodingProver:
         kb.explanation.programs.ExplanationError : the record is none of an answer of this encoding.
         """
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
-        return _reason(proof.root, leaf, {})
+        return reason_of_proof(proof.root, leaf)
 
 
 @lru_cache(maxsize=4096)
@@ -118,26 +118,36 @@ def prove_query_atom(
     ------
     kb.explanation.programs.ExplanationError : the atom does not certainly hold.
     """
-    return _reason(explain_query_atom(facts, atom, rule_files).root, leaf, {})
+    return reason_of_proof(explain_query_atom(facts, atom, rule_files).root, leaf)
 
 
-def _reason(node: ProofNode, leaf: Callable[[str], Reason], known: dict[int, Reason]) -> Reason:
-    """Return the reason of a node of a proof.
+def reason_of_proof(root: ProofNode, leaf: Callable[[str], Reason]) -> Reason:
+    """Return the reason of a node of a proof; proofs may be higher than Python's limit on recursion.
 
-    known : the reasons of nodes so far, by the identity of the nodes; grows.
+    leaf : returns the reason of a given fact.
     """
-    if id(node) not in known:
-        if node.kind == "given":
-            known[id(node)] = leaf(node.claim)
+    known: dict[int, Reason] = {}  # by the identity of the nodes
+    waiting = [root]
+    while waiting:
+        node = waiting[-1]
+        missing = [] if node.kind == "given" else [child for child in node.children if id(child) not in known]
+        if id(node) in known or not missing:
+            waiting.pop()
+            if id(node) not in known:
+                known[id(node)] = leaf(node.claim) if node.kind == "given" else _reason_of_rule(node, known)
         else:
-            children = {id(child): child for child in node.children}
-            below = [_reason(child, leaf, known) for child in children.values()]
-            below += [_rejected(rival) for rival in node.rivals]
-            source = f"{node.instance.rule.file}:{node.instance.rule.line}" if node.instance else ""
-            data = {"rule": node.instance.rule.text} if node.instance else {}
-            kind = KIND_OF_NODE[node.kind] if below or node.kind != "derived" else ReasonKind.CONVENTION
-            known[id(node)] = Reason(node.claim, node.sentence, kind, source, tuple(below), data)
-    return known[id(node)]
+            waiting += reversed(missing)
+    return known[id(root)]
+
+
+def _reason_of_rule(node: ProofNode, known: dict[int, Reason]) -> Reason:
+    """Return the reason of a node that is not given. known : those of its children, by their identity."""
+    children = dict.fromkeys(map(id, node.children))
+    below = [known[child] for child in children] + [_rejected(rival) for rival in node.rivals]
+    source = f"{node.instance.rule.file}:{node.instance.rule.line}" if node.instance else ""
+    data = {"rule": node.instance.rule.text} if node.instance else {}
+    kind = KIND_OF_NODE[node.kind] if below or node.kind != "derived" else ReasonKind.CONVENTION
+    return Reason(node.claim, node.sentence, kind, source, tuple(below), data)
 
 
 def _rejected(rival: RivalChoice) -> Reason:

@@ -12,7 +12,6 @@ proof      why an atom holds
 whynot     why an atom does not hold
 belief     why a predicate that users' rules define for queries holds
 query_absence  why such an atom does not hold
-rendering  explanations as text of three depths and as nested dictionaries
 
-Public names: `explain_decision`, `explain_absence`, `explain_query_atom`, `explain_query_absence`, `render`.
+Public names: `explain_decision`, `explain_absence`, `explain_query_atom`, `explain_query_absence`.
 """

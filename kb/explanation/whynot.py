@@ -6,7 +6,8 @@ from kb.explanation.programs import DecisionProgram, ExplanationError, canonical
 from kb.explanation.proof import TracedDecision, traced_decision
 from kb.explanation.rivals import rivals_of
 from kb.explanation.values import Absence, Proof
-from kb.explanation.wording import absent_words, atom_words, split_atom
+from kb.explanation.wording import absent_words, atom_words
+from kb.language.atoms import atom_parts
 from kb.language.reader import facts_from_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 
@@ -127,9 +128,9 @@ def _fact_words(fact: str, program: DecisionProgram) -> str:
 
 def _replaced(fact: str, given: Sequence[str], how: str) -> str:
     """Return the given fact that differs from another one in one number alone, as an addition to a sentence; or ''."""
-    name, arguments = split_atom(fact)
+    name, arguments = atom_parts(fact)
     for other in given:
-        their_name, theirs = split_atom(other)
+        their_name, theirs = atom_parts(other)
         if their_name == name and len(theirs) == len(arguments):
             unlike = [(a, b) for a, b in zip(arguments, theirs, strict=True) if a != b]
             if len(unlike) == 1 and all(part.removeprefix("-").isdigit() for part in unlike[0]):

@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from shapely.errors import ShapelyError
 
 from kb.evidence.absences import AbsenceExplainer
-from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
 from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
@@ -23,6 +22,7 @@ from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import MissingRecordError, Record
 from kb.explanation.belief import certain_atoms
 from kb.explanation.programs import ExplanationError
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
 from kb.language.vocabulary import BELIEF_PREDICATES

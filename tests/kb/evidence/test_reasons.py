@@ -10,7 +10,9 @@ import clingo
 import pytest
 
 from benchmarks.harness.reasons import complaints, covers
-from kb.evidence.reason import Depth, Reason, ReasonKind
+from kb.evidence.proving import reason_of_proof
+from kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
+from kb.explanation.values import ProofNode
 from kb.language.diagnostics import BadInputError
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
@@ -105,6 +107,22 @@ def test_depths_show_more_and_more(run: tuple[Questions, list[Any]]) -> None:
     assert "\n" not in short
     assert mid.startswith(short)
     assert len(mid) <= len(long)
+
+
+def test_a_reason_may_rest_on_any_number_of_levels() -> None:
+    """A proof that is higher than Python's limit on recursion becomes a reason; MAX_LEVELS levels of it are written."""
+    node = ProofNode("given", "up(0)", "up(0)")
+    for number in range(1, 3_000):
+        node = ProofNode("derived", f"up({number})", "", None, (node, node))
+    reason = reason_of_proof(node, lambda fact: Reason(fact, "", ReasonKind.CELLS))
+    assert [one.claim for one in reason.walk()] == [f"up({number})" for number in range(2_999, -1, -1)]
+    lines = reason.text(Depth.LONG).split("\n")
+    assert (len(lines), lines[-1].strip()) == (MAX_LEVELS + 1, "...")
+    whole = json.loads(json.dumps(reason.as_dict()))
+    for _ in range(MAX_LEVELS - 1):
+        assert "cut" not in whole
+        (whole,) = whole["rests_on"]
+    assert whole["cut"] is True
 
 
 def test_what_stands_twice_is_written_once() -> None:
