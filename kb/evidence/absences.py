@@ -156,11 +156,13 @@ class AbsenceExplainer:
     def _instead(self, fact: str, step: int) -> Reason:
         """Return why a fact that no encoding derives is not believed: it is measured, and something else was."""
         instead = tuple(self._alternatives(fact, step))
-        because = (
-            "it would have to be measured so; this is believed instead"
-            if instead
-            else "nothing seen so far is about it: no such thing is believed to be there"
-        )
+        thing = (atom_parts(fact)[1] or ("",))[0]
+        if instead:
+            because = "it would have to be measured so; this is believed instead"
+        elif f"node({thing})" in self._facts.record.steps[step].fact_set:
+            because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"
+        else:
+            because = "nothing seen so far is about it: no such thing is believed to be there"
         data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
         return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
 

@@ -10,7 +10,7 @@ from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
 from kb.explanation.wording import atom_words
 from kb.language.diagnostics import Problem, SourceSpan, did_you_mean
-from kb.language.vocabulary import BELIEF_PREDICATES, Signature
+from kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature
 from kb.reasoning.user_rules import read_rules
 from kb.tracing.decisions import SolverCall
 
@@ -97,6 +97,8 @@ def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]
     hint = did_you_mean(name, known - {name})
     if signature in named:
         what, hint = f"nothing that was asked so far knows {name}/{arity}", ""
+    elif name in GOAL_VOCABULARY:
+        what, hint = f"{name} is a word of goals, and this is no goal of the task", "ask about facts of the world model"
     elif arities:
         hint = f"{name} has {' or '.join(map(str, arities))} argument{'s' * (arities != [1])}"
     return Problem("why", SourceSpan(1, 1, max(1, len(text))), what, text, hint)

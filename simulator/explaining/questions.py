@@ -41,6 +41,7 @@ MISFIT_ERRORS = (
     RuntimeError,
     ShapelyError,
 )
+NO_VERDICT = "no verdict is recorded: the run goes on, or was cut short"
 MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong than right
 
 
@@ -121,6 +122,9 @@ class Questions:
         with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
                 return self._why_not_verdict(wanted)
+            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
+            if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
+                return self._why_not_goal(goal, at)
             signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
             if (signature not in BELIEF_PREDICATES or signature[0] == "object") and _has_variables(wanted):
                 raise _problem(fact, "one atom at a time: give values in the place of variables")
@@ -129,12 +133,21 @@ class Questions:
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
 
+    def _why_not_goal(self, goal: str, step: int) -> Reason:
+        """Return what a goal is about that is not concluded to hold; raise BadInputError when all goals hold then."""
+        result = self._task.result
+        if step == self.last_step and result is not None and result.get("verdict") == "done":
+            raise _problem(goal, "the robot concluded that this holds: verdict(done); why tells the reason")
+        because = "it is not concluded that this goal holds" + (" yet" if step < self.last_step else "")
+        found = explain_goal(self.beliefs, goal, step)
+        return Reason(f"not {goal}", because, ReasonKind.NEGATION, f"step {step}", (found,))
+
     def _why_not_verdict(self, wanted: str) -> Reason:
         """Return why the verdict is another one, or why there is none."""
         found = explain_verdict(self.beliefs, self._task)
         if found is None:
             below = tuple(explain_goal(self.beliefs, goal, self.last_step) for goal in self._task.goals)
-            because = "there is no verdict yet: the run goes on"
+            because = NO_VERDICT
             return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
         if _fits(wanted, found.claim):
             raise _problem(wanted, f"this is the verdict: {found.claim}; why tells the reason")
@@ -177,7 +190,7 @@ class Questions:
         """Return the reason of the verdict; raise BadInputError when it is another one, or the run goes on."""
         found = explain_verdict(self.beliefs, self._task)
         if found is None:
-            raise _problem(wanted, "there is no verdict yet: the run goes on")
+            raise _problem(wanted, NO_VERDICT)
         if not _fits(wanted, found.claim):
             raise _problem(wanted, f"this is not the verdict: it is {found.claim}")
         return found

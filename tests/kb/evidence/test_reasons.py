@@ -93,6 +93,22 @@ def test_what_is_no_believed_fact_is_refused_with_its_place(run: tuple[Questions
         run[0].why(fact)
 
 
+def test_why_not_says_nothing_untrue_of_goals_things_and_verdicts(run: tuple[Questions, list[Any]]) -> None:
+    """A goal that is not attained yet, a thing that is there and not held, and a goal of nobody's."""
+    questions, lines = run
+    (goal, *_) = questions._task.goals
+    reason = questions.why_not(goal, 0)
+    assert (reason.claim, reason.because) == (f"not {goal}", "it is not concluded that this goal holds yet")
+    with pytest.raises(BadInputError, match="is a word of goals, and this is no goal of the task"):
+        questions.why_not("beside(o1, o2)", 0)
+    facts = {fact.removesuffix(".") for fact in lines[0]["belief"]["facts"]}
+    for node in sorted(fact[5:-1] for fact in facts if fact.startswith("node(o")):
+        if node.startswith("o") and node != "org":
+            assert questions.why_not(f"held({node})", 0).because.startswith(f"{node} is believed to be there")
+    cut = Questions({"task": {"goals": [goal]}}, lines, None)
+    assert cut.why_not("verdict(done)").because == "no verdict is recorded: the run goes on, or was cut short"
+
+
 def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
     questions, lines = run
     with pytest.raises(BadInputError, match="there is no step"):
