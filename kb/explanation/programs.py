@@ -159,8 +159,8 @@ def encoding_names() -> tuple[str, ...]:
 
 def rules_of(encoding: str) -> tuple[RuleText, ...]:
     """Return the rules of one of our encodings with their sentences, in order; ExplanationError for an unknown name."""
-    units = decision_program(encoding).units
-    return tuple(dict.fromkeys(unit.rule for unit in units))
+    own = [unit.rule for unit in decision_program(encoding).units if unit.rule.file != QUERY_PARTS[0].file]
+    return tuple(dict.fromkeys(own))
 
 
 def _path_of(encoding: str) -> Path:
