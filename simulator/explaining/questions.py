@@ -67,7 +67,7 @@ class Questions:
         result: EpisodeLine | None = None,
         rule_files: Sequence[str] = (),
     ) -> None:
-        self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
+        self._header, self._result = header, result
         self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
         self._rule_files = tuple(rule_files)
         self._absences = AbsenceExplainer(self.beliefs, rule_files)
@@ -97,7 +97,7 @@ class Questions:
             if name == "verdict":
                 return self._why_verdict(wanted)
             plain = plain_fact(wanted)
-            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain), None)
+            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain), None)
             if goal is not None and plain not in self.beliefs.record.steps[at].fact_set:
                 return explain_goal(self.beliefs, goal, at)
             if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
@@ -122,7 +122,7 @@ class Questions:
         with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
                 return self._why_not_verdict(wanted)
-            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain_fact(wanted)), None)
+            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain_fact(wanted)), None)
             if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
                 return self._why_not_goal(goal, at)
             signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
@@ -133,9 +133,20 @@ class Questions:
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
 
+    def _task_at(self, step: int) -> RecordedTask:
+        """Return the task that counts at a step: goals may be others after a fork or a change at the prompt."""
+        goals = self._header["task"]["goals"]
+        for stage in reversed(self._header.get("forked", ())):
+            if step < stage["until"]:
+                goals = stage["task"]["goals"]
+        for change in self._header.get("changes", ()):
+            if "goal" in change and change["step"] <= step:
+                goals = facts_from_text(f"{str(change['goal']).strip().removesuffix('.')}.", "goal")
+        return RecordedTask(tuple(map(str, goals)), self._result)
+
     def _why_not_goal(self, goal: str, step: int) -> Reason:
         """Return what a goal is about that is not concluded to hold; raise BadInputError when all goals hold then."""
-        result = self._task.result
+        result = self._result
         if step == self.last_step and result is not None and result.get("verdict") == "done":
             raise _problem(goal, "the robot concluded that this holds: verdict(done); why tells the reason")
         because = "it is not concluded that this goal holds" + (" yet" if step < self.last_step else "")
@@ -144,9 +155,11 @@ class Questions:
 
     def _why_not_verdict(self, wanted: str) -> Reason:
         """Return why the verdict is another one, or why there is none."""
-        found = explain_verdict(self.beliefs, self._task)
+        found = explain_verdict(self.beliefs, self._task_at(self.last_step))
         if found is None:
-            below = tuple(explain_goal(self.beliefs, goal, self.last_step) for goal in self._task.goals)
+            below = tuple(
+                explain_goal(self.beliefs, goal, self.last_step) for goal in self._task_at(self.last_step).goals
+            )
             because = NO_VERDICT
             return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
         if _fits(wanted, found.claim):
@@ -161,7 +174,7 @@ class Questions:
     def why_step(self, step: int | None = None) -> Reason:
         """Return the reason of the command of a step (None for the last one): goals, facts, and what was not chosen."""
         with _refusing_damage("step"):
-            return explain_command(self.beliefs, self._task, self._checked(step))
+            return explain_command(self.beliefs, self._task_at(max(0, self._checked(step) - 1)), self._checked(step))
 
     def _why_derived(self, atom: str, step: int) -> Reason:
         """Return the reason of an atom of a predicate that users' rules define, or of `object(N)`."""
@@ -188,7 +201,7 @@ class Questions:
 
     def _why_verdict(self, wanted: str) -> Reason:
         """Return the reason of the verdict; raise BadInputError when it is another one, or the run goes on."""
-        found = explain_verdict(self.beliefs, self._task)
+        found = explain_verdict(self.beliefs, self._task_at(self.last_step))
         if found is None:
             raise _problem(wanted, NO_VERDICT)
         if not _fits(wanted, found.claim):

@@ -96,7 +96,7 @@ def test_what_is_no_believed_fact_is_refused_with_its_place(run: tuple[Questions
 def test_why_not_says_nothing_untrue_of_goals_things_and_verdicts(run: tuple[Questions, list[Any]]) -> None:
     """A goal that is not attained yet, a thing that is there and not held, and a goal of nobody's."""
     questions, lines = run
-    (goal, *_) = questions._task.goals
+    (goal, *_) = questions._task_at(0).goals
     reason = questions.why_not(goal, 0)
     assert (reason.claim, reason.because) == (f"not {goal}", "it is not concluded that this goal holds yet")
     with pytest.raises(BadInputError, match="is a word of goals, and this is no goal of the task"):
@@ -107,6 +107,19 @@ def test_why_not_says_nothing_untrue_of_goals_things_and_verdicts(run: tuple[Que
             assert questions.why_not(f"held({node})", 0).because.startswith(f"{node} is believed to be there")
     cut = Questions({"task": {"goals": [goal]}}, lines, None)
     assert cut.why_not("verdict(done)").because == "no verdict is recorded: the run goes on, or was cut short"
+
+
+def test_a_command_is_explained_by_the_goal_that_counted_then(run: tuple[Questions, list[Any]]) -> None:
+    """After a fork or a change at the prompt the goals are others, from the command after that step on."""
+    _, lines = run
+    old, new = "at(utak,start)", "at(utak,corner(southwest))"
+    forked = {"task": {"goals": [new]}, "forked": [{"until": 1, "task": {"goals": [old]}}]}
+    changed = {"task": {"goals": [old]}, "changes": [{"step": 1, "goal": "at(utak, corner(southwest))."}]}
+    for header in (forked, changed):
+        asked = Questions(header, lines[:3])
+        for step, goal in ((1, old), (2, new)):
+            claims = [reason.claim for reason in asked.why_step(step).rests_on]
+            assert {old, new} & set(claims) == {goal}
 
 
 def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
