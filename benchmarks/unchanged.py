@@ -1,10 +1,10 @@
 """Episodes before and after a change that must alter no decision: written by each checkout, then compared.
 
-    python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--jobs J]       in each of the two checkouts
+    python -m benchmarks.unchanged write FOLDER [--count N] [--seed S] [--noises S,S] [--jobs J]    in each checkout
     python -m benchmarks.unchanged compare BEFORE AFTER
 
 `write` runs all examples, and random worlds of every kind of benchmarks.worlds.odd and of the plain and the wide kind
-of benchmarks.worlds.makers, each without noise and with noise. `compare` reads the files as JSON. It leaves out `why`
+of benchmarks.worlds.makers, each with each of the noises. `compare` reads the files as JSON. It leaves out `why`
 of the steps and `reason` of the result, which are sentences for people. It exits with 1 when anything else differs.
 """
 
@@ -30,7 +30,7 @@ COMPARED_KINDS = [kind for kind in all_kinds() if kind not in ("own_snug", "own_
 Job = tuple[str | Asked, float, Path]
 
 
-def jobs_of(count: int, seed: int, folder: Path) -> Iterator[Job]:
+def jobs_of(count: int, seed: int, folder: Path, noises: Sequence[float] = NOISES) -> Iterator[Job]:
     """Yield each scenario and noise with the file of its episode. count : random worlds, shared among the kinds."""
     examples: list[str | Asked] = sorted(path.parent.name for path in SCENARIOS_FOLDER.glob("*/goal.lp"))
     shares = sum(9 if kind.startswith("own_") else 1 for kind in COMPARED_KINDS)
@@ -38,7 +38,7 @@ def jobs_of(count: int, seed: int, folder: Path) -> Iterator[Job]:
     worlds += worlds_of([kind for kind in COMPARED_KINDS if not kind.startswith("own_")], seed + 500, count // 30)
     for asked in [*examples, *worlds]:
         name = asked if isinstance(asked, str) else asked.name.replace(":", "-")
-        for noise in NOISES:
+        for noise in noises:
             yield asked, noise, folder / f"{name}-{noise}.jsonl"
 
 
@@ -87,7 +87,7 @@ def differences(before: Path, after: Path) -> Iterator[str]:
 def write(given: argparse.Namespace) -> int:
     """Run all jobs in parallel processes."""
     given.folder.mkdir(parents=True, exist_ok=True)
-    todo = list(jobs_of(given.count, given.seed, given.folder))
+    todo = list(jobs_of(given.count, given.seed, given.folder, given.noises))
     os.environ["PYTHONSAFEPATH"] = "1"  # the pool's processes get this one's path, and no other folder on it
     with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
         for number, name in enumerate(pool.imap(run, todo), 1):
@@ -105,6 +105,17 @@ def compare(given: argparse.Namespace) -> int:
     return 1 if found or not total else 0
 
 
+def noises_named(text: str) -> tuple[float, ...]:
+    """Return the noises that a text names; raise ArgumentTypeError for what is no number from 0 to 1."""
+    try:
+        noises = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        noises = ()
+    if not noises or not all(0.0 <= noise <= 1.0 for noise in noises):
+        raise argparse.ArgumentTypeError(f"{text!r}: numbers from 0 to 1 with commas between them are wanted")
+    return tuple(dict.fromkeys(noises))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Execute the command line and return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.unchanged", description=(__doc__ or "").split("\n")[0])
@@ -113,6 +124,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     writing.add_argument("folder", type=Path)
     writing.add_argument("--count", type=int, default=300, help="random worlds (default %(default)s)")
     writing.add_argument("--seed", type=int, default=7000, help="the first seed (default %(default)s)")
+    default = ",".join(f"{noise:g}" for noise in NOISES)
+    writing.add_argument(
+        "--noises", type=noises_named, default=NOISES, help=f"noises, from 0 to 1, with commas (default {default})"
+    )
     writing.add_argument("--jobs", type=int, default=2, help="processes (default %(default)s)")
     writing.set_defaults(do=write)
     comparing = parts.add_parser("compare", help="compare the episodes of two folders")

@@ -4,6 +4,7 @@ Initialise and plan; then test, act, perceive and replan until the task is done.
 """
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -69,6 +70,27 @@ class Verdict(NamedTuple):
     reason: str
 
 
+class _Before(NamedTuple):
+    """The newest impression, and all that the mind consisted of before it.
+
+    Attributes
+    ----------
+    command, impression, why : the command, the impression after it, and the command's reason.
+    options, knowledge, decider, journal : copies of what the robot had then.
+    must_restart, has_restarted : whether all beliefs were to be given up, and whether they were.
+    """
+
+    command: Command | None
+    impression: Impression
+    why: str
+    options: Options
+    knowledge: Knowledge
+    decider: Decider
+    journal: Journal
+    must_restart: bool
+    has_restarted: bool
+
+
 class Robot:
     """The mind of Utak. The numbers in comments are the steps of the paper.
 
@@ -100,11 +122,12 @@ class Robot:
         self.decider = decider or Decider(task, self.options.paths, rules, self.options.pull)  # (6) the task
         self.verdict = Verdict(False, TaskVerdict.LIMIT, "the robot has not been woken yet")
         self.finished = False
+        self.decision: Decision  # set on waking
         self.steps = 0
         self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
         self._has_restarted = False
         self._journal = Journal()
-        self._decided: list[SolverCall] = []  # what was decided between two steps, for the record of the next one
+        self._before: _Before | None = None  # the mind before the newest impression; None until the robot wakes
 
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
@@ -123,11 +146,8 @@ class Robot:
             The user's encodings are wrong.
         """
         impression = self.body.wake()  # (2)
-        with record_decisions() as decisions:
-            self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
-            self._decide()  # (6, 7)
-        self._test()
-        return self._report(None, impression, accommodated, "the robot wakes", decisions)
+        self._keep_mind(None, impression, "the robot wakes")
+        return self._take_in(None, impression, "the robot wakes")
 
     def step(self) -> StepReport:
         """Give the decided command, perceive, and decide anew (steps 8 to 13).
@@ -175,72 +195,99 @@ class Robot:
         self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
-        with record_decisions() as decisions:
-            self.model, accommodated = self.knowledge.perceive(command, impression)  # (11)
-            if not self._must_restart:
-                self._decide()  # (12, 13)
-                stuck = self.decision.verdict == TaskVerdict.LIMIT
-                self._must_restart = stuck and self.model.shaken and not self._has_restarted
-            if self._must_restart:
-                accommodated = self._restart(impression) or accommodated
-        self._test()
-        earlier, self._decided = self._decided, []
-        return self._report(command, impression, accommodated, why, [*earlier, *decisions])
+        self._keep_mind(command, impression, why)
+        return self._take_in(command, impression, why)
 
-    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
-        """Take other rules, and perhaps another task, for all that comes after the next impression.
+    def adopt(self, task: Task, options: Options) -> StepReport:
+        """Take another task and other options from the newest impression on, and report it again.
 
-        The command that is decided already is still given. What is believed stays, and is interpreted by the new rules
-        with the next impression. With another task the robot decides afresh; parameters of the same name keep their
-        binding until the next reconciliation.
-
-        Parameters
-        ----------
-        kb_files : paths of the user's own encodings, all of them.
-        task : the new task; None to keep the old one.
-        """
-        rules = tuple(Path(file) for file in kb_files)
-        self.knowledge.rules = self.decider.rules = rules
-        if task is not None:
-            kept = {name: node for name, node in self.decider.bound.items() if name in task.parameters}
-            self.decider = Decider(task, self.options.paths, rules, self.options.pull, bound=kept)
-
-    def _decide(self) -> None:
-        """Set `decision` to the next command, or the verdict, for what is believed now."""
-        self.decision: Decision = self.decider.decide(self.model, self.knowledge.memory.track)
-
-    def redirect(self, task: Task, options: Options) -> None:
-        """Go on with another task or other options, from all that is known; decide anew where they ask for it.
-
-        What was decided and tried for the task so far is forgotten when the task, the path-finder, the user's encodings
-        or the leave to pull are others. A held object is released first then. Where things of the task began is where
-        they are believed now. What was concluded before with the user's encodings and is remembered, such as the shape
-        of a thing in hand, stays.
+        The newest impression is interpreted anew, from what was known before it, as if task and options had been these
+        already; then the robot decides anew. With other encodings alone, the intention that it had before the
+        impression goes on. With another task, path-finder or leave to pull, what was tried is forgotten, and a held
+        object is released first. With another task, where its things began is where they are believed now. Parameters
+        that are the same, with the same claims, keep their meaning until the next reconciliation. What was concluded
+        from earlier impressions with other encodings and is remembered, such as the shape of a thing in hand, stays.
 
         Parameters
         ----------
         task : the goals from now on, and what is said of their parameters.
         options : how the robot works from now on. The limit of commands counts those already given, too.
 
+        Returns
+        -------
+        StepReport
+            The newest impression, with what is believed after it now. Its command and the reason are those of before.
+
         Raises
         ------
+        ValueError
+            When the robot has not been woken.
         BadInputError
             The user's encodings are wrong.
         """
-        before, self.options = self.options, options
-        decider = self.decider
-        kept = (before.paths, before.kb_files, before.pull) == (options.paths, options.kb_files, options.pull)
-        if not kept or task != decider.task:
-            rules = tuple(Path(file) for file in options.kb_files)
-            self.knowledge.rules = rules
-            self.decider = Decider(task, options.paths, rules, options.pull)
-            with record_decisions() as self._decided:
-                self._decide()
-            held = self.model.held
-            if held is not None and self.decision.command is not None:
-                self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")
+        if self._before is None:
+            raise ValueError("the robot has not been woken yet")
+        before, rules = deepcopy(self._before), tuple(Path(file) for file in options.kb_files)
+        decider, old = before.decider, before.options
+        decides_afresh = task != decider.task or (old.paths, old.pull) != (options.paths, options.pull)
+        if decides_afresh:
+            same = (task.parameters, task.claims) == (decider.task.parameters, decider.task.claims)
+            attained = decider.attained if task == decider.task else 0
+            decider = Decider(task, options.paths, rules, options.pull, bound=decider.bound if same else {})
+            decider.attained = attained
+        self.options, self.knowledge, self.decider = options, before.knowledge, decider
+        self._journal = before.journal
+        self._must_restart, self._has_restarted = before.must_restart, before.has_restarted
+        self.knowledge.rules = self.decider.rules = rules
         self.finished = False
+        return self._take_in(before.command, before.impression, before.why, decides_afresh)
+
+    def _keep_mind(self, command: Command | None, impression: Impression, why: str) -> None:
+        """Keep a copy of the mind as it is before an impression is interpreted, for `adopt`."""
+        self._before = _Before(
+            command,
+            impression,
+            why,
+            self.options,
+            *deepcopy((self.knowledge, self.decider)),
+            self._journal.copy(),
+            self._must_restart,
+            self._has_restarted,
+        )
+
+    def _take_in(
+        self, command: Command | None, impression: Impression, why: str, decides_afresh: bool = False
+    ) -> StepReport:
+        """Interpret an impression, decide what is done next, and return the report of the turn (steps 11 to 13, 8).
+
+        Parameters
+        ----------
+        command : the command before the impression; None on waking.
+        impression : what the body returned.
+        why : the reason of the command, in words.
+        decides_afresh : whether a held object is released first, because nothing is known of how it is to be carried.
+        """
+        with record_decisions() as decisions:
+            if command is None:
+                self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
+                self._decide()  # (6, 7)
+            else:
+                self.model, accommodated = self.knowledge.perceive(command, impression)  # (11)
+                if not self._must_restart:
+                    self._decide()  # (12, 13)
+                    stuck = self.decision.verdict == TaskVerdict.LIMIT
+                    self._must_restart = stuck and self.model.shaken and not self._has_restarted
+                if self._must_restart:
+                    accommodated = self._restart(impression) or accommodated
+        held = self.model.held
+        if decides_afresh and held is not None and self.decision.command is not None:
+            self.decision = Decision(Release(), f"{held} is released, because the robot goes on with another task")
         self._test()
+        return self._report(command, impression, accommodated, why, decisions)
+
+    def _decide(self) -> None:
+        """Set `decision` to the next command, or the verdict, for what is believed now."""
+        self.decision = self.decider.decide(self.model, self.knowledge.memory.track)
 
     def _restart(self, impression: Impression) -> Accommodation | None:
         """Forget all beliefs and begin anew from an impression; a held object is released first.

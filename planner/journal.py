@@ -22,6 +22,12 @@ class Journal:
         self._places: tuple[XY, ...] = ()
         self._step = 0
 
+    def copy(self) -> "Journal":
+        """Return a journal that goes on from here by itself."""
+        other = Journal()
+        other._written, other._places, other._step = dict(self._written), self._places, self._step
+        return other
+
     def entry(self, decisions: Sequence[SolverCall], memory: TrackerState) -> dict[str, Any]:
         """Return what the next step adds to the `belief` of an episode's line.
 

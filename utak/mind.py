@@ -7,7 +7,7 @@ from typing import Any
 from kb.body import Body, Command, Grasp, Impression, Move, Push, Release, Turn
 from kb.task.task import Task
 from planner.decision import Decision
-from simulator.run.session import RobotProtocol
+from simulator.run.session import CannotAdoptError
 from simulator.scenario.settings import Settings
 
 VERDICT_KINDS = ("done", "impossible", "possible_if", "limit")  # as episodes name them (docs/files.md)
@@ -130,22 +130,21 @@ class MindRobot:
 
     def __init__(self, body: Body, task: Task, settings: Settings, mind: Mind) -> None:
         self.mind = mind
-        self._body, self._task, self._most = body, task, settings.max_steps
-        self._last: Impression | None = None  # the newest impression
+        self._body, self._task, self._settings = body, task, settings
         self._next: Command | Verdict = Verdict("limit", "the robot has not been woken yet")
         self._steps = 0
         mind.begin(task)
 
     def wake(self) -> MindReport:
         """Take the first impression and return the report on it."""
-        return self._report(None, self._body.wake())
+        return self._taken_in(None, self._body.wake())
 
     def step(self) -> MindReport:
         """Give the command that the mind has chosen, and return the report on the impression after it."""
         if isinstance(self._next, Verdict):
             raise ValueError("the run is finished")
         command, self._steps = self._next, self._steps + 1
-        return self._report(command, self._body.act(command))
+        return self._taken_in(command, self._body.act(command))
 
     @property
     def finished(self) -> bool:
@@ -158,16 +157,21 @@ class MindRobot:
         found = self._next if isinstance(self._next, Verdict) else Verdict("limit", "the run was not finished")
         return MindVerdict(found.kind == "done", found.kind, found.reason)
 
-    def redirect(self, task: Task, settings: Settings) -> None:
-        """Go on with another task or other options; a mind that had ended is asked again.
+    def adopt(self, task: Task, settings: Settings) -> MindReport:
+        """Take another task and other options from the newest impression on, and return the report on it anew.
 
-        The mind begins with the task when it is another one. Its answer to the newest impression counts from now on.
+        The mind begins with the task when it is another one. It is asked again for the newest impression when the task
+        is another one or the run had ended; else its answer counts. Raises CannotAdoptError for other rules: a mind
+        has none.
         """
-        before, self._task, self._most = self._task, task, settings.max_steps
+        if settings.kb_files != self._settings.kb_files:
+            raise CannotAdoptError(f"{type(self.mind).__name__} takes no rules: a mind of its own reasons without them")
+        before, self._task, self._settings = self._task, task, settings
         if task != before:
             self.mind.begin(task)
-        if self._last is not None and (task != before or self.finished):
-            self._next = self._asked(self._last)
+        if task != before or self.finished:
+            self._next = self._asked(self._newest[1])
+        return self._report(*self._newest)
 
     @property
     def decision(self) -> Decision:
@@ -182,22 +186,20 @@ class MindRobot:
         if not isinstance(chosen, (*MIND_COMMANDS, Verdict)):
             kinds = ", ".join(kind.__name__ for kind in (*MIND_COMMANDS, Verdict))
             raise TypeError(f"{type(self.mind).__name__}.step must return one of {kinds}, not {chosen!r}")
-        if not isinstance(chosen, Verdict) and self._steps >= self._most:
+        if not isinstance(chosen, Verdict) and self._steps >= self._settings.max_steps:
             chosen = Verdict("limit", f"not done after {self._steps} commands")
         return chosen
 
-    def _report(self, command: Command | None, impression: Impression) -> MindReport:
+    def _taken_in(self, command: Command | None, impression: Impression) -> MindReport:
         """Ask the mind for the next command, and return the report."""
-        self._next, self._last = self._asked(impression), impression
+        self._next, self._newest = self._asked(impression), (command, impression)
+        return self._report(command, impression)
+
+    def _report(self, command: Command | None, impression: Impression) -> MindReport:
+        """Return the report on an impression."""
         name = type(self.mind).__name__
         facts = [str(fact) for fact in self.mind.facts()]
         return MindReport(command, impression, {"facts": facts}, f"{name} {'wakes' if command is None else 'chose it'}")
-
-
-def redirect_mind(robot: RobotProtocol, task: Task, settings: Settings) -> None:
-    """Let a robot with another mind go on with another task or other options."""
-    assert isinstance(robot, MindRobot)
-    robot.redirect(task, settings)
 
 
 def mind_maker(mind: Callable[[], Mind]) -> Callable[[Body, Task, Settings], MindRobot]:

@@ -6,21 +6,21 @@ from dataclasses import dataclass, replace
 from functools import partial
 from html import escape
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from kb.body import Command, Impression
 from simulator.episode.episode import Episode as EpisodeRecord
 from simulator.episode.episode import EpisodeLog
 from simulator.episode.record import action_entry, header
-from simulator.run.robots import make_robot, redirect_robot
-from simulator.run.session import RobotMaker, RobotRedirector, Session
+from simulator.run.robots import make_robot, warm_for
+from simulator.run.session import RobotMaker, Session
 from simulator.scenario.settings import PATH_CHOICES, Settings, kb_files_named
 from simulator.terminal.action_in_words import describe
 from utak.beliefs import World
 from utak.episode import Episode, Step
 from utak.errors import RunNotRepeatedError
 from utak.markup import framed
-from utak.mind import Mind, mind_maker, redirect_mind
+from utak.mind import Mind, mind_maker
 from utak.scenario import Scenario
 
 
@@ -113,16 +113,16 @@ class Run:
         files = kb_files_named([str(file) for file in rules])
         settings = Settings(int(seed), float(noise), paths, max_steps, files, pull)
         _check(settings)
-        ways = _OWN_MIND if mind is None else RobotWays(mind_maker(mind), redirect_mind)
-        self._set(scenario, settings, ways, partial(_begin, scenario, settings, ways.make))
+        make = make_robot if mind is None else mind_maker(mind)
+        self._set(scenario, settings, make, partial(_begin, scenario, settings, make))
 
-    def _set(self, scenario: Scenario, settings: Settings, ways: "RobotWays", begin: Callable[[], Session]) -> None:
+    def _set(self, scenario: Scenario, settings: Settings, make: RobotMaker, begin: Callable[[], Session]) -> None:
         """Set all that a run consists of, and begin it.
 
-        ways : how its robot is made and redirected. begin : makes the session anew, where this run begins.
+        make : makes its robot. begin : makes the session anew, where this run begins.
         """
         self.scenario, self.settings = scenario, settings
-        self._ways, self._begin = ways, begin
+        self._make, self._begin = make, begin
         self._head = header(scenario.content, settings)
         session = begin()
         self._session: Session | None = session
@@ -210,20 +210,21 @@ class Run:
         settings = replace(self.settings, **{name: value for name, value in given.items() if value is not None})
         _check(settings)
         copied = Run.__new__(Run)
-        copied.scenario, copied.settings, copied._ways = scenario, settings, self._ways
+        copied.scenario, copied.settings, copied._make = scenario, settings, self._make
         copied._lines, copied._head, copied._result = list(self._lines), self._head, self._result
         copied._begin, copied._first_own = self._begin, self._first_own
         session = self._copied_session()
         if scenario is not self.scenario or settings != self.settings:
             copied._begin = partial(
-                _redirected, self._begin, self._lines[self._first_own :], scenario, settings, self._ways
+                _changed, self._begin, self._lines[self._first_own :], scenario, settings, self._make
             )
             copied._first_own = len(self._lines)
             stage = {"until": len(self._lines) - 1, "options": self._head["options"], "task": self._head["task"]}
             stages = [*self._head.get("forked", ()), stage]
             copied._head = header(scenario.content, settings) | {"forked": stages}
             copied._result = None
-            session.change(scenario.content, settings, self._ways.redirect)
+            warm_for(self._make, scenario.content.task, settings)
+            copied._lines[-1] = session.adopt(scenario.content, settings)
             copied._end_if_finished(session)
         copied._session = session
         return copied
@@ -318,22 +319,6 @@ class Run:
         return _repeat(self._begin, self._lines[self._first_own :])
 
 
-class RobotWays(NamedTuple):
-    """The ways to make the robot of a run, and to let it go on with another task or other options.
-
-    Attributes
-    ----------
-    make : makes it from its body, the task and the settings.
-    redirect : lets it go on with another task or other settings.
-    """
-
-    make: RobotMaker
-    redirect: RobotRedirector
-
-
-_OWN_MIND = RobotWays(make_robot, redirect_robot)
-
-
 def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:
     """Return a new session in which the robot is awake."""
     session = Session(scenario.content, settings, make, EpisodeLog(None))
@@ -353,16 +338,17 @@ def _repeat(begin: Callable[[], Session], lines: Sequence[dict[str, Any]]) -> Se
     return session
 
 
-def _redirected(
+def _changed(
     begin: Callable[[], Session],
     lines: Sequence[dict[str, Any]],
     scenario: Scenario,
     settings: Settings,
-    ways: RobotWays,
+    make: RobotMaker,
 ) -> Session:
     """Return a new session that went through some steps again, and then goes on with other options."""
     session = _repeat(begin, lines)
-    session.change(scenario.content, settings, ways.redirect)
+    warm_for(make, scenario.content.task, settings)
+    session.adopt(scenario.content, settings)
     return session
 
 

@@ -6,7 +6,6 @@ record     the steps of a run as the robot recorded them: commands, impressions,
 reason     a tree of reasons, as text in three depths and as JSON values
 sightings  which cells of which impressions show a square
 witness    reasons that are cells: why a square, an outline or a colour is believed
-atoms      atoms as text, taken apart
 proving    proof trees of encodings as reasons
 inputs     reasons for what encodings were given
 beliefs    reasons for the facts of the world model

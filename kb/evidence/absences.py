@@ -2,12 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 
-from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.inputs import Given, input_reason
+from kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
 from kb.evidence.reason import Reason, ReasonKind
+from kb.explanation.query_absence import explain_query_absence
+from kb.explanation.values import Absence
 from kb.explanation.whynot import explain_absence
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from kb.tracing.decisions import SolverCall
 
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
@@ -51,9 +55,35 @@ class AbsenceExplainer:
         wanted = plain_fact(fact)
         if wanted in self._facts.record.steps[step].fact_set:
             raise _error(wanted, f"this is believed at step {step}: why tells the reason")
+        name, arguments = atom_parts(wanted)
+        signature = (name, len(arguments))
+        if signature == ("object", 1):
+            return self._no_object(wanted, arguments[0], step)
+        if signature not in BELIEF_PREDICATES:
+            return self._not_derived(wanted, signature, step)
         for call, atom in self._decisions(wanted, step):
             return self._absence(wanted, call, atom, step)
         return self._instead(wanted, step)
+
+    def _no_object(self, wanted: str, node: str, step: int) -> Reason:
+        """Return why a node is no object."""
+        start = f"kind({node},object,"
+        if any(fact.startswith(start) for fact in self._facts.record.steps[step].facts):
+            raise _error(wanted, f"this is believed at step {step}: why tells the reason")
+        below = self.explain(f"{start}C)", step)
+        because = f"object({node}) stands for kind({node}, object, C), which is not believed"
+        return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {step}", (below,), below.data)
+
+    def _not_derived(self, wanted: str, signature: Signature, step: int) -> Reason:
+        """Return why an atom of a predicate that users' rules define does not hold; BadInputError for others."""
+        if signature in query_predicates(self._rule_files):
+            found = explain_query_absence(self._facts.record.steps[step].facts, wanted, self._rule_files)
+            in_way = tuple(reason for fact in found.in_way if (reason := self._facts.reason(fact, step)) is not None)
+            return self._reason_of(wanted, found, in_way, step)
+        call = call_deriving(self._facts.record.decisions(step), signature, self._rule_files)
+        if call is None:
+            raise BadInputError([unknown_predicate(wanted, signature, self._rule_files)])
+        return self._absence(wanted, call, wanted, step)
 
     def _decisions(self, fact: str, step: int) -> Iterator[tuple[SolverCall, str]]:
         """Yield the answer of an encoding that could have derived a fact, with the atom that would have been it."""
@@ -103,14 +133,18 @@ class AbsenceExplainer:
         in_way = tuple(
             input_reason(self._facts.record, Given(given, call, step), self._facts.reason) for given in found.in_way
         )
+        return self._reason_of(fact, found, in_way, step)
+
+    def _reason_of(self, fact: str, found: Absence, in_way: tuple[Reason, ...], step: int) -> Reason:
+        """Return an absence as a reason. in_way : the reasons of what is in the way."""
         needed = tuple(
             Reason(f"missing: {given}", "with it, and without what is in the way, it would hold", ReasonKind.REJECTED)
             for given in found.missing
         )
         rival = (Reason(found.rival.atom, found.rival.sentence, ReasonKind.REJECTED),) if found.rival else ()
         data = {
-            "encoding": call.encoding,
-            "atom": atom,
+            "encoding": found.encoding,
+            "atom": found.atom,
             "missing": list(found.missing),
             "in_way": list(found.in_way),
             "partial": found.partial,
@@ -122,11 +156,13 @@ class AbsenceExplainer:
     def _instead(self, fact: str, step: int) -> Reason:
         """Return why a fact that no encoding derives is not believed: it is measured, and something else was."""
         instead = tuple(self._alternatives(fact, step))
-        because = (
-            "it would have to be measured so; this is believed instead"
-            if instead
-            else "nothing seen so far is about it: no such thing is believed to be there"
-        )
+        thing = (atom_parts(fact)[1] or ("",))[0]
+        if instead:
+            because = "it would have to be measured so; this is believed instead"
+        elif f"node({thing})" in self._facts.record.steps[step].fact_set:
+            because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"
+        else:
+            because = "nothing seen so far is about it: no such thing is believed to be there"
         data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
         return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
 

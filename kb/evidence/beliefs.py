@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from kb.evidence.atoms import atom_parts
 from kb.evidence.inputs import Given, input_reason, squares_reason
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
@@ -15,6 +14,7 @@ from kb.evidence.witness import (
     node_squares,
     seen_reason,
 )
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
 from kb.language.vocabulary import thing_positions
 from kb.tracing.decisions import SolverCall

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import ROBOT_ALIAS, FactExplainer
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
+from kb.language.atoms import atom_parts
 from kb.tracing.decisions import SolverCall
 from kb.world.model import ROOT_NODE
 

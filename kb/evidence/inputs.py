@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from geometry.kernels.arrays import Square
-from kb.evidence.atoms import atom_parts
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
+from kb.language.atoms import atom_parts
 from kb.tracing.decisions import SolverCall
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, VERGE_NODE
 

@@ -9,6 +9,9 @@ from kb.explanation.programs import decision_program
 from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode, RivalChoice
 from kb.explanation.wording import atom_words
+from kb.language.diagnostics import Problem, SourceSpan, did_you_mean
+from kb.language.vocabulary import BELIEF_PREDICATES, GOAL_VOCABULARY, Signature
+from kb.reasoning.user_rules import read_rules
 from kb.tracing.decisions import SolverCall
 
 KIND_OF_NODE = {  # kind of a node of a proof -> kind of the reason
@@ -48,7 +51,7 @@ class EncodingProver:
         kb.explanation.programs.ExplanationError : the record is none of an answer of this encoding.
         """
         proof = explain_decision(call.encoding, call.facts, call.answer or (), atom, self._rule_files)
-        return _reason(proof.root, leaf, {})
+        return reason_of_proof(proof.root, leaf)
 
 
 @lru_cache(maxsize=4096)
@@ -59,6 +62,46 @@ def words_of(encoding: str, atom: str) -> str:
     """
     words = atom_words(atom, decision_program(encoding).words)
     return "" if words == atom else words
+
+
+def query_predicates(rule_files: Sequence[str]) -> frozenset[Signature]:
+    """Return the predicates that users' rules define for queries, by name and number of arguments."""
+    rules = read_rules(tuple(rule_files)).query_rules if rule_files else ()
+    return frozenset(head.signature for one in rules for head in one.heads)
+
+
+def call_deriving(calls: Sequence[SolverCall], signature: Signature, rule_files: Sequence[str]) -> SolverCall | None:
+    """Return the newest of some answers in whose encoding users' rules define a predicate; None for none.
+
+    None also for predicates that they define for queries, too. calls : the answers, oldest first.
+    """
+    if not rule_files or signature in query_predicates(rule_files):
+        return None
+    rules, newest_first = read_rules(tuple(rule_files)), tuple(reversed(calls))
+    names = {call.encoding for call in newest_first}
+    deriving = {
+        name
+        for name in names
+        if any(head.signature == signature for one in rules.rules_reaching(name) for head in one.heads)
+    }
+    return next((call for call in newest_first if call.encoding in deriving), None)
+
+
+def unknown_predicate(text: str, signature: Signature, rule_files: Sequence[str]) -> Problem:
+    """Return the problem that neither the world model nor users' rules have a predicate. text : the question."""
+    name, arity = signature
+    named = read_rules(tuple(rule_files)).own_predicates if rule_files else frozenset[Signature]()
+    known = {one for one, _ in (*BELIEF_PREDICATES, *named)}
+    arities = sorted(count for one, count in (*BELIEF_PREDICATES, *named) if one == name)
+    what = f"unknown predicate {name}/{arity}"
+    hint = did_you_mean(name, known - {name})
+    if signature in named:
+        what, hint = f"nothing that was asked so far knows {name}/{arity}", ""
+    elif name in GOAL_VOCABULARY:
+        what, hint = f"{name} is a word of goals, and this is no goal of the task", "ask about facts of the world model"
+    elif arities:
+        hint = f"{name} has {' or '.join(map(str, arities))} argument{'s' * (arities != [1])}"
+    return Problem("why", SourceSpan(1, 1, max(1, len(text))), what, text, hint)
 
 
 def prove_query_atom(
@@ -77,26 +120,36 @@ def prove_query_atom(
     ------
     kb.explanation.programs.ExplanationError : the atom does not certainly hold.
     """
-    return _reason(explain_query_atom(facts, atom, rule_files).root, leaf, {})
+    return reason_of_proof(explain_query_atom(facts, atom, rule_files).root, leaf)
 
 
-def _reason(node: ProofNode, leaf: Callable[[str], Reason], known: dict[int, Reason]) -> Reason:
-    """Return the reason of a node of a proof.
+def reason_of_proof(root: ProofNode, leaf: Callable[[str], Reason]) -> Reason:
+    """Return the reason of a node of a proof; proofs may be higher than Python's limit on recursion.
 
-    known : the reasons of nodes so far, by the identity of the nodes; grows.
+    leaf : returns the reason of a given fact.
     """
-    if id(node) not in known:
-        if node.kind == "given":
-            known[id(node)] = leaf(node.claim)
+    known: dict[int, Reason] = {}  # by the identity of the nodes
+    waiting = [root]
+    while waiting:
+        node = waiting[-1]
+        missing = [] if node.kind == "given" else [child for child in node.children if id(child) not in known]
+        if id(node) in known or not missing:
+            waiting.pop()
+            if id(node) not in known:
+                known[id(node)] = leaf(node.claim) if node.kind == "given" else _reason_of_rule(node, known)
         else:
-            children = {id(child): child for child in node.children}
-            below = [_reason(child, leaf, known) for child in children.values()]
-            below += [_rejected(rival) for rival in node.rivals]
-            source = f"{node.instance.rule.file}:{node.instance.rule.line}" if node.instance else ""
-            data = {"rule": node.instance.rule.text} if node.instance else {}
-            kind = KIND_OF_NODE[node.kind] if below or node.kind != "derived" else ReasonKind.CONVENTION
-            known[id(node)] = Reason(node.claim, node.sentence, kind, source, tuple(below), data)
-    return known[id(node)]
+            waiting += reversed(missing)
+    return known[id(root)]
+
+
+def _reason_of_rule(node: ProofNode, known: dict[int, Reason]) -> Reason:
+    """Return the reason of a node that is not given. known : those of its children, by their identity."""
+    children = dict.fromkeys(map(id, node.children))
+    below = [known[child] for child in children] + [_rejected(rival) for rival in node.rivals]
+    source = f"{node.instance.rule.file}:{node.instance.rule.line}" if node.instance else ""
+    data = {"rule": node.instance.rule.text} if node.instance else {}
+    kind = KIND_OF_NODE[node.kind] if below or node.kind != "derived" else ReasonKind.CONVENTION
+    return Reason(node.claim, node.sentence, kind, source, tuple(below), data)
 
 
 def _rejected(rival: RivalChoice) -> Reason:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+MAX_LEVELS = 150  # levels of a tree that are written at most; a convention, well below Python's limit on recursion
 MID_LEVELS = 3  # levels of a tree that the depth `mid` shows: the claim, what it rests on, and what that rests on
 
 
@@ -71,13 +72,22 @@ class Reason:
     data: dict[str, Any] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the tree as JSON values; keys without a value are left out."""
+        """Return the tree as JSON values; keys without a value are left out.
+
+        At most MAX_LEVELS levels are written: where more follow, `cut` is true.
+        """
+        return self._entry(MAX_LEVELS)
+
+    def _entry(self, levels: int) -> dict[str, Any]:
+        """Return some levels of the tree as JSON values."""
         entry: dict[str, Any] = {"claim": self.claim, "kind": str(self.kind)}
         for key in ("because", "source", "data"):
             if getattr(self, key):
                 entry[key] = getattr(self, key)
-        if self.rests_on:
-            entry["rests_on"] = [reason.as_dict() for reason in self.rests_on]
+        if self.rests_on and levels > 1:
+            entry["rests_on"] = [reason._entry(levels - 1) for reason in self.rests_on]
+        elif self.rests_on:
+            entry["cut"] = True
         return entry
 
     def walk(self) -> Iterator["Reason"]:
@@ -93,10 +103,10 @@ class Reason:
     def text(self, depth: Depth = Depth.MID) -> str:
         """Return the tree as indented lines.
 
-        depth : `short` for one line, `mid` for MID_LEVELS levels, `long` for all. What stands in the tree before is
-            not written again.
+        depth : `short` for one line, `mid` for MID_LEVELS levels, `long` for MAX_LEVELS. What stands in the tree before
+            is not written again.
         """
-        levels = {Depth.SHORT: 1, Depth.MID: MID_LEVELS, Depth.LONG: None}[depth]
+        levels = {Depth.SHORT: 1, Depth.MID: MID_LEVELS, Depth.LONG: MAX_LEVELS}[depth]
         return "\n".join(_lines(self, levels, "", set()))
 
     def leaves(self) -> Iterator["Reason"]:
@@ -104,8 +114,8 @@ class Reason:
         return (reason for reason in self.walk() if not reason.rests_on)
 
 
-def _lines(reason: Reason, levels: int | None, indent: str, written: set[tuple[str, str]]) -> Iterator[str]:
-    """Yield the lines of a tree: `levels` levels of it, None for all.
+def _lines(reason: Reason, levels: int, indent: str, written: set[tuple[str, str]]) -> Iterator[str]:
+    """Yield the lines of a tree: `levels` levels of it.
 
     written : claims and reasons that were written before; grows.
     """
@@ -117,8 +127,8 @@ def _lines(reason: Reason, levels: int | None, indent: str, written: set[tuple[s
         return
     yield f"{indent}{reason.claim}{because}{source}"
     written.add(key)
-    if levels is None or levels > 1:
+    if levels > 1:
         for below in reason.rests_on:
-            yield from _lines(below, None if levels is None else levels - 1, f"{indent}  ", written)
+            yield from _lines(below, levels - 1, f"{indent}  ", written)
     elif reason.rests_on and levels == 1 and indent:
         yield f"{indent}  ..."

@@ -11,7 +11,7 @@ tree       proof trees built from rule instances
 proof      why an atom holds
 whynot     why an atom does not hold
 belief     why a predicate that users' rules define for queries holds
-rendering  explanations as text of three depths and as nested dictionaries
+query_absence  why such an atom does not hold
 
-Public names: `explain_decision`, `explain_absence`, `explain_query_atom`, `render`.
+Public names: `explain_decision`, `explain_absence`, `explain_query_atom`, `explain_query_absence`.
 """

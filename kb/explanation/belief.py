@@ -4,7 +4,16 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
-from kb.explanation.programs import ExplanationError, RuleUnit, canonical, decision_program, texts_of, words_of_users
+from kb.explanation.programs import (
+    BELIEF,
+    OBJECT_RULE,
+    ExplanationError,
+    RuleUnit,
+    canonical,
+    decision_program,
+    texts_of,
+    words_of_users,
+)
 from kb.explanation.support import Support, supports_of
 from kb.explanation.tree import ProofTrees
 from kb.explanation.values import Proof, RuleInstance, RuleText
@@ -14,11 +23,7 @@ from kb.reasoning.rulebook import Statement
 from kb.reasoning.sentences import fill
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
 
-BELIEF = "belief"  # the encoding that declares the believed facts
-# The meaning of object(N) in queries, as a rule.
-OBJECT_RULE = RuleText(
-    "queries", 1, 1, "object(N) :- kind(N, object, C).", "rule", "{N} is believed to be an object, with {C} percent."
-)
+OBJECT_TEXT = RuleText("queries", 1, 1, OBJECT_RULE, "rule", "{N} is believed to be an object, with {C} percent.")
 
 
 def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Proof:
@@ -46,6 +51,15 @@ def explain_query_atom(facts: Sequence[str], atom: str, rule_files: Sequence[str
     if wanted not in holding:
         raise ExplanationError(f"{wanted} does not certainly hold by what is believed")
     return Proof(BELIEF, trees.node(wanted))
+
+
+def certain_atoms(facts: Sequence[str], rule_files: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return all atoms that certainly hold in queries, believed facts included, sorted.
+
+    Parameters and errors as of `explain_query_atom`.
+    """
+    files = tuple(map(str, rule_files))
+    return tuple(sorted(_trees(canonical(facts), files, texts_of(files))[1]))
 
 
 @lru_cache(maxsize=16)
@@ -89,7 +103,7 @@ def _add_object(fact: str, supports: dict[str, list[Support]]) -> None:
     name, _, rest = fact.partition("(")
     parts = rest.removesuffix(")").split(",")
     if name == "kind" and len(parts) == 3 and parts[1] == "object":
-        unit = RuleUnit(OBJECT_RULE, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
+        unit = RuleUnit(OBJECT_TEXT, ("N", "C"), ("N", "C"), ({"kind": "atom", "text": "kind(N, object, C)"},), ((),))
         one = Support(-1, unit, (parts[0], parts[2]), (fact,), ((),), 0, ())
         supports.setdefault(f"object({parts[0]})", []).append(one)
 

@@ -19,6 +19,9 @@ from kb.tracing.requests import respond
 from kb.tracing.syntax import JsonValues, ProgramPart
 
 HELPING_PREFIX = "trace__"  # begins the names of the atoms that helping rules derive
+BELIEF = "belief"  # the encoding that declares the believed facts, over which the rules of queries reason
+OBJECT_RULE = "object(N) :- kind(N, object, C)."  # the meaning of object(N) in queries
+QUERY_PARTS = (ProgramPart("queries", 1, OBJECT_RULE),)
 
 
 class ExplanationError(Exception):
@@ -70,12 +73,15 @@ class DecisionProgram:
     def __init__(self, encoding: str, rule_files: Sequence[str] = (), seconds: float = MAX_RULE_SECONDS) -> None:
         self.encoding, self._seconds = encoding, seconds
         path = _path_of(encoding)
-        self._users: tuple[Statement, ...] = read_rules(rule_files).rules_reaching(encoding) if rule_files else ()
+        self._users: tuple[Statement, ...] = ()
+        if rule_files:
+            book = read_rules(rule_files)
+            self._users = book.query_rules if encoding == BELIEF else book.rules_reaching(encoding)
         _refuse_helping_names([atom.name for one in self._users for atom in (*one.heads, *one.body)])
         text = path.read_text(encoding="utf-8")
         own = ProgramPart(f"{path.parent.parent.name}/asp/{path.name}", 1, text)
         written = [ProgramPart(one.source.file, one.at[0], one.written) for one in self._users]
-        self.parts: tuple[ProgramPart, ...] = (*written, own)
+        self.parts: tuple[ProgramPart, ...] = (*written, own, *(QUERY_PARTS if encoding == BELIEF else ()))
         found = self.ask({"task": "statements"})
         rules, self.words = _rules_with_words(found["statements"], self._users, own)
         self.units = tuple(_unit(one, rules, found["statements"]) for one in found["units"])
@@ -153,8 +159,8 @@ def encoding_names() -> tuple[str, ...]:
 
 def rules_of(encoding: str) -> tuple[RuleText, ...]:
     """Return the rules of one of our encodings with their sentences, in order; ExplanationError for an unknown name."""
-    units = decision_program(encoding).units
-    return tuple(dict.fromkeys(unit.rule for unit in units))
+    own = [unit.rule for unit in decision_program(encoding).units if unit.rule.file != QUERY_PARTS[0].file]
+    return tuple(dict.fromkeys(own))
 
 
 def _path_of(encoding: str) -> Path:
@@ -173,9 +179,10 @@ def _rules_with_words(
 
     statements : the rules as kb.tracing found them, those of users first. users : the users' rules. own : the encoding.
     """
-    ours = statements[len(users) :]
+    ours = statements[len(users) :]  # and, for queries, QUERY_PARTS
     source = source_from_bytes(own.file, own.text.encode("utf-8"))
-    found, problems = read_sentences(source, [((one["line"], one["column"]), one["variables"]) for one in ours])
+    places = [((one["line"], one["column"]), one["variables"]) for one in ours if one["file"] == own.file]
+    found, problems = read_sentences(source, places)
     if problems:
         raise ExplanationError(str(problems[0]))
     sentences, words = words_of_users(users)
@@ -185,7 +192,8 @@ def _rules_with_words(
     ]
     for entry in ours:
         at = (entry["line"], entry["column"])
-        rules.append(RuleText(own.file, *at, entry["text"], entry["kind"], found.sentences.get(at, "")))
+        sentence = found.sentences.get(at, "") if entry["file"] == own.file else ""
+        rules.append(RuleText(entry["file"], *at, entry["text"], entry["kind"], sentence))
     return rules, {**words, **found.predicates}
 
 

@@ -6,7 +6,8 @@ from kb.explanation.programs import DecisionProgram, ExplanationError, canonical
 from kb.explanation.proof import TracedDecision, traced_decision
 from kb.explanation.rivals import rivals_of
 from kb.explanation.values import Absence, Proof
-from kb.explanation.wording import absent_words, atom_words, split_atom
+from kb.explanation.wording import absent_words, atom_words
+from kb.language.atoms import atom_parts
 from kb.language.reader import facts_from_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 
@@ -56,7 +57,7 @@ def explain_absence(
             rival = next(iter(rivals_of(program, given, shown, [wanted], with_none=False)), None)
     request = {"facts": list(given), "atom": wanted}
     candidates = program.ask({**request, "task": "candidates", "known": list(known)})
-    candidates["facts"] = [fact for fact in candidates["facts"] if _is_sensible(encoding, fact)]
+    candidates["facts"] = [fact for fact in candidates["facts"] if is_sensible(encoding, fact)]
     found = program.ask({**request, "task": "change", "candidates": candidates})
     missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
     is_single = bool(found["found"]) and len(missing) + len(in_way) <= 1
@@ -66,7 +67,7 @@ def explain_absence(
     return Absence(encoding, wanted, missing, in_way, partial, found["found"], sentence, rival, proof)
 
 
-def _is_sensible(encoding: str, fact: str) -> bool:
+def is_sensible(encoding: str, fact: str) -> bool:
     """Return whether the arguments of a candidate fact are of the types that the encoding's vocabulary declares."""
     (one,) = facts_from_text(f"{fact}.")
     types = USER_RULE_INTERFACES.get(encoding, {}).get(one.signature)
@@ -107,9 +108,16 @@ def _sentence(
         return f"{start}; no change of the given facts was found with which it would."
     if not missing and not in_way:
         return f"{start}, but another answer that costs the same holds it."
-    parts = [f"{_fact_words(fact, program)} were given{_replaced(fact, given)}" for fact in missing]
-    parts += [f"{_fact_words(fact, program)} were not given" for fact in in_way]
-    return f"{start}; it would if {' and '.join(parts)}."
+    return f"{start}; it would if {change_in_words(program, given, missing, in_way, 'given')}."
+
+
+def change_in_words(
+    program: DecisionProgram, given: Sequence[str], missing: Sequence[str], in_way: Sequence[str], how: str
+) -> str:
+    """Return a change of facts as a condition in words. how : what facts are: given, or believed."""
+    parts = [f"{_fact_words(fact, program)} were {how}{_replaced(fact, given, how)}" for fact in missing]
+    parts += [f"{_fact_words(fact, program)} were not {how}" for fact in in_way]
+    return " and ".join(parts)
 
 
 def _fact_words(fact: str, program: DecisionProgram) -> str:
@@ -118,13 +126,13 @@ def _fact_words(fact: str, program: DecisionProgram) -> str:
     return fact if words == fact else f"{fact} ({words})"
 
 
-def _replaced(fact: str, given: Sequence[str]) -> str:
+def _replaced(fact: str, given: Sequence[str], how: str) -> str:
     """Return the given fact that differs from another one in one number alone, as an addition to a sentence; or ''."""
-    name, arguments = split_atom(fact)
+    name, arguments = atom_parts(fact)
     for other in given:
-        their_name, theirs = split_atom(other)
+        their_name, theirs = atom_parts(other)
         if their_name == name and len(theirs) == len(arguments):
             unlike = [(a, b) for a, b in zip(arguments, theirs, strict=True) if a != b]
             if len(unlike) == 1 and all(part.removeprefix("-").isdigit() for part in unlike[0]):
-                return f" (given is {other})"
+                return f" ({how} is {other})"
     return ""

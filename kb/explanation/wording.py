@@ -4,8 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from kb.explanation.support import CountedElement, LiteralValue, aggregate_value
-from kb.language.diagnostics import BadInputError
-from kb.language.reader import facts_from_text
+from kb.language.atoms import atom_parts
 from kb.reasoning.sentences import PredicateWords, fill
 from kb.tracing.syntax import ANY_NAME, JsonValues
 
@@ -24,14 +23,14 @@ MAX_MEMBERS_SHOWN = 6  # members of an aggregate that its words list; a conventi
 
 def atom_words(atom: str, words: WordsByPredicate) -> str:
     """Return an atom that holds in plain words: as its predicate reads, or else the atom itself."""
-    name, arguments = split_atom(atom)
+    name, arguments = atom_parts(atom)
     found = words.get((name, len(arguments)))
     return fill(found.holds, dict(zip(found.variables, arguments, strict=True))) if found else atom
 
 
 def absent_words(atom: str, words: WordsByPredicate) -> str:
     """Return in plain words that an atom is not known to hold; `any__` among its arguments stands for any value."""
-    name, arguments = split_atom(atom)
+    name, arguments = atom_parts(atom)
     found = words.get((name, len(arguments)))
     shown = ["any" if argument == ANY_NAME else argument for argument in arguments]
     if found and found.absent:
@@ -119,15 +118,6 @@ def substituted(text: str, values: Mapping[str, str]) -> str:
 def variables_in(text: str) -> set[str]:
     """Return the names of the variables in a text of the program, strings in it left out."""
     return set(VARIABLE.findall(re.sub(r'"(?:[^"\\]|\\.)*"', "", text)))
-
-
-def split_atom(atom: str) -> tuple[str, tuple[str, ...]]:
-    """Return the name and the arguments of an atom, as texts; (the atom, ()) when it is no fact."""
-    try:
-        (fact,) = facts_from_text(f"{atom}.")
-    except (BadInputError, ValueError):
-        return atom, ()
-    return fact.name, tuple(map(str, fact.args))
 
 
 def _unwrapped(text: str) -> str:

@@ -6,6 +6,7 @@ diagnostics       problems in users' files: place, message, hint
 source_text       the text of a file, read safely and checked to be ASCII
 tokens            tokens of a fact file
 terms             facts and terms as values
+atoms             atoms as text, taken apart
 reader            the reader of fact files
 wkt               the reader of shapes (well-known text)
 arguments         argument types: checks of single terms

@@ -124,6 +124,16 @@ def complete_lines(path: Path | str) -> list[bytes]:
     return [row + b"\n" for row in whole.split(b"\n")[:-1]]
 
 
+def without_limit(lines: list[bytes]) -> list[bytes]:
+    """Return the lines of an episode without its result, if a limit of time ended the run; then the run can go on."""
+    with suppress(ValueError):
+        last = json.loads(lines[-1]) if len(lines) > 1 else None
+        result = last.get("result") if isinstance(last, dict) else None
+        if isinstance(result, dict) and "seconds" in result:
+            return lines[:-1]
+    return lines
+
+
 class _InvalidJsonError(ValueError):
     """A value that Python's JSON reader accepts, but no episode has."""
 
@@ -190,8 +200,8 @@ class EpisodeLog:
     ----------
     path : the file; `-` for the standard output, None to write nowhere.
     resume : continue the episode in the file. The run is repeated from the start, and every line in the file must come
-        out
-        again byte for byte; a last line that was cut short is dropped.
+        out again byte for byte; a last line that was cut short is dropped, and so is the result of a run that a limit
+        of time ended.
     force : overwrite a file that is no episode.
     listen : called with each line once it is written.
 
@@ -218,7 +228,7 @@ class EpisodeLog:
         self._stream = open_for_writing(path, is_episode, "episode", force)
         try:
             if resume:
-                self._recorded = complete_lines(path)
+                self._recorded = without_limit(complete_lines(path))
             keep_first(self._stream, sum(map(len, self._recorded)))
         except OSError as error:
             self._stream.close()
@@ -234,6 +244,11 @@ class EpisodeLog:
         if self._stream is not None:
             with suppress(OSError):  # errors of writing were reported when they occurred
                 self._stream.close()
+
+    @property
+    def is_repeating(self) -> bool:
+        """Whether the next line stands in the file already, because the episode is resumed."""
+        return self._number < len(self._recorded)
 
     def write(self, line: EpisodeLine) -> None:
         """Write one line at once; while resuming, compare it with the recorded line.

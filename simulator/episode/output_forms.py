@@ -8,6 +8,7 @@ from simulator.episode.wellformed import (
     HEADER,
     OPTIONS,
     RESULT_FORMS,
+    RESULT_OPTIONAL,
     STEP,
     STEP_NUMBER,
     TEXT,
@@ -17,7 +18,10 @@ MAX_LENGTH = 1e12  # squares of a route; above every route on a table that can b
 MAX_COUNT = 2**53  # of what is counted; JSON readers keep whole numbers exactly up to it
 OUTCOME_CODES = (0, 1, 65, 66, 70)  # exit codes of a scenario that was tested
 # `utak run --json`.
-RUN_OUTPUT = Keys({**RESULT_FORMS, "unmet": Noted("the facts of expect.lp that the truth does not meet", ListOf(TEXT))})
+RUN_OUTPUT = Keys(
+    {**RESULT_FORMS, "unmet": Noted("the facts of expect.lp that the truth does not meet", ListOf(TEXT))},
+    RESULT_OPTIONAL,
+)
 CELL = AnyOf((TEXT, Whole(-(2**31), 2**31 - 1)), "a text or a whole number of 32 bits")
 # `utak query --json`.
 QUERY_OUTPUT = Keys(

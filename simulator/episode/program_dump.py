@@ -143,7 +143,7 @@ class ProgramDump:
 
 def rules_at(head: Mapping[str, Any], step: int) -> list[str]:
     """Return the SHA-256 sums of the files of rules that a run had at a step, by its header."""
-    stages = [entry for entry in head.get("forked", ()) if entry["until"] >= step]
+    stages = [entry for entry in head.get("forked", ()) if entry["until"] > step]
     sums: list[str] = (stages[0] if stages else head)["options"]["kb"]
     return sums
 

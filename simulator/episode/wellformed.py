@@ -26,6 +26,7 @@ EPISODE_VERSION = 1  # of the form of episodes; docs/files.md
 MAX_COMMAND_VALUE = 1e9  # squares or degrees in commands and motions, in absolute value; a convention
 TABLE_MARGIN = 1.0  # squares beyond the table in which points may lie; a convention
 MAX_STEP_NUMBER = 1_000_000  # the greatest --max-steps
+MAX_RUN_SECONDS = 1_000_000  # of a limit of time, as `utak run --seconds` takes; a convention
 RETINA_FIELDS = 160  # fields of the retina (docs/files.md)
 FACT_PATTERN = r"-?_*[a-z][A-Za-z0-9_']*(\([ -~]*\))?\."  # a fact of `belief.facts`, by its form only
 
@@ -161,9 +162,11 @@ RESULT_FORMS: dict[str, Form] = {
     "verdict": OneOf(VERDICT_WORDS),
     "reason": TEXT,
     "steps": STEP_NUMBER,
+    "seconds": Noted("the limit of time that ended the run; there alone", Numeric(0, MAX_RUN_SECONDS)),
 }
+RESULT_OPTIONAL = frozenset({"seconds"})
 # The last line of an episode.
-END = Keys({"result": Keys(RESULT_FORMS)})
+END = Keys({"result": Keys(RESULT_FORMS, RESULT_OPTIONAL)})
 
 
 def column(row: str, where: KeyPath) -> int:

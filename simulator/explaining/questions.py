@@ -8,14 +8,21 @@ from contextlib import contextmanager
 from shapely.errors import ShapelyError
 
 from kb.evidence.absences import AbsenceExplainer
-from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.cells import explain_cell
 from kb.evidence.goals import RecordedTask, explain_command, explain_goal, explain_verdict
-from kb.evidence.proving import EncodingProver, prove_query_atom
+from kb.evidence.proving import (
+    EncodingProver,
+    call_deriving,
+    prove_query_atom,
+    query_predicates,
+    unknown_predicate,
+)
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import MissingRecordError, Record
+from kb.explanation.belief import certain_atoms
 from kb.explanation.programs import ExplanationError
+from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
 from kb.language.vocabulary import BELIEF_PREDICATES
@@ -34,6 +41,7 @@ MISFIT_ERRORS = (
     RuntimeError,
     ShapelyError,
 )
+NO_VERDICT = "no verdict is recorded: the run goes on, or was cut short"
 MORE_LIKELY = 50  # percent: a fact with less confidence is more likely wrong than right
 
 
@@ -59,7 +67,7 @@ class Questions:
         result: EpisodeLine | None = None,
         rule_files: Sequence[str] = (),
     ) -> None:
-        self._task = RecordedTask(tuple(map(str, header["task"]["goals"])), result)
+        self._header, self._result = header, result
         self.beliefs = FactExplainer(Record(lines), EncodingProver(rule_files))
         self._rule_files = tuple(rule_files)
         self._absences = AbsenceExplainer(self.beliefs, rule_files)
@@ -89,7 +97,7 @@ class Questions:
             if name == "verdict":
                 return self._why_verdict(wanted)
             plain = plain_fact(wanted)
-            goal = next((goal for goal in self._task.goals if plain_fact(goal) == plain), None)
+            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain), None)
             if goal is not None and plain not in self.beliefs.record.steps[at].fact_set:
                 return explain_goal(self.beliefs, goal, at)
             if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
@@ -114,17 +122,45 @@ class Questions:
         with _refusing_damage(fact):
             if atom_parts(wanted)[0] == "verdict":
                 return self._why_not_verdict(wanted)
+            goal = next((goal for goal in self._task_at(at).goals if plain_fact(goal) == plain_fact(wanted)), None)
+            if goal is not None and plain_fact(wanted) not in self.beliefs.record.steps[at].fact_set:
+                return self._why_not_goal(goal, at)
+            signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
+            if (signature not in BELIEF_PREDICATES or signature[0] == "object") and _has_variables(wanted):
+                raise _problem(fact, "one atom at a time: give values in the place of variables")
             believed = self._instance(wanted, at)
             if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
 
+    def _task_at(self, step: int) -> RecordedTask:
+        """Return the task that counts at a step: goals may be others after a fork or a change at the prompt."""
+        goals = self._header["task"]["goals"]
+        for stage in reversed(self._header.get("forked", ())):
+            if step < stage["until"]:
+                goals = stage["task"]["goals"]
+        for change in self._header.get("changes", ()):
+            if "goal" in change and change["step"] <= step:
+                goals = facts_from_text(f"{str(change['goal']).strip().removesuffix('.')}.", "goal")
+        return RecordedTask(tuple(map(str, goals)), self._result)
+
+    def _why_not_goal(self, goal: str, step: int) -> Reason:
+        """Return what a goal is about that is not concluded to hold; raise BadInputError when all goals hold then."""
+        result = self._result
+        if step == self.last_step and result is not None and result.get("verdict") == "done":
+            raise _problem(goal, "the robot concluded that this holds: verdict(done); why tells the reason")
+        because = "it is not concluded that this goal holds" + (" yet" if step < self.last_step else "")
+        found = explain_goal(self.beliefs, goal, step)
+        return Reason(f"not {goal}", because, ReasonKind.NEGATION, f"step {step}", (found,))
+
     def _why_not_verdict(self, wanted: str) -> Reason:
         """Return why the verdict is another one, or why there is none."""
-        found = explain_verdict(self.beliefs, self._task)
+        found = explain_verdict(self.beliefs, self._task_at(self.last_step))
         if found is None:
-            below = tuple(explain_goal(self.beliefs, goal, self.last_step) for goal in self._task.goals)
-            because = "there is no verdict yet: the run goes on"
+            below = tuple(
+                explain_goal(self.beliefs, goal, self.last_step) for goal in self._task_at(self.last_step).goals
+            )
+            because = NO_VERDICT
             return Reason(f"not {wanted}", because, ReasonKind.NEGATION, f"step {self.last_step}", below)
         if _fits(wanted, found.claim):
             raise _problem(wanted, f"this is the verdict: {found.claim}; why tells the reason")
@@ -138,7 +174,7 @@ class Questions:
     def why_step(self, step: int | None = None) -> Reason:
         """Return the reason of the command of a step (None for the last one): goals, facts, and what was not chosen."""
         with _refusing_damage("step"):
-            return explain_command(self.beliefs, self._task, self._checked(step))
+            return explain_command(self.beliefs, self._task_at(max(0, self._checked(step) - 1)), self._checked(step))
 
     def _why_derived(self, atom: str, step: int) -> Reason:
         """Return the reason of an atom of a predicate that users' rules define, or of `object(N)`."""
@@ -149,13 +185,25 @@ class Questions:
             found = self.beliefs.reason(fact, step)
             return found or Reason(fact, "it is assumed", ReasonKind.TASK, "what was assumed")
 
+        name, arguments = atom_parts(atom)
+        signature = name, len(arguments)
+        call = call_deriving(self.beliefs.record.decisions(step), signature, self._rule_files)
+        if call is not None:
+            return self.beliefs.prove(call, atom, step)
+        if signature not in BELIEF_PREDICATES and signature not in query_predicates(self._rule_files):
+            raise BadInputError([unknown_predicate(atom, signature, self._rule_files)])
+        if _has_variables(atom):
+            holding = certain_atoms(facts, self._rule_files)
+            atom = next((one for one in holding if _fits(atom, one)), atom)
+            if _has_variables(atom):
+                raise _problem(atom, "no atom of this form certainly holds by what is believed")
         return prove_query_atom(facts, atom, leaf, self._rule_files)
 
     def _why_verdict(self, wanted: str) -> Reason:
         """Return the reason of the verdict; raise BadInputError when it is another one, or the run goes on."""
-        found = explain_verdict(self.beliefs, self._task)
+        found = explain_verdict(self.beliefs, self._task_at(self.last_step))
         if found is None:
-            raise _problem(wanted, "there is no verdict yet: the run goes on")
+            raise _problem(wanted, NO_VERDICT)
         if not _fits(wanted, found.claim):
             raise _problem(wanted, f"this is not the verdict: it is {found.claim}")
         return found
@@ -210,6 +258,11 @@ def _fits(wanted: str, fact: str) -> bool:
         if argument != "_" and (known.setdefault(argument, value) if is_variable else argument) != value:
             return False
     return True
+
+
+def _has_variables(atom: str) -> bool:
+    """Return whether an argument of an atom stands for anything."""
+    return any(QUESTION_VARIABLE.fullmatch(argument) for argument in atom_parts(atom)[1])
 
 
 def _is_weak(wanted: str, believed: str) -> bool:

@@ -12,6 +12,7 @@ live_story  a run that is read step by step, and changed on the way
 recorded_story  an episode that is read step by step; the live run that repeats it
 changes     assumptions and other goals, from a step on
 interrupts  Ctrl-C during a step
+time_limit  a limit of wall-clock time for a run
 warming     compilation of geometry's kernels before the first run
 
 Public names: `Session`, `Result`, `make_robot`, `run_trial`, `open_story`, `LiveStory`, `repeat_until`, `warm`.

@@ -1,7 +1,8 @@
 """Forks: a recorded run is repeated up to a step, and goes on with another task, other rules or other options.
 
-The episode of a fork says in its header, as `forked`, which stages it consists of: until which step the run had which
-options and which task. So it can be repeated, resumed and forked again without the episode that it comes from.
+The episode of a fork says in its header, as `forked`, which stages it consists of: until which command the run had
+which options and which task. The impression after the last command of a stage is interpreted with what counts in the
+next stage (`Session.adopt`). So it can be repeated, resumed and forked again without the episode that it comes from.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +14,8 @@ from typing import Any, NamedTuple
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from simulator.episode.episode import Episode, EpisodeLine, EpisodeLog, encode
 from simulator.episode.record import header, recorded_task, rules_sum
-from simulator.run.session import RobotMaker, RobotRedirector, Session
+from simulator.run.robots import warm_for
+from simulator.run.session import RobotMaker, Session
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 
@@ -23,7 +25,7 @@ class RunStage(NamedTuple):
 
     Attributes
     ----------
-    until : the number of the last step of the part.
+    until : the number of the last step of the part; its belief is that of the following part.
     scenario : the world and the task; without expectations.
     settings : the options.
     entry : the part as an element of `forked`.
@@ -82,7 +84,7 @@ def stages_until(
 def _entries_until(head: EpisodeLine, step: int) -> list[EpisodeLine]:
     """Return the stages of a recorded run up to a step, as elements of `forked`."""
     entries: list[EpisodeLine] = list(head.get("forked", ()))
-    before = list(takewhile(lambda entry: entry["until"] < step, entries))
+    before = list(takewhile(lambda entry: entry["until"] <= step, entries))
     last = entries[len(before)] if len(before) < len(entries) else head
     return [*before, {"until": step, "options": last["options"], "task": last["task"]}]
 
@@ -109,7 +111,6 @@ def repeat_stages(
     scenario: Scenario,
     settings: Settings,
     make: RobotMaker,
-    redirect: RobotRedirector,
     log: EpisodeLog,
     check: Callable[[EpisodeLine], None] = lambda line: None,
 ) -> Session:
@@ -118,10 +119,10 @@ def repeat_stages(
     Parameters
     ----------
     stages : the stages that are repeated, at least one.
-    scenario, settings : those of the stage that follows.
-    make, redirect : make the robot, and let it go on with another task or other options.
+    scenario, settings : those of the stage that follows; its first line is the last one of the stages, made anew.
+    make : makes the robot.
     log : the episode that is written; its header names the stages.
-    check : called with each repeated line; raises when it is not as it must be.
+    check : called with each line, the last one as it is before the following stage; raises when it is not as wanted.
 
     Returns
     -------
@@ -131,20 +132,23 @@ def repeat_stages(
     ------
     BadInputError : the run ends before the stages do, or `check` raises.
     """
-    session = Session(stages[0].scenario, stages[0].settings, make, log)
-    forked = [stage.entry for stage in stages]
-    check(session.wake(header(scenario, settings) | {"forked": forked}))
-    for number, stage in enumerate(stages):
+    session = Session(stages[0].scenario, stages[0].settings, make, EpisodeLog(None))
+    log.write(header(scenario, settings) | {"forked": [stage.entry for stage in stages]})
+    session.wake()
+    following = [(stage.scenario, stage.settings) for stage in stages[1:]]
+    for stage, after in zip(stages, [*following, (scenario, settings)], strict=True):
         while session.line["step"] < stage.until and not session.finished:
-            check(session.step())
+            check(session.line)
+            log.write(session.line)
+            session.step()
         if session.line["step"] < stage.until:
             what = f"the run ends at step {session.line['step']}, and is to be forked at step {stage.until}"
             raise _unlike("utak", 1, what, "another version of utak may have recorded it")
-        following = stages[number + 1] if number + 1 < len(stages) else None
-        if following is None:
-            session.change(scenario, settings, redirect)
-        else:
-            session.change(following.scenario, following.settings, redirect)
+        if stage is stages[-1]:
+            check(session.line)
+        warm_for(make, after[0].task, after[1])
+        session.adopt(*after)
+    session.write_to(log)
     return session
 
 
@@ -155,7 +159,6 @@ def repeat_until(
     scenario: Scenario,
     settings: Settings,
     make: RobotMaker,
-    redirect: RobotRedirector,
     log: EpisodeLog,
     kb_files: Sequence[str] = (),
 ) -> Session:
@@ -165,9 +168,9 @@ def repeat_until(
     ----------
     name : the name of the episode, for messages.
     episode : the recorded run.
-    step : the number of the last step that is repeated.
+    step : the number of the last step that is repeated. It is interpreted anew, with what counts from then on.
     scenario, settings : the task, the expectations and the options from then on.
-    make, redirect : make the robot, and let it go on with another task or other options.
+    make : makes the robot.
     log : the episode that is written.
     kb_files : files of rules, among which those of the recorded run are found; those of `settings` are looked at, too.
 
@@ -193,7 +196,7 @@ def repeat_until(
             what = "the run does not repeat this line: another version of utak, or the episode was changed"
             raise _unlike(place, number + 2, what)
 
-    return repeat_stages(stages, scenario, settings, make, redirect, log, check)
+    return repeat_stages(stages, scenario, settings, make, log, check)
 
 
 def _unlike(name: str, line: int, what: str, hint: str = "") -> BadInputError:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import NamedTuple
 
 import shapely
@@ -10,7 +11,7 @@ from kb.language.diagnostics import BadInputError
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, facts_of_line, header
 from simulator.run.changes import AssumedRules, Change, RunConditions, changed_conditions
-from simulator.run.robots import make_robot
+from simulator.run.robots import make_robot, warm_for
 from simulator.run.session import RobotMaker, Session
 from simulator.scenario.picture import draw
 from simulator.scenario.scenario import Scenario
@@ -209,7 +210,7 @@ class LiveStory:
             self._moment = changed
             return after
         with self._errors_as_typed():
-            session = self._forward(self._session_at(moment, moment.at - 1), changed, moment.at)
+            session = self._adopted(self._session_at(moment, moment.at), changed, moment.at)
         self._moment = changed.with_step(session, moment.at)
         return after
 
@@ -242,14 +243,22 @@ class LiveStory:
         return session
 
     def _forward(self, session: Session, moment: StoryMoment, step: int) -> Session:
-        """Let a session that rests at the step before take a step, under the conditions of that step; return it."""
-        if step in moment.conditions:
-            conditions = moment.conditions[step]
-            session.adopt(self._files(conditions), conditions.task if conditions.is_changed_task else None)
+        """Let a session that rests at the step before take a step; return it with the conditions of that step."""
         if step == 0:
             session.wake()
         else:
             session.step()
+        return self._adopted(session, moment, step) if step in moment.conditions else session
+
+    def _adopted(self, session: Session, moment: StoryMoment, step: int) -> Session:
+        """Let a session that rests at a step adopt the conditions that begin there; return it."""
+        conditions = moment.conditions[step]
+        scenario = self.scenario
+        if conditions.is_changed_task:  # nothing is expected of the truth any more
+            scenario = replace(scenario, task=conditions.task, expectations=None)
+        settings = replace(self.settings, kb_files=self._files(conditions))
+        warm_for(self._make, scenario.task, settings)
+        session.adopt(scenario, settings)
         return session
 
     @contextmanager

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
 from kb.body import Body, Command, Impression
@@ -10,6 +10,7 @@ from kb.task.task import Task
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
+from simulator.run.time_limit import TimeLimit
 from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
 from simulator.scenario.points import ExpectationOutcome, judge_expectations
 from simulator.scenario.scenario import Scenario
@@ -82,20 +83,18 @@ class FollowingRobotProtocol(Protocol):
 
 @runtime_checkable
 class AdoptingRobotProtocol(Protocol):
-    """A robot that takes other rules and another task while it runs."""
+    """A robot that takes another task and other options while it runs."""
 
-    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
-        """Take other rules, and another task unless None, for all that comes after the next impression."""
+    def adopt(self, task: Task, settings: Settings) -> StepReportProtocol:
+        """Interpret the newest impression anew, as if task and options were these; return the new report on it."""
 
 
 class CannotAdoptError(Exception):
-    """Raised by a robot that takes no other rules and no other task while it runs."""
+    """Raised where a robot does not take another task or other options while it runs."""
 
 
 # Makes a robot from its body, its task and the options of the run.
 RobotMaker = Callable[[Body, Task, Settings], RobotProtocol]
-# Lets a robot go on with another task or other options of the run.
-RobotRedirector = Callable[[RobotProtocol, Task, Settings], None]
 
 
 @dataclass(frozen=True)
@@ -112,6 +111,7 @@ class Result:
     unmet : the expectations that the truth does not meet, as text.
     came : what came instead of each of them, in words.
     outcomes : what came of each expectation that a test tests, with its points.
+    seconds : the limit of time that ended the run; None when the robot ended it.
     """
 
     believed: bool
@@ -122,12 +122,23 @@ class Result:
     unmet: tuple[str, ...] = field(default=())
     came: tuple[str, ...] = field(default=())
     outcomes: tuple[ExpectationOutcome, ...] = field(default=())
+    seconds: float | None = None
 
     @property
     def line(self) -> EpisodeLine:
         """The last line of the episode."""
         names = ("believed", "achieved", "verdict", "reason", "steps")
-        return {"result": {name: getattr(self, name) for name in names}}
+        values = {name: getattr(self, name) for name in names}
+        return {"result": values if self.seconds is None else {**values, "seconds": self.seconds}}
+
+
+@dataclass(frozen=True)
+class _LimitVerdict:
+    """The verdict of a run that ended before the robot had one. reason : why, in words."""
+
+    reason: str
+    believed: bool = False
+    verdict: str = "limit"
 
 
 class Session:
@@ -161,15 +172,39 @@ class Session:
         self._log.write(header(self.scenario, self.settings) if head is None else head)
         return self._record(self.robot.wake())
 
-    def change(self, scenario: Scenario, settings: Settings, redirect: RobotRedirector) -> None:
-        """Go on with another scenario in the same world, and with other options.
+    def adopt(self, scenario: Scenario, settings: Settings) -> EpisodeLine:
+        """Go on from the present step with another scenario in the same world, and with other options.
 
-        scenario : the task and the expectations from now on. settings : the options from now on; with another seed, the
-        randomness begins anew. redirect : lets the robot go on with them.
+        This is the one way in which a run is changed from outside. The change counts from the present step on: what
+        happened in the world stays, its impression is interpreted anew, and the next command is decided anew. Other
+        noise counts from the next command on.
+
+        Parameters
+        ----------
+        scenario : the task and the expectations from now on; its world is the same.
+        settings : the options from now on. With another seed, the randomness begins anew.
+
+        Returns
+        -------
+        The last line, with what is believed now. It is not written: the line of before may stand in the episode.
+
+        Raises
+        ------
+        CannotAdoptError : the robot cannot do that.
+        BadInputError : users' rules have errors. The session must not be used any more.
         """
+        if not isinstance(self.robot, AdoptingRobotProtocol):
+            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
+        report = self.robot.adopt(scenario.task, settings)
         self.table.disturb(settings.noise, settings.seed if settings.seed != self.settings.seed else None)
         self.scenario, self.settings = scenario, settings
-        redirect(self.robot, scenario.task, settings)
+        self.line = self.line | {"belief": report.belief, "why": report.why}
+        return self.line
+
+    def write_to(self, log: EpisodeLog) -> None:
+        """Write the lines from now on, the last one first, to another episode."""
+        self._log = log
+        log.write(self.line)
 
     def step(self) -> EpisodeLine:
         """Let the robot act once, write what happened, and return the last line.
@@ -184,37 +219,64 @@ class Session:
         """Whether the robot has a verdict."""
         return self.robot.finished
 
-    def end(self) -> Result:
-        """Compare the verdict with the truth, write the result and return it."""
-        verdict = self.robot.verdict
+    def end(self, limit: TimeLimit | None = None) -> Result:
+        """Compare the verdict with the truth, write the result and return it.
+
+        limit : the limit of time that ends the run before the robot has a verdict; None when the robot has one.
+        """
+        verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit)
         expected = self.scenario.expectations or ()
         missed = shortfalls(expected, self.scenario.world, self._track, str(verdict.verdict))
         achieved = None if self.scenario.expectations is None else not missed and not should_fail(expected)
         outcomes = judge_expectations(expected, missed, verdict.believed, verdict.reason)
         steps = self._track[-1].step
         unmet, came = tuple(map(str, missed)), tuple(missed.values())
-        result = Result(verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes)
+        seconds = None if limit is None else limit.seconds
+        result = Result(
+            verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes, seconds
+        )
         self._log.write(result.line)
         return result
 
-    def run(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+    def run(self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None) -> Result:
         """Run from waking to the end, and return the result.
 
-        watch : called with this session after every step.
+        watch : called with this session after every step. limit : the time that the run may take, waking included.
         """
+        if limit is not None:
+            limit.begin()
         self.wake()
         watch(self)
-        return self.go_on(watch)
+        return self._to_the_end(watch, limit)
 
-    def go_on(self, watch: Callable[["Session"], None] = lambda session: None) -> Result:
+    def go_on(
+        self, watch: Callable[["Session"], None] = lambda session: None, limit: TimeLimit | None = None
+    ) -> Result:
         """Run from the present step to the end, and return the result.
 
-        watch : called with this session after every step.
+        watch : called with this session after every step. limit : the time that the run may take from now on. Steps
+        that the episode held before, when it is resumed, do not count.
         """
+        if limit is not None:
+            limit.begin()
+        return self._to_the_end(watch, limit)
+
+    def _to_the_end(self, watch: Callable[["Session"], None], limit: TimeLimit | None) -> Result:
+        """Take steps until there is a verdict or the time is over, and return the result."""
         while not self.finished:
+            if limit is not None and self._log.is_repeating:
+                limit.begin()
+            elif limit is not None and limit.is_over:
+                return self.end(limit)
             self.step()
             watch(self)
         return self.end()
+
+    def _verdict_of(self, limit: TimeLimit) -> "_LimitVerdict":
+        """Return the verdict of a run that a limit of time ends."""
+        decision = getattr(self.robot, "decision", None)
+        coming = "" if decision is None else f"; the next command would be: {decision.why}"
+        return _LimitVerdict(f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}")
 
     def fork(self) -> "Session":
         """Return a copy of this run that goes on by itself and writes no episode; this run is not changed.
@@ -225,24 +287,6 @@ class Session:
         """
         nothing = EpisodeLog(None)
         return deepcopy(self, {id(self._log): nothing, id(self.scenario): self.scenario, id(nothing): nothing})
-
-    def adopt(self, kb_files: tuple[str, ...], task: Task | None = None) -> None:
-        """Let the robot use other rules, and another task, for all that comes after its next impression.
-
-        Parameters
-        ----------
-        kb_files : paths of users' rules, all of them.
-        task : the new task; None to keep the old one. With another task nothing is expected of the truth any more.
-
-        Raises
-        ------
-        CannotAdoptError : the robot cannot do that.
-        """
-        if not isinstance(self.robot, AdoptingRobotProtocol):
-            raise CannotAdoptError("this robot takes no assumptions and no other goals while it runs")
-        self.robot.adopt(kb_files, task)
-        if task is not None:
-            self.scenario = replace(self.scenario, task=task, expectations=None)
 
     def _record(self, report: StepReportProtocol) -> EpisodeLine:
         """Write a step and return its line."""

@@ -117,7 +117,7 @@ def weights_of(facts: Sequence[Fact]) -> dict[Fact, int]:
 
     Where `fails` is expected, only it, `verdict(V)` and expectations with a weight of their own are tested.
     """
-    stated = {fact.args[0]: _number(fact) for fact in facts if fact.name == "weight"}
+    stated = {fact.args[0]: number_of(fact) for fact in facts if fact.name == "weight"}
     failing = should_fail(facts)
     return {
         fact: stated.get(fact, 1)
@@ -202,14 +202,14 @@ def shortfalls(
     return found
 
 
-def _shape(fact: Fact) -> Any:
+def region_of(fact: Fact) -> Any:
     """Return the shape in a fact's second argument."""
     term = fact.args[1]
     assert isinstance(term, Text)
     return parse_wkt(term.value)
 
 
-def _number(fact: Fact) -> int:
+def number_of(fact: Fact) -> int:
     """Return the number in a fact's last argument."""
     term = fact.args[-1]
     assert isinstance(term, Number)
@@ -230,7 +230,7 @@ def _place(fact: Fact, snapshot: Snapshot) -> str:
 
 def _inside(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when all of the thing is in the region at the end, else where it is."""
-    region, thing = _shape(fact).buffer(EXPECTATION_TOLERANCE), _thing(fact, track[-1])
+    region, thing = with_tolerance(region_of(fact)), _thing(fact, track[-1])
     if region.covers(thing):
         return ""
     away = thing.distance(region)
@@ -240,15 +240,16 @@ def _inside(fact: Fact, track: Sequence[Snapshot]) -> str:
 
 def _near(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing is near enough to the shape at the end, else how far away it is."""
-    away = _thing(fact, track[-1]).distance(_shape(fact))
-    if away <= decimal_value(fact.args[2]) + EXPECTATION_TOLERANCE:
+    thing = _thing(fact, track[-1])
+    if is_near(fact, thing):
         return ""
+    away = thing.distance(region_of(fact))
     return f"{_place(fact, track[-1])} at the end, {away:.2f} squares away from it"
 
 
 def _visits(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing's centre was in the region at some step, else how near it came."""
-    region = _shape(fact)
+    region = region_of(fact)
     away = [float(region.distance(_thing(fact, snapshot).centroid)) for snapshot in track]
     if not min(away):
         return ""
@@ -258,7 +259,7 @@ def _visits(fact: Fact, track: Sequence[Snapshot]) -> str:
 
 def _avoids(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing's centre was in the region at no step, else when it was."""
-    region = _shape(fact)
+    region = region_of(fact)
     there = [snapshot for snapshot in track if region.covers(_thing(fact, snapshot).centroid)]
     return f"it was there at step {there[0].step}: {_place(fact, there[0])}" if there else ""
 
@@ -275,10 +276,27 @@ def winding(track: Sequence[Snapshot], name: str) -> float:
     """Return by how many degrees Utak's track winds around the centre of a thing, counter-clockwise positive."""
     total = 0.0
     for before, after in pairwise(track):
-        centre = after.polygons[name].centroid
-        start, end = (math.atan2(y - centre.y, x - centre.x) for x, y in (before.utak, after.utak))
-        total += (math.degrees(end - start) + 180.0) % 360.0 - 180.0
+        total += winding_of_step(before.utak, after.utak, after.polygons[name].centroid)
     return total
+
+
+def winding_of_step(start: tuple[float, float], end: tuple[float, float], centre: Any) -> float:
+    """Return by how many degrees a straight step winds around a point, counter-clockwise positive: -180 to 180.
+
+    start, end : places, squares, table frame. centre : the point, of shapely.
+    """
+    before, after = (math.atan2(y - centre.y, x - centre.x) for x, y in (start, end))
+    return (math.degrees(after - before) + 180.0) % 360.0 - 180.0
+
+
+def is_near(fact: Fact, thing: Any) -> bool:
+    """Return whether a thing is as near to the shape of an expectation `near` as it says."""
+    return bool(thing.distance(region_of(fact)) <= decimal_value(fact.args[2]) + EXPECTATION_TOLERANCE)
+
+
+def with_tolerance(region: Any) -> Any:
+    """Return a region within which a thing is `inside`."""
+    return region.buffer(EXPECTATION_TOLERANCE)
 
 
 def _unmoved(fact: Fact, track: Sequence[Snapshot]) -> str:
@@ -293,7 +311,7 @@ def _unmoved(fact: Fact, track: Sequence[Snapshot]) -> str:
 
 def _pose(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing lies as wanted at the end, else how far its outline is from that."""
-    name, place = str(fact.args[0]), _shape(fact)
+    name, place = str(fact.args[0]), region_of(fact)
     wanted = rotate(track[0].polygons[name], decimal_value(fact.args[2]), origin="centroid")
     wanted = translate(wanted, place.x - wanted.centroid.x, place.y - wanted.centroid.y)
     away = float(track[-1].polygons[name].hausdorff_distance(wanted))
@@ -305,7 +323,7 @@ def _pose(fact: Fact, track: Sequence[Snapshot]) -> str:
 def _within(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when no more commands were given than allowed, else how many were."""
     steps = track[-1].step
-    if steps <= _number(fact):
+    if steps <= number_of(fact):
         return ""
     return "1 command was given" if steps == 1 else f"{steps} commands were given"
 

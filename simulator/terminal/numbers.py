@@ -7,6 +7,8 @@ WHOLE_NUMBER = re.compile(r"[-+]?[0-9]{1,19}")  # at most 19 digits
 # Digits with at most one point, and an exponent.
 DECIMAL_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 
+MIN_SECONDS, MAX_SECONDS = 0.001, 1_000_000  # the bounds of `--seconds` of runs; conventions
+
 
 def parse_whole(text: str, low: int, high: int) -> int:
     """Return the integer that a text denotes; raise ArgumentTypeError unless it is from `low` to `high`.

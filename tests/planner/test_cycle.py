@@ -215,6 +215,21 @@ def test_each_step_reports_command_belief_and_reason() -> None:
     assert set(report.belief["bound"]) == {"x"}
 
 
+def test_adopting_what_counts_already_changes_nothing() -> None:
+    """The newest impression is interpreted anew with the same outcome however often; the run stays the same."""
+    want, body = run(THINGS, SQUARE)[1].commands, DrawnBody(THINGS)
+    robot = Robot(body, SQUARE, Options())
+    with pytest.raises(ValueError, match="has not been woken"):
+        robot.adopt(SQUARE, Options())
+    report = robot.wake()
+    while not robot.finished:
+        assert robot.adopt(SQUARE, Options()) == report
+        assert robot.adopt(Task({}, (), (NORTHEAST,)), Options()) != report
+        assert robot.adopt(SQUARE, Options()) == report  # what was adopted between leaves no trace
+        report = robot.step()
+    assert body.commands == want
+
+
 @pytest.mark.parametrize("task", [Task({}, (), (NORTHEAST,)), SQUARE], ids=["corner", "square"])
 def test_a_quarter_turn_of_table_and_heading_changes_nothing(task: Task) -> None:
     rows, want = THINGS, run(THINGS, task)[1].commands

@@ -1,12 +1,14 @@
 """Other minds in the body: commands, verdicts, limits, and forks of their runs."""
 
 import threading
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import utak
+from simulator.run.session import CannotAdoptError
 
 WORLD = "bbbbbbb\nb.....b\nb.....b\nb..U..b\nbbbbbbb\n"
 ROOM = utak.Scenario.from_text(
@@ -84,6 +86,15 @@ def test_the_run_of_a_mind_is_forked_with_the_mind() -> None:
     assert other.verdict == "done"  # the mind was asked again, and stands in the corner
     assert other._session.robot.mind.tasks == [["at(utak,corner(northwest))"], ["at(utak,start)"]]
     assert run._session.robot.mind.tasks == [["at(utak,corner(northwest))"]]
+
+
+def test_a_mind_takes_no_rules() -> None:
+    """Rules would have no effect on a mind that reasons by itself, so they are refused."""
+    run = utak.Run(ROOM, mind=Follower)
+    session = run._session
+    assert session is not None
+    with pytest.raises(CannotAdoptError, match="Follower takes no rules"):
+        session.adopt(ROOM.content, replace(run.settings, kb_files=("rules.lp",)))
 
 
 class Locked(Follower):

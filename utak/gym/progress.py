@@ -1,23 +1,25 @@
 """Which expectations of expect.lp are met, halt after halt; the same as `simulator.scenario.expectation` says at once.
 
-Each expectation is a watch that sees every halt and keeps what it needs, so that a halt costs little.
+Each expectation is a watch that sees every halt and keeps what it needs, so that a halt costs little. What an
+expectation means at one halt is said in `simulator.scenario.expectation` alone.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import shapely
 
-from kb.language.arguments import decimal_value
-from kb.language.terms import Fact, Number, Text
-from kb.language.wkt import parse_wkt
+from kb.language.terms import Fact
 from simulator.scenario.expectation import (
-    EXPECTATION_TOLERANCE,
     MIN_CIRCLING_DEGREES,
     Snapshot,
+    is_near,
+    number_of,
+    region_of,
     unmet,
     weights_of,
+    winding_of_step,
+    with_tolerance,
 )
 from simulator.world.world import World, outer_ring
 
@@ -70,8 +72,7 @@ class ExpectationProgress:
 
 def time_limit(expectations: Sequence[Fact]) -> int | None:
     """Return the least number of commands that `within` allows; None without one."""
-    limits = [fact.args[0] for fact in expectations if fact.name == TIME_LIMIT]
-    return min((limit.value for limit in limits if isinstance(limit, Number)), default=None)
+    return min((number_of(fact) for fact in expectations if fact.name == TIME_LIMIT), default=None)
 
 
 def _watch(fact: Fact, world: World) -> Watch:
@@ -90,14 +91,13 @@ def _watch(fact: Fact, world: World) -> Watch:
 
 def _inside(fact: Fact) -> Watch:
     """Return the watch whether all of a thing, or the robot, is in a region."""
-    region = _region(fact).buffer(EXPECTATION_TOLERANCE)
+    region = with_tolerance(region_of(fact))
     return _there(str(fact.args[0]), region, region.covers)
 
 
 def _near(fact: Fact) -> Watch:
     """Return the watch whether a thing, or the robot, is near a shape."""
-    shape, most = _region(fact), decimal_value(fact.args[2]) + EXPECTATION_TOLERANCE
-    return _remembering(str(fact.args[0]), lambda thing: bool(thing.distance(shape) <= most))
+    return _remembering(str(fact.args[0]), lambda thing: is_near(fact, thing))
 
 
 def _visits(fact: Fact) -> Watch:
@@ -119,9 +119,7 @@ def _circles(fact: Fact) -> Watch:
     def watch(halt: Snapshot) -> bool:
         nonlocal total, before
         if halt.step:
-            centre = halt.polygons[name].centroid
-            start, end = (math.atan2(y - centre.y, x - centre.x) for x, y in (before, halt.utak))
-            total += (math.degrees(end - start) + 180.0) % 360.0 - 180.0
+            total += winding_of_step(before, halt.utak, halt.polygons[name].centroid)
         before = halt.utak
         return abs(total) >= MIN_CIRCLING_DEGREES
 
@@ -144,9 +142,8 @@ def _unmoved(fact: Fact) -> Watch:
 
 def _within(fact: Fact) -> Watch:
     """Return the watch whether no more commands were given than allowed."""
-    most = fact.args[0]
-    assert isinstance(most, Number)
-    return lambda halt: halt.step <= most.value
+    most = number_of(fact)
+    return lambda halt: halt.step <= most
 
 
 def _whole_track(fact: Fact, world: World) -> Watch:
@@ -162,7 +159,7 @@ def _whole_track(fact: Fact, world: World) -> Watch:
 
 def _centre_there(fact: Fact) -> Watch:
     """Return the watch whether the centre of a thing, or the robot, is in a region now."""
-    region = _region(fact)
+    region = region_of(fact)
     return _there(str(fact.args[0]), region, lambda thing: region.covers(thing.centroid))
 
 
@@ -197,10 +194,3 @@ def _ever(now: Watch) -> Watch:
         return held
 
     return watch
-
-
-def _region(fact: Fact) -> Any:
-    """Return the shape in the second argument of an expectation."""
-    term = fact.args[1]
-    assert isinstance(term, Text)
-    return parse_wkt(term.value)

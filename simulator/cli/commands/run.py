@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from simulator.scenario.settings import PATH_CHOICES
 from simulator.scenario.untrusted import add_untrusted_option, refuse_links
 from simulator.terminal import exits
-from simulator.terminal.numbers import parse_decimal, parse_whole
+from simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
 from simulator.terminal.streams import escape_controls
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from simulator.episode.episode import Episode, EpisodeLine
     from simulator.run.session import Result, Session
+    from simulator.run.time_limit import TimeLimit
     from simulator.scenario.scenario import Scenario
     from simulator.scenario.settings import Settings
 
@@ -34,6 +35,7 @@ def add(parts: Any) -> None:
         "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
     )
     part.add_argument("--html", metavar="FILE", help="write the whole run as a page that plays it in any browser")
+    part.add_argument("--seconds", type=_seconds, metavar="S", help="end a run that takes longer, after a step")
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
     part.add_argument(
         "--from",
@@ -135,7 +137,7 @@ def _run(
     """Run from the start, or go on from the episode that --log names; return the result."""
     from simulator.episode.episode import EpisodeLog
     from simulator.run.forking import repeat_stages, stages_until
-    from simulator.run.robots import make_robot, redirect_robot
+    from simulator.run.robots import make_robot
     from simulator.run.session import Session
 
     head = _recorded_header(options) or {}
@@ -144,8 +146,8 @@ def _run(
     before = stages_until(options.log, head, None, scenario, rules) if "forked" in head else []
     with EpisodeLog(options.log, options.resume, options.force, listen) as log:
         if not before:
-            return Session(scenario, settings, make_robot, log).run(watch)
-        return repeat_stages(before, scenario, settings, make_robot, redirect_robot, log).go_on(watch)
+            return Session(scenario, settings, make_robot, log).run(watch, _time_limit(options))
+        return repeat_stages(before, scenario, settings, make_robot, log).go_on(watch, _time_limit(options))
 
 
 def _run_fork(
@@ -154,15 +156,22 @@ def _run_fork(
     """Repeat the episode of --from up to --at, go on with the options given now, and return the result."""
     from simulator.episode.episode import EpisodeLog, read_episode
     from simulator.run.forking import options_at, repeat_until
-    from simulator.run.robots import make_robot, redirect_robot
+    from simulator.run.robots import make_robot
 
     episode = read_episode(options.origin)
     settings = settings_of(options, options_at(episode.header, options.at))
     with EpisodeLog(options.log, force=options.force, listen=listen) as log:
         session = repeat_until(
-            options.origin, episode, options.at, scenario, settings, make_robot, redirect_robot, log, options.from_kb
+            options.origin, episode, options.at, scenario, settings, make_robot, log, options.from_kb
         )
-        return session.go_on(watch)
+        return session.go_on(watch, _time_limit(options))
+
+
+def _time_limit(options: argparse.Namespace) -> "TimeLimit | None":
+    """Return the limit of time that --seconds states; None without it."""
+    from simulator.run.time_limit import TimeLimit
+
+    return None if options.seconds is None else TimeLimit(options.seconds)
 
 
 def _listener(options: argparse.Namespace, lines: "list[EpisodeLine]") -> "LineListener":
@@ -262,6 +271,11 @@ def _seed(text: str) -> int:
 def _steps(text: str) -> int:
     """Return the number for `--max-steps`."""
     return parse_whole(text, 0, 1_000_000)
+
+
+def _seconds(text: str) -> float:
+    """Return the number for `--seconds`."""
+    return parse_decimal(text, MIN_SECONDS, MAX_SECONDS)
 
 
 def _noise(text: str) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from simulator.cli.commands.run import add_robot_settings
 from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
-from simulator.terminal.numbers import parse_decimal, parse_whole
+from simulator.terminal.numbers import MAX_SECONDS, MIN_SECONDS, parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from simulator.sweep.results import ResultRow
 
 MAX_SWEEP_JOBS = 1024  # the greatest --jobs; a convention
-MAX_SECONDS = 1_000_000  # the greatest --seconds; a convention
 # The end of the help text.
 RESULTS_HELP = (
     "A file of results that is there already is gone on with when it is of the same sweep, and refused when it is of "
@@ -277,4 +276,4 @@ def _jobs(text: str) -> int:
 
 def _seconds(text: str) -> float:
     """Return the number for `--seconds`."""
-    return parse_decimal(text, 0.001, MAX_SECONDS)
+    return parse_decimal(text, MIN_SECONDS, MAX_SECONDS)

@@ -115,7 +115,7 @@ def _settings(name: str, head: EpisodeLine, rule_files: Sequence[str]) -> Settin
     if given != options["kb"]:
         count = len(options["kb"])
         what = (
-            f"the run used {count} files of rules, and {len(given)} are given"
+            f"the run used {count} file{'s' * (count != 1)} of rules, and {len(given)} are given"
             if count != len(given)
             else ("the run used other rules than the files that are given, or another order of them")
         )

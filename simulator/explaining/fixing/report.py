@@ -63,9 +63,12 @@ def report_values(report: FixReport) -> dict[str, Any]:
 
 
 def is_repeated(report: FixReport) -> bool:
-    """Return whether the run ended as it is recorded, when it was repeated; true for a record without an end."""
+    """Return whether the run ended as it is recorded, when it was repeated; true for a record without an end.
+
+    A run that was ended by a limit of time has none: it would have gone on.
+    """
     recorded, before = report.run.episode.result, report.before
-    return recorded is None or (before is not None and before.line["result"] == recorded)
+    return recorded is None or "seconds" in recorded or (before is not None and before.line["result"] == recorded)
 
 
 def changes_in_words(changes: WorldChanges, world: World) -> str:

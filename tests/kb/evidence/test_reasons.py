@@ -10,7 +10,9 @@ import clingo
 import pytest
 
 from benchmarks.harness.reasons import complaints, covers
-from kb.evidence.reason import Depth, Reason, ReasonKind
+from kb.evidence.proving import reason_of_proof
+from kb.evidence.reason import MAX_LEVELS, Depth, Reason, ReasonKind
+from kb.explanation.values import ProofNode
 from kb.language.diagnostics import BadInputError
 from simulator.cli.main import main
 from simulator.episode.episode import read_episode
@@ -91,6 +93,35 @@ def test_what_is_no_believed_fact_is_refused_with_its_place(run: tuple[Questions
         run[0].why(fact)
 
 
+def test_why_not_says_nothing_untrue_of_goals_things_and_verdicts(run: tuple[Questions, list[Any]]) -> None:
+    """A goal that is not attained yet, a thing that is there and not held, and a goal of nobody's."""
+    questions, lines = run
+    (goal, *_) = questions._task_at(0).goals
+    reason = questions.why_not(goal, 0)
+    assert (reason.claim, reason.because) == (f"not {goal}", "it is not concluded that this goal holds yet")
+    with pytest.raises(BadInputError, match="is a word of goals, and this is no goal of the task"):
+        questions.why_not("beside(o1, o2)", 0)
+    facts = {fact.removesuffix(".") for fact in lines[0]["belief"]["facts"]}
+    for node in sorted(fact[5:-1] for fact in facts if fact.startswith("node(o")):
+        if node.startswith("o") and node != "org":
+            assert questions.why_not(f"held({node})", 0).because.startswith(f"{node} is believed to be there")
+    cut = Questions({"task": {"goals": [goal]}}, lines, None)
+    assert cut.why_not("verdict(done)").because == "no verdict is recorded: the run goes on, or was cut short"
+
+
+def test_a_command_is_explained_by_the_goal_that_counted_then(run: tuple[Questions, list[Any]]) -> None:
+    """After a fork or a change at the prompt the goals are others, from the command after that step on."""
+    _, lines = run
+    old, new = "at(utak,start)", "at(utak,corner(southwest))"
+    forked = {"task": {"goals": [new]}, "forked": [{"until": 1, "task": {"goals": [old]}}]}
+    changed = {"task": {"goals": [old]}, "changes": [{"step": 1, "goal": "at(utak, corner(southwest))."}]}
+    for header in (forked, changed):
+        asked = Questions(header, lines[:3])
+        for step, goal in ((1, old), (2, new)):
+            claims = [reason.claim for reason in asked.why_step(step).rests_on]
+            assert {old, new} & set(claims) == {goal}
+
+
 def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
     questions, lines = run
     with pytest.raises(BadInputError, match="there is no step"):
@@ -105,6 +136,22 @@ def test_depths_show_more_and_more(run: tuple[Questions, list[Any]]) -> None:
     assert "\n" not in short
     assert mid.startswith(short)
     assert len(mid) <= len(long)
+
+
+def test_a_reason_may_rest_on_any_number_of_levels() -> None:
+    """A proof that is higher than Python's limit on recursion becomes a reason; MAX_LEVELS levels of it are written."""
+    node = ProofNode("given", "up(0)", "up(0)")
+    for number in range(1, 3_000):
+        node = ProofNode("derived", f"up({number})", "", None, (node, node))
+    reason = reason_of_proof(node, lambda fact: Reason(fact, "", ReasonKind.CELLS))
+    assert [one.claim for one in reason.walk()] == [f"up({number})" for number in range(2_999, -1, -1)]
+    lines = reason.text(Depth.LONG).split("\n")
+    assert (len(lines), lines[-1].strip()) == (MAX_LEVELS + 1, "...")
+    whole = json.loads(json.dumps(reason.as_dict()))
+    for _ in range(MAX_LEVELS - 1):
+        assert "cut" not in whole
+        (whole,) = whole["rests_on"]
+    assert whole["cut"] is True
 
 
 def test_what_stands_twice_is_written_once() -> None:

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from kb.explanation.programs import ExplanationError
 from kb.explanation.proof import explain_decision
-from kb.explanation.rendering import proof_as_dict, proof_dict, render
 from kb.explanation.values import ProofNode
 from kb.language.diagnostics import BadInputError
 from kb.language.reader import facts_from_text
@@ -147,33 +146,6 @@ def test_what_is_no_fact_never_reaches_clingo(text: str) -> None:
         explain_decision("rooms", [], [], text)
     with pytest.raises((BadInputError, ExplanationError)):
         explain_decision("rooms", [text], ["door(1,9)"], "door(1,9)")
-
-
-def test_the_three_depths_go_deeper_each() -> None:
-    proof = explain_decision("interpretation", FACTS, ANSWER, "kind(b,object,45)")
-    short, mid, long = (render(proof, depth) for depth in ("short", "mid", "long"))
-    assert "\n" not in short and proof.root.sentence in short
-    assert len(short) < len(mid) <= len(long)
-    assert "isolated(b)" in mid and "surrounds(a,b)" in long
-    with pytest.raises(KeyError):
-        render(proof, "deep")
-
-
-def test_a_proof_as_dictionary_has_each_part_once() -> None:
-    facts = [f"convex({n},{n},{n})" for n in range(6)]
-    (decision,) = best_decisions(encoding_path("corners"), "\n".join(f"{fact}." for fact in facts))
-    proof = explain_decision("corners", facts, sorted(decision.shown), "furthest(northeast,5)")
-    whole = proof_as_dict(proof)
-    assert set(whole) == {"encoding", "proof"}
-
-    def visit(node: dict) -> list[dict]:
-        return [node, *(inner for child in node["children"] for inner in visit(child))]
-
-    listed = [node["claim"] for node in visit(whole["proof"]) if node["children"]]
-    assert len(listed) == len(set(listed))
-    assert any(node["again"] for node in visit(whole["proof"]))
-    assert proof_dict(proof.root, 0)["children"] == []
-    assert len(visit(proof_dict(proof.root, 1))) == 1 + len(proof.root.children)
 
 
 def test_the_checker_finds_a_wrong_leaf_and_a_wrong_child() -> None:

@@ -1,6 +1,5 @@
 """Explanations with users' rules: in decisions, in queries, and what is wrong with their sentences."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -8,7 +7,6 @@ import pytest
 from kb.explanation.belief import explain_query_atom
 from kb.explanation.programs import DecisionProgram, ExplanationError
 from kb.explanation.proof import explain_decision
-from kb.explanation.rendering import proof_as_dict, render
 from kb.explanation.whynot import explain_absence
 from kb.language.diagnostics import BadInputError
 from kb.reasoning.query import QueryEngine
@@ -52,7 +50,8 @@ def test_what_a_users_rule_lacks_is_found(tmp_path: Path) -> None:
     facts = ["region(a,nonzero,100)", "extent(a,3)"]
     found = explain_absence("interpretation", facts, answer(rules, facts), "kind(a,object,97)", [rules])
     assert (found.missing, found.in_way) == (("mass(a,51)",), ())
-    assert "Region a is heavy: 5.1 squares" in render(found, "mid")
+    assert found.proof is not None
+    assert any(node.sentence.startswith("Region a is heavy: 5.1 squares") for node in found.proof.root.walk())
 
 
 def test_rules_that_do_not_reach_an_encoding_change_nothing(tmp_path: Path) -> None:
@@ -196,13 +195,11 @@ def test_a_changed_file_of_rules_is_read_again(tmp_path: Path) -> None:
     assert (first, second.root.sentence) == ("o1 is near o2.", "o1 is by o2.")
 
 
-def test_a_very_high_proof_is_shown_in_part(tmp_path: Path) -> None:
+def test_a_very_high_proof_is_whole(tmp_path: Path) -> None:
     rules = written(tmp_path, "up(0) :- rim(_).\nup(N + 1) :- up(N), N < 1500.\n")
     facts = [*FACTS, "rim(a)"]
     proof = explain_decision("interpretation", facts, answer(rules, facts), "up(1500)", [rules])
     assert sum(1 for _ in proof.root.walk()) > 1500
-    assert "up(1400)" in render(proof, "long")
-    json.dumps(proof_as_dict(proof))
 
 
 def test_names_of_helping_rules_are_refused(tmp_path: Path) -> None:

@@ -1,0 +1,82 @@
+"""Why an atom of a predicate that users' rules define for queries does not certainly hold: what is not believed."""
+
+from collections.abc import Sequence
+
+from kb.explanation.belief import explain_query_atom
+from kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
+from kb.explanation.values import Absence, Proof
+from kb.explanation.whynot import change_in_words, is_sensible
+from kb.language.diagnostics import BadInputError
+from kb.reasoning.query import request_entries
+from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
+
+
+def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Absence:
+    """Return why an atom does not certainly hold in queries.
+
+    Parameters
+    ----------
+    facts : the world model, atoms as text with or without full stops, such as `kind(o1,object,95).`.
+    atom : an atom of a predicate that users' rules define; likewise.
+    rule_files : the paths of files with users' rules.
+
+    Returns
+    -------
+    The least change of the believed facts after which queries answer yes, with the proof of the atom then. A change
+    that makes the atom possible and not certain does not count: then none is `found`, and the sentence says so.
+
+    Raises
+    ------
+    ExplanationError : the atom certainly holds, or the rules took too much time.
+    BadInputError, CannotOpenError : a text is no fact; users' rules have errors or cannot be read.
+    """
+    (wanted,) = canonical([atom])
+    files, given = tuple(map(str, rule_files)), canonical(facts)
+    answer = _answer(given, wanted, files)
+    if answer == "yes":
+        raise ExplanationError(f"{wanted} certainly holds by what is believed")
+    program = decision_program(BELIEF, files)
+    request = {"facts": list(given), "atom": wanted}
+    candidates = program.ask({**request, "task": "candidates", "known": list(given)})
+    candidates["facts"] = [fact for fact in candidates["facts"] if is_sensible(BELIEF, fact)]
+    found = program.ask({**request, "task": "change", "candidates": candidates})
+    missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
+    proof = _proof_after(given, missing, in_way, wanted, files) if found["found"] else None
+    start = f"{wanted} does not hold" if answer == "no" else f"whether {wanted} holds is not known"
+    if not found["found"]:
+        sentence = f"{start}; no change of what is believed was found with which it would certainly hold."
+    elif not missing and not in_way:
+        sentence = f"{start}: what is believed allows it, and something that was not seen could rule it out."
+    elif proof is None:
+        change = change_in_words(program, given, missing, in_way, "believed")
+        sentence = f"{start}; if {change}, it would be possible, and still not certain."
+    else:
+        sentence = f"{start}; it would if {change_in_words(program, given, missing, in_way, 'believed')}."
+    if proof is None:
+        return Absence(BELIEF, wanted, (), (), bool(candidates["cut"]) or found["found"], False, sentence)
+    partial = not found["least"] or (bool(candidates["cut"]) and len(missing) + len(in_way) > 1)
+    return Absence(BELIEF, wanted, missing, in_way, partial, True, sentence, None, proof)
+
+
+def _answer(facts: Sequence[str], atom: str, rule_files: tuple[str, ...]) -> str:
+    """Return what queries answer to an atom: yes, no or don't know."""
+    rules = read_rules(rule_files).query_rules if rule_files else ()
+    request = {"facts": request_entries(facts), "rules": [one.written for one in rules], "query": atom}
+    found = rules_worker().exchange({**request, "max_rows": 1, "number": 0}, MAX_RULE_SECONDS)
+    if "limit" in found:
+        raise ExplanationError(f"the explanation was given up: {found['limit']}")
+    if "rule" in found:
+        raise BadInputError([rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+    if "error" in found:
+        raise ExplanationError(found["error"])
+    return str(found["answer"])
+
+
+def _proof_after(
+    given: Sequence[str], missing: Sequence[str], in_way: Sequence[str], wanted: str, rule_files: tuple[str, ...]
+) -> Proof | None:
+    """Return why an atom certainly holds after a change of what is believed; None when it does not."""
+    try:
+        return explain_query_atom([*(fact for fact in given if fact not in in_way), *missing], wanted, rule_files)
+    except ExplanationError:
+        return None
