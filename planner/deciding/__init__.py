@@ -5,6 +5,7 @@ transport     a goal for an object: find it, look at it, carry it, or give up
 errands       the next step of the task plan, carried out
 clearing      navigation among movable obstacles: what blocks the robot is moved aside
 pursuit       subgoals of the robot itself: the best one, the route there, the next move
+keeping       whether constraints on the way were kept, by the tracks of the robot and of the things
 search        subgoals while something is missing
 verification  goal verification and active perception: looks that make sure
 tools         the stateful parts that one decision uses

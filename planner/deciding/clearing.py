@@ -96,7 +96,8 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
+    cost_maps = situation.cost_maps
+    without = CostMaps(situation.model, under, cost_maps.kept_off)
     beyond = (
         (without.distances[UNSEEN_LEVEL] != GEODESIC_UNREACHED)
         & (cost_maps.distances[UNSEEN_LEVEL] == GEODESIC_UNREACHED)

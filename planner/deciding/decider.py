@@ -4,6 +4,7 @@ planner.deciding.transport brings objects where they shall be; planner.deciding.
 """
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,8 +14,10 @@ import numpy as np
 from geometry.kernels.arrays import XY
 from kb.body import Release
 from kb.language.terms import Fact
+from kb.language.vocabulary import TRACK_GOALS
 from kb.task.binding import Reconciliation, reconcile
 from kb.task.task import Task
+from kb.tracing.decisions import record_decisions
 from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
@@ -22,6 +25,7 @@ from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
+from planner.deciding.keeping import ConstraintKeeper
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -35,11 +39,13 @@ from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import next_move
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.sights.viewpoints import TO_REACH
-from planner.situation import Situation
+from planner.situation import Situation, regions_kept_off
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS, TRACK_GOALS, Stage, stages
+from planner.stages import ORIGIN_GOALS, Stage, stages
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.task_plan import TaskPlan
+
+PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that something cannot be, as things are
 
 
 class Decider:
@@ -94,6 +100,8 @@ class Decider:
         self._clearer = ObstacleClearer()
         self._errands = ErrandRunner(pull)
         self._into_corner = IntoCorner()
+        self._keeper = ConstraintKeeper(task)
+        self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
         self._turn = 0  # the sign of the turn that was begun about an object
 
     @property
@@ -124,7 +132,21 @@ class Decider:
         BadInputError
             The user's encodings are wrong.
         """
-        cost_maps = CostMaps(model)
+        self._keeper.note(model)
+        decision = self._decided(model, track)
+        if decision.command is not None or decision.verdict == TaskVerdict.DONE:
+            return decision
+        return self._blamed_on_constraints(decision, model, track)
+
+    def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return what to do after an impression, whatever constraints have to do with a verdict.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        kept_off = regions_kept_off(self.task, self.bound, model, "utak", lenient=self._lenient)
+        cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
@@ -133,6 +155,10 @@ class Decider:
             return Decision(Release(), why)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
+        situation = replace(situation, lenient=self._lenient)
+        broken = self._keeper.broken_at_start(situation)
+        if broken is not None:
+            return qualify(broken, model)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._clearer.continue_clearing(stage, situation, self._tools)
@@ -142,12 +168,57 @@ class Decider:
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
                 unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
-                return replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
+                decision = replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
+                return self._keeper.guarded(decision, situation)
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"
             return Decision(None, why, TaskVerdict.LIMIT)
+        doubt = self._keeper.doubt_of_done(situation)
+        if doubt:
+            return Decision(None, f"what the task asks for holds, but {doubt}", TaskVerdict.LIMIT)
         return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
+
+    def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return a verdict with the constraints that leave no way, where there would be one without them.
+
+        A verdict that stands without the constraints stands with them. Else it is proved only when it stands for
+        regions that are taken as small as they surely are, too; if it does not, it is `limit`.
+
+        Parameters
+        ----------
+        decision : a verdict, but for `done`.
+        model, track : as for `decide`.
+        """
+        ways = [goal for goal in self.task.goals if goal.name in ("avoid", "carry_nothing_through")]
+        if not ways or any(str(goal) in decision.why for goal in ways):
+            return decision
+        without = self._asked(model, track, ways)
+        if without.command is None and without.verdict != TaskVerdict.DONE:
+            return without
+        alone = [goal for goal in ways if self._asked(model, track, [goal]).command is not None]
+        why = f"{decision.why}; {' and '.join(map(str, alone or ways))} leave{'s' * (len(alone or ways) == 1)} no way"
+        proof = self._asked(model, track, [], lenient=True)
+        if decision.verdict in PROOFS and proof.verdict in PROOFS:
+            return replace(decision, why=why, verdict=proof.verdict)
+        return replace(decision, why=why, verdict=TaskVerdict.LIMIT)
+
+    def _asked(
+        self, model: WorldModel, track: Sequence[XY], without: Sequence[Fact], lenient: bool = False
+    ) -> Decision:
+        """Return what would be decided without some constraints, or with regions as small as they surely are.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        without : the constraints that are left out.
+        lenient : whether regions count only where whole squares lie in them.
+        """
+        other = deepcopy(self)
+        other.task = replace(self.task, goals=tuple(goal for goal in self.task.goals if goal not in without))
+        other._keeper.task, other._lenient = other.task, lenient
+        with record_decisions():  # a question about the verdict, not a decision
+            return other._decided(model, track)
 
     def _towards(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]

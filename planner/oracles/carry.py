@@ -186,9 +186,8 @@ class CarryOracle:
         outline = Translate(margin, margin).carry(lying.outline)
         body = False
         for certainty in Certainty:
-            free = self._free(state, name, certainty, shut)
+            free, walk = self._free(state, name, certainty, shut), self._free(state, name, certainty, shut, alone=True)
             x, y = state.robot[0] + margin, state.robot[1] + margin
-            walk = free.copy()
             free |= squares(outline, free.shape[1], free.shape[0])
             self.asked += 1
             plan = plan_carrying(
@@ -225,17 +224,31 @@ class CarryOracle:
                 robot = robot[0] + motion.dx, robot[1] + motion.dy
         return state.after(name, Lying(back.polygon, pose, place), robot)
 
-    def _free(self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str]) -> Bools:
-        """Return the squares that the things of a state other than `name`, and shut doors, leave free."""
+    def _free(
+        self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str], alone: bool = False
+    ) -> Bools:
+        """Return the squares that other things of a state, shut doors and forbidden regions leave free.
+
+        Parameters
+        ----------
+        state : how everything lies.
+        name : the thing that is carried; None for none.
+        certainty : how sure the squares are.
+        shut : the names of doors that are not passed.
+        alone : whether the squares are those for the robot without the thing.
+        """
         free = self.floors.by_certainty[certainty].copy()
         rows, columns = free.shape
         margin = self.floors.margin
         for other, lying in state.things.items():
             if other != name:
                 free &= ~self._covered(other, lying, (rows, columns))
-        names = shut | {door.name for actor in (ROBOT, name) if actor for door in self._situation.shut(actor)}
+        actors = (ROBOT,) if alone or name is None else (ROBOT, name)
+        names = shut | {door.name for actor in actors for door in self._situation.shut(actor)}
         for door in names & self._doors.keys():
             free &= ~self._neck(self._doors[door], (rows, columns))
+        for actor in actors:
+            free &= ~self._situation.region_kept_off(actor, margin)
         x, y = (int(v) + margin for v in state.robot)
         if 0 <= x < columns and 0 <= y < rows:
             free[y, x] = True

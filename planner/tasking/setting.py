@@ -9,12 +9,13 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
+from kb.language.vocabulary import TRACK_GOALS
 from kb.world.model import Node
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import destination, robot_stands_on
 from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
-from planner.stages import TRACK_GOALS, Stage
+from planner.stages import Stage
 
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]

@@ -7,7 +7,9 @@ from typing import NamedTuple
 from kb.language.arguments import ArgumentType
 from kb.language.vocabulary import (
     BELIEF_PREDICATES,
+    CONSTRAINT_GOALS,
     CORNER_NAMES,
+    GOAL_CONDITIONS,
     GOAL_VOCABULARY,
     SHAPE_CLASSES,
     START_VOCABULARY,
@@ -26,7 +28,7 @@ WORDS_OF_TYPE: Mapping[str, tuple[str, ...]] = {
     "walker": ("utak",),
     "corner or name": ("corner(", "start", "utak"),
     "room or name": ("room(next)",),
-    "a goal": tuple(f"{name}(" for name in GOAL_VOCABULARY if name not in ("first", "then", "not_through")),
+    "a goal": tuple(f"{name}(" for name in GOAL_CONDITIONS if name not in CONSTRAINT_GOALS),
     "what is claimed": ("shape(", "colour("),
     "place": ("corner",),
 }
