@@ -137,6 +137,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
         ("goal", 1): (GOAL_ARGUMENT,),
+        ("wish", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
+        ("missed", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
         ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
         ("estimate", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -174,7 +176,7 @@ PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
-        "robot_in", "needed", "reached", "otherwise", "unmet", "asked", "closed",
+        "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

@@ -23,6 +23,7 @@ from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
+from planner.constraints import ROBOT_NAME
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
 from planner.deciding.keeping import ConstraintKeeper
@@ -177,7 +178,25 @@ class Decider:
         doubt = self._keeper.doubt_of_done(situation)
         if doubt:
             return Decision(None, f"what the task asks for holds, but {doubt}", TaskVerdict.LIMIT)
-        return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
+        why = " and ".join(map(str, self.stages)) + " holds"
+        wished = [str(wish) for wish, _ in self.stages[-1].wishes] if self.stages else []
+        hold = self._errands.wishes_that_hold
+        why += "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
+        return Decision(None, why, TaskVerdict.DONE)
+
+    def is_done_without_wishes(self, model: WorldModel, track: Sequence[XY]) -> bool:
+        """Return whether all goals hold as they are, so that nothing but wishes is left.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        if not self.stages or not self.stages[-1].wishes:
+            return False
+        other = deepcopy(self)
+        other.stages = (*self.stages[:-1], replace(self.stages[-1], wishes=()))
+        with record_decisions():  # a question about the end, not a decision
+            return other.decide(model, track).verdict == TaskVerdict.DONE
 
     def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return a verdict with the constraints that leave no way, where there would be one without them.
@@ -255,8 +274,31 @@ class Decider:
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
         decision = self._go(stage, situation, reconciled, track) if stage.own else None
         if decision is None:
-            return None
+            return self._go_for_wish(stage, situation, reconciled, track)
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
+
+    def _go_for_wish(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
+    ) -> Decision | None:
+        """Return the next command for a wish about the robot itself that the plan has; None for none, never a verdict.
+
+        Parameters
+        ----------
+        stage : of the task; its goals hold.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
+        found = self._errands.own_wish
+        if found is None:
+            return None
+        errand, wish = found
+        goals = tuple(goal for goal in stage.goals if goal.name not in TRACK_GOALS)
+        decision = self._go(replace(stage, goals=(*goals, wish)), situation, reconciled, track)
+        if decision is not None and decision.command is None:
+            self._errands.drop(errand, situation)
+            return None
+        return decision
 
     def _go(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
@@ -393,7 +435,9 @@ class Decider:
         ----------
         cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
         """
-        carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
+        wished = [goal for stage in self.stages for goal, _ in stage.wishes]
+        goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
+        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT_NAME})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding

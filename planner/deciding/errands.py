@@ -4,7 +4,10 @@ A thing that is brought to a place of its own goal is led by planner.deciding.tr
 end. A thing that is moved aside, or to a spot that the plan chose, is brought there by the plan executor.
 """
 
+from dataclasses import replace
+
 from geometry.manipulation.goals import End
+from kb.language.terms import Fact
 from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act
@@ -19,7 +22,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention, NextErrand
-from planner.tasking.task_plan import TaskPlan
+from planner.tasking.task_plan import Errand, TaskPlan
 
 MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
 
@@ -97,6 +100,26 @@ class ErrandRunner:
         rules = self._intention.rules
         return bool(rules.blamed and not rules.closed)
 
+    @property
+    def own_wish(self) -> tuple[Errand, Fact] | None:
+        """The next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
+        return self._intention.own_wish()
+
+    def drop(self, errand: Errand, situation: Situation) -> None:
+        """Drop the wish of a step for good: it cannot be attained.
+
+        Parameters
+        ----------
+        errand : the present step of the plan.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        self._intention.failed(errand, situation)
+
+    @property
+    def wishes_that_hold(self) -> tuple[str, ...]:
+        """The wishes that hold now, as the task states them."""
+        return self._intention.wishes_that_hold()
+
     def _follow(
         self,
         found: NextErrand,
@@ -109,7 +132,8 @@ class ErrandRunner:
         """Return the next command of an errand; a verdict or None when it cannot be done."""
         if found.goal is None:
             return bring_to_spot(found.node, found.errand.place, found.end, stage, situation, tools)
-        goal = stage.carried[found.goal]
+        goal = found.goal
+        stage = stage if goal in stage.goals else replace(stage, goals=(*stage.goals, goal))
         decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
         if decision is None:
             return None

@@ -52,7 +52,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
     ranks: dict[str, int] = {}
     for number, goal in enumerate(problem.goals):
         ranks.setdefault(goal.subject, number)
-        facts.append(f"goal({goal.name})")
+        facts.append(f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})")
         if goal.holds:
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]

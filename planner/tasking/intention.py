@@ -8,6 +8,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End, moved
+from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.goals.placement import meets_end
 from planner.oracles.carry import CarryOracle
@@ -17,7 +18,14 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.rule_effects import RuleEffects, effects_of_rules
 from planner.tasking.search import make_plan
-from planner.tasking.setting import OriginFunction, PlaceFunction, place_name, problem_of
+from planner.tasking.setting import (
+    OriginFunction,
+    PlaceFunction,
+    goal_of_place,
+    place_name,
+    problem_of,
+    wish_of_place,
+)
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
@@ -31,14 +39,14 @@ class NextErrand(NamedTuple):
     errand : the step of the plan.
     node : the object that is brought.
     end : where it shall lie, in squares, view frame.
-    goal : the number of the carried goal of the stage whose own end this is; None for a spot that the planner chose.
+    goal : the goal or wish whose own end this is; None for a spot that the planner chose.
     end_name : the name of that end among the ends of the goal; "" for a spot.
     """
 
     errand: Errand
     node: Node
     end: End
-    goal: int | None
+    goal: Fact | None
     end_name: str
 
 
@@ -86,6 +94,7 @@ class Intention:
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
+        self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self.rules = RuleEffects()
 
     @property
@@ -116,6 +125,7 @@ class Intention:
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
+        stage = self._without_dropped(stage)
         self._problem = problem_of(stage, situation, place, origin)
         if self._problem is None:
             self._kept = None
@@ -134,7 +144,7 @@ class Intention:
         ----------
         stage, situation, place, origin : as for `update`, which is called before.
         """
-        kept, problem = self._kept, self._problem
+        kept, problem, stage = self._kept, self._problem, self._without_dropped(stage)
         if kept is None or problem is None or kept.number >= len(kept.plan.errands):
             return None
         errand = kept.plan.errands[kept.number]
@@ -150,15 +160,37 @@ class Intention:
     def failed(self, errand: Errand, situation: Situation) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
 
+        A wish is dropped for good.
+
         Parameters
         ----------
         errand : the present errand.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
+        wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
+        self._dropped |= set() if wish is None else {wish}
         others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
         given = tuple((name, HERE) for name in others)
         self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
         self._kept = None
+
+    def own_wish(self) -> tuple[Errand, Fact] | None:
+        """Return the next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
+        kept = self._kept
+        if kept is None or kept.number >= len(kept.plan.errands):
+            return None
+        errand = kept.plan.errands[kept.number]
+        wish = wish_of_place(errand.place, kept.stage) if errand.subject == ROBOT else None
+        return None if wish is None else (errand, wish)
+
+    def wishes_that_hold(self) -> tuple[str, ...]:
+        """Return the wishes that hold now, as the task states them; () while no plan can be made."""
+        goals = () if self._problem is None else self._problem.goals
+        return tuple(goal.words for goal in goals if goal.weight is not None and goal.holds)
+
+    def _without_dropped(self, stage: Stage) -> Stage:
+        """Return a stage without the wishes that were dropped."""
+        return replace(stage, wishes=tuple(pair for pair in stage.wishes if pair[0] not in self._dropped))
 
     def _kept_still(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
         """Return the plan under way, moved on over errands that are done; None when what it rests on fell."""
@@ -181,7 +213,8 @@ class Intention:
     def _stands(self, kept: _Kept, problem: TaskProblem, situation: Situation) -> bool:
         """Return whether all things lie as the plan expects, and no way that is left is seen to be blocked."""
         if kept.number >= len(kept.plan.errands):
-            return all(goal.holds or goal.subject == ROBOT for goal in problem.goals)
+            missed = kept.plan.missed
+            return all(goal.holds or goal.subject == ROBOT or goal.name in missed for goal in problem.goals)
         subject = kept.plan.errands[kept.number].subject
         now = _bounds(problem, situation)
         for name, expected in kept.bounds[kept.number].items():
@@ -234,18 +267,16 @@ def _goal_of(
     situation: Situation,
     place: PlaceFunction,
     origin: OriginFunction,
-) -> tuple[int | None, str]:
-    """Return the number of the carried goal that an errand attains, and the name of its end there."""
-    for number, goal in enumerate(stage.carried):
-        prefix = f"g{number + 1}"
-        if not errand.place.startswith(f"{prefix}_"):
-            continue
-        node = problem.nodes[errand.subject]
-        land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
-        for name in (*land.ends, *land.loose):
-            if place_name(prefix, name) == errand.place:
-                return number, name
-    return None, ""
+) -> tuple[Fact | None, str]:
+    """Return the goal or wish that an errand attains, and the name of its end there."""
+    found = goal_of_place(errand.place, stage)
+    if found is None:
+        return None, ""
+    name, goal = found
+    node = problem.nodes[errand.subject]
+    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
+    ends = (*land.ends, *land.loose)
+    return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
 
 def _moved_to_view(end: End, situation: Situation) -> End:

@@ -31,6 +31,7 @@ MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on round
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
+LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encoding
 
 
 class MadePlan(NamedTuple):
@@ -62,11 +63,13 @@ class Proposal(NamedTuple):
     errands : its steps, in order.
     unmet : the goals that do not hold after them.
     facts : what the encoding was given.
+    missed : the wishes that do not hold after them, each with the commands that it may cost.
     """
 
     errands: tuple[Errand, ...]
     unmet: tuple[str, ...]
     facts: tuple[str, ...]
+    missed: Mapping[str, int]
 
 
 class PlanSearch:
@@ -97,7 +100,7 @@ class PlanSearch:
         most = horizon + MAX_MORE_ERRANDS
         best: TaskPlan | None = None
         facts: tuple[str, ...] = ()
-        better, least, proved, number = 0, 0, False, 0
+        better, least, proved, number, best_price = 0, 0, False, 0, 0
         while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
             number += 1
             proposal = self._propose(horizon)
@@ -116,10 +119,14 @@ class PlanSearch:
             better += 1
             proved = best is not None and verified == best.errands
             cost = sum(errand.commands for errand in verified)
-            if best is None or cost < best.cost or proved:
-                best, facts = TaskPlan(verified, (), cost), proposal.facts
+            price = cost + sum(proposal.missed.values())
+            if best is None or price < best_price or proved:
+                best, facts = TaskPlan(verified, (), cost, missed=tuple(proposal.missed)), proposal.facts
+                best_price = price
         if best is None:
-            best = TaskPlan((), tuple(goal.name for goal in self._problem.goals if not goal.holds))
+            best = TaskPlan(
+                (), tuple(goal.name for goal in self._problem.goals if goal.weight is None and not goal.holds)
+            )
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
             solve([TASK_ENCODING, *self._situation.rules], facts, about=self._about())
         refutations = self._answers.refutations
@@ -142,7 +149,8 @@ class PlanSearch:
             else:
                 found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
         errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
-        return Proposal(errands, unmet, facts)
+        missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
+        return Proposal(errands, unmet, facts, missed)
 
     def _offer(self) -> bool:
         """Offer places for things that are in the way; return whether any is new."""
@@ -159,7 +167,8 @@ class PlanSearch:
         total = 0
         for errand in errands:
             way = errand.subject, place[errand.subject], errand.place
-            total += self._answers.commands.get(way, LEAST_COMMANDS) + len(errand.doors)
+            least = LEAST_WALK if errand.subject == ROBOT else LEAST_COMMANDS
+            total += self._answers.commands.get(way, least) + len(errand.doors)
             place[errand.subject] = errand.place
         return total
 

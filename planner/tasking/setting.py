@@ -1,7 +1,8 @@
 """The problem of a stage: its goals with the places where they hold, and the things that may be carried."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -42,34 +43,96 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     goals: list[PlacedGoal] = []
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
-    for number, goal in enumerate(stage.carried, 1):
+    for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
-        if node is None:
-            return None
-        land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
-        ends = {**land.ends, **land.loose}
-        outline = state.things[node.name].outline
-        holds = land.holds or meets_any_end(land.loose, outline)
-        if not holds and (not ends or land.missing):
-            return None
-        goals.append(PlacedGoal(f"g{number}", str(goal), node.name, holds))
-        for name, end in ends.items():
-            places[node.name, place_name(f"g{number}", name)] = end
-            fulfils[node.name, place_name(f"g{number}", name)] = (f"g{number}",)
-    stands = {}
+        ends, open_, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
+        if node is None or not (holds or ends) or (weight is None and open_ and not holds):
+            if weight is None:
+                return None
+            continue  # a wish of which nothing is known yet
+        goals.append(PlacedGoal(name, str(goal), node.name, holds, weight))
+        for end_name, end in ends.items():
+            places[node.name, place_name(name, end_name)] = end
+            fulfils[node.name, place_name(name, end_name)] = (name,)
+    stands: dict[str, Any] = {}
     own = [goal for goal in stage.own if goal.name not in TRACK_GOALS]
-    where = [destination(goal, situation) for goal in own]
-    if own and not any(one.missing for one in where):
-        squares = where[0].squares
-        for one in where[1:]:
-            squares = np.intersect1d(squares, one.squares)
-        if len(squares):
-            name = f"g{len(goals) + 1}"
-            words = " and ".join(map(str, own))
-            goals.append(PlacedGoal(name, words, ROBOT, robot_stands_on(squares, model)))
-            stands[place_name(name, "there")] = squares
-            fulfils[ROBOT, place_name(name, "there")] = (name,)
-    return TaskProblem(things, tuple(goals), places, fulfils, stands, state)
+    squares = _common_squares(own, situation) if own else None
+    own_name = f"g{len(stage.carried) + 1}"
+    if squares is not None and len(squares):
+        goals.append(PlacedGoal(own_name, " and ".join(map(str, own)), ROBOT, robot_stands_on(squares, model)))
+        stands[place_name(own_name, "there")] = squares
+        fulfils[ROBOT, place_name(own_name, "there")] = (own_name,)
+    for name, goal, weight in _numbered_wishes(stage):
+        wished = _common_squares([*own, goal], situation) if str(goal.args[0]) == ROBOT else None
+        if wished is not None and len(wished):
+            goals.append(PlacedGoal(name, str(goal), ROBOT, robot_stands_on(wished, model), weight))
+            stands[place_name(name, "there")] = wished
+            fulfils[ROBOT, place_name(name, "there")] = (name, own_name) if own else (name,)
+    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state)
+
+
+def _numbered(stage: Stage) -> Iterator[tuple[str, Fact, int | None]]:
+    """Yield the goals and wishes of a stage for objects: name, goal, and the weight of a wish or None."""
+    yield from ((f"g{number}", goal, None) for number, goal in enumerate(stage.carried, 1))
+    yield from (one for one in _numbered_wishes(stage) if str(one[1].args[0]) != ROBOT)
+
+
+def _numbered_wishes(stage: Stage) -> Iterator[tuple[str, Fact, int]]:
+    """Yield the wishes of a stage: name, goal and weight."""
+    yield from ((f"w{number}", goal, weight) for number, (goal, weight) in enumerate(stage.wishes, 1))
+
+
+def goal_of_place(place: str, stage: Stage) -> tuple[str, Fact] | None:
+    """Return the goal or wish for an object that a place belongs to, with its name; None for a spot aside.
+
+    Parameters
+    ----------
+    place : the name of the place, as `place_name` makes it.
+    stage : of the task: the goals that shall hold now.
+    """
+    return next(((name, goal) for name, goal, _ in _numbered(stage) if place.startswith(f"{name}_")), None)
+
+
+def wish_of_place(place: str, stage: Stage) -> Fact | None:
+    """Return the wish that a place belongs to; None when it is the place of a goal, or a spot.
+
+    Parameters
+    ----------
+    place : the name of the place, as `place_name` makes it.
+    stage : of the task: the goals that shall hold now.
+    """
+    return next((goal for name, goal, _ in _numbered_wishes(stage) if place.startswith(f"{name}_")), None)
+
+
+def _goals_before_wishes(goals: list[PlacedGoal]) -> tuple[PlacedGoal, ...]:
+    """Return goals in order, those that must hold first."""
+    return tuple(sorted(goals, key=lambda goal: goal.weight is not None))
+
+
+def _ends(
+    goal: Fact,
+    node: Node,
+    state: TableState,
+    situation: Situation,
+    place: PlaceFunction,
+    origin: OriginFunction,
+) -> tuple[Mapping[str, End], bool, bool]:
+    """Return the ends of a goal for an object, whether it is open where exactly these are, and whether it holds."""
+    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
+    ends = {**land.ends, **land.loose}
+    holds = land.holds or meets_any_end(land.loose, state.things[node.name].outline)
+    return ends, bool(land.missing), holds
+
+
+def _common_squares(goals: Sequence[Fact], situation: Situation) -> Any:
+    """Return the squares on which all of some goals hold for the robot, flat indices; None while that is open."""
+    where = [destination(goal, situation) for goal in goals]
+    if any(one.missing for one in where):
+        return None
+    squares = where[0].squares
+    for one in where[1:]:
+        squares = np.intersect1d(squares, one.squares)
+    return squares
 
 
 def _can_be_carried(node: Node) -> bool:

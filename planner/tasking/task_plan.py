@@ -76,6 +76,7 @@ class TaskPlan:
         was found.
     refutations : the steps that geometry refuted on the way to it.
     rounds : how many plans were made.
+    missed : the wishes that do not hold at its end.
     """
 
     errands: tuple[Errand, ...]
@@ -85,6 +86,7 @@ class TaskPlan:
     proved: bool = True
     refutations: tuple[RefutedStep, ...] = ()
     rounds: int = 0
+    missed: tuple[str, ...] = ()
 
     @property
     def verified(self) -> bool:
