@@ -147,6 +147,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("width", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
         ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
+        ("size", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("refuted", 4): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
@@ -174,7 +175,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
-        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects",
+        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects", "size",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
     ]

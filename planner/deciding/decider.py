@@ -272,10 +272,30 @@ class Decider:
             if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever else is moved or hidden in walls
                 return decision
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
-        decision = self._go(stage, situation, reconciled, track) if stage.own else None
+        decision = self._go_along_plan(stage, situation, reconciled, track) if stage.own else None
         if decision is None:
             return self._go_for_wish(stage, situation, reconciled, track)
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
+
+    def _go_along_plan(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
+    ) -> Decision | None:
+        """Return the next command of the robot itself through the doors of the task plan; by any way where these fail.
+
+        As `_go`: None when the robot is where it shall be.
+
+        Parameters
+        ----------
+        stage : of the task; it has a goal for the robot itself.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
+        along = self._errands.along_plan(situation)
+        decision = self._go(stage, along, reconciled, track)
+        if decision is None or decision.command is not None or along.closed == situation.closed:
+            return decision
+        return self._go(stage, situation, reconciled, track)
 
     def _go_for_wish(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]

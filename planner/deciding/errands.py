@@ -67,7 +67,8 @@ class ErrandRunner:
             found = self._intention.next_errand(stage, situation, transporter.place, transporter.origin_of)
             if found is None:
                 return None
-            decision = self._follow(found, stage, situation, reconciled, transporter, tools)
+            along = self.along_plan(situation)
+            decision = self._follow(found, stage, along, reconciled, transporter, tools)
             if decision is not None and decision.command is not None:
                 return decision
             self._intention.failed(found.errand, situation)
@@ -99,6 +100,15 @@ class ErrandRunner:
         """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for."""
         rules = self._intention.rules
         return bool(rules.blamed and not rules.closed)
+
+    def along_plan(self, situation: Situation) -> Situation:
+        """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
+
+        Parameters
+        ----------
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        return self._intention.along_plan(situation)
 
     @property
     def own_wish(self) -> tuple[Errand, Fact] | None:

@@ -97,6 +97,7 @@ def _world_facts(situation: Situation) -> Iterator[str]:
             yield f"bound({parameter},{name})"
     for node in situation.model.objects:
         yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
+        yield f"size({node.name},{int(node.patch.mask.sum())})"
         if node.colour is not None:
             yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)

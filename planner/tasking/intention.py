@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.kernels.arrays import Bools
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, moved
 from kb.language.terms import Fact
+from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from planner.goals.placement import meets_end
 from planner.oracles.carry import CarryOracle
@@ -16,8 +17,8 @@ from planner.oracles.problem import HERE, ROBOT, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.rule_effects import RuleEffects, effects_of_rules
-from planner.tasking.search import make_plan
+from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
+from planner.tasking.search import TASK_ENCODING, make_plan
 from planner.tasking.setting import (
     OriginFunction,
     PlaceFunction,
@@ -63,6 +64,7 @@ class _Kept:
     spots : the end of each place that the planner chose, by object and place.
     bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
     ways : the squares (x, y) that each errand crosses, (n, 2).
+    led_round : the middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans.
     number : the errand that is done now.
     """
 
@@ -73,6 +75,7 @@ class _Kept:
     spots: Mapping[tuple[str, str], End]
     bounds: tuple[Mapping[str, tuple[float, ...]], ...]
     ways: tuple[Any, ...]
+    led_round: tuple[tuple[XY, ...], ...] = ()
     number: int = 0
 
 
@@ -174,6 +177,19 @@ class Intention:
         self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
         self._kept = None
 
+    def along_plan(self, situation: Situation) -> Situation:
+        """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
+
+        Parameters
+        ----------
+        situation : what is believed: world model, rooms, doors, corners and track.
+        """
+        kept = self._kept
+        if kept is None or kept.number >= len(kept.led_round):
+            return situation
+        closed = doors_at(kept.led_round[kept.number], situation)
+        return replace(situation, closed=situation.closed | closed)
+
     def own_wish(self) -> tuple[Errand, Fact] | None:
         """Return the next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
         kept = self._kept
@@ -236,7 +252,8 @@ class Intention:
         self, stage: Stage, problem: TaskProblem, situation: Situation, avoid: Mapping[str, Any], turn: float
     ) -> _Kept | None:
         """Return a new plan with what it rests on; None when there is none that attains all goals."""
-        if all(goal.holds for goal in problem.goals):
+        ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # then there may be goals that the task does not have
+        if all(goal.holds for goal in problem.goals) and not ruled:
             return None
         lying = _lying(situation)
         believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
@@ -257,7 +274,8 @@ class Intention:
             for state in made.states
         )
         ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
-        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways)
+        led_round = doors_led_round(made, situation)
+        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways, led_round)
 
 
 def _goal_of(

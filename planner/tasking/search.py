@@ -89,9 +89,9 @@ class PlanSearch:
         """
         self._problem, self._situation, self._oracle = problem, situation, oracle
         self._answers = Answers(refutations=tuple(tried))
-        self._offers = Offers(oracle.floors)
-        self._facts = problem_facts(problem, (), situation)
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
+        self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
+        self._facts = problem_facts(problem, (), situation)
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
@@ -104,7 +104,7 @@ class PlanSearch:
         while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
             number += 1
             proposal = self._propose(horizon)
-            if proposal.unmet and best is None and (self._offer() or horizon < most):
+            if proposal.unmet and best is None and (self._offer(proposal.unmet) or horizon < most):
                 horizon += not self._offers.fresh
                 self._offers.fresh = False
                 continue
@@ -152,8 +152,15 @@ class PlanSearch:
         missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
         return Proposal(errands, unmet, facts, missed)
 
-    def _offer(self) -> bool:
-        """Offer places for things that are in the way; return whether any is new."""
+    def _offer(self, unmet: Sequence[str]) -> bool:
+        """Offer places for things that are in the way; return whether any is new.
+
+        A goal of users' rules may be about any thing: while one is unmet, places are offered for all.
+
+        unmet : the goals that the plan does not attain.
+        """
+        if not {goal.name for goal in self._problem.goals}.issuperset(unmet):
+            self._offers.note_in_way(list(self._problem.nodes))
         offered = self._offers.places(self._problem)
         if offered is None:
             return False

@@ -12,6 +12,7 @@ from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
 from kb.language.vocabulary import TRACK_GOALS
 from kb.world.model import Node
+from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import destination, robot_stands_on
 from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
@@ -60,14 +61,16 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     own_name = f"g{len(stage.carried) + 1}"
     if squares is not None and len(squares):
         goals.append(PlacedGoal(own_name, " and ".join(map(str, own)), ROBOT, robot_stands_on(squares, model)))
-        stands[place_name(own_name, "there")] = squares
-        fulfils[ROBOT, place_name(own_name, "there")] = (own_name,)
+        parts = _by_room(squares, situation)
+        stands |= {place_name(own_name, room): part for room, part in parts.items()}
+        fulfils |= {(ROBOT, place_name(own_name, room)): (own_name,) for room in parts}
     for name, goal, weight in _numbered_wishes(stage):
         wished = _common_squares([*own, goal], situation) if str(goal.args[0]) == ROBOT else None
         if wished is not None and len(wished):
             goals.append(PlacedGoal(name, str(goal), ROBOT, robot_stands_on(wished, model), weight))
-            stands[place_name(name, "there")] = wished
-            fulfils[ROBOT, place_name(name, "there")] = (name, own_name) if own else (name,)
+            parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
+            stands |= {place_name(name, room): part for room, part in parts.items()}
+            fulfils |= {(ROBOT, place_name(name, room)): names for room in parts}
     return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state)
 
 
@@ -122,6 +125,12 @@ def _ends(
     ends = {**land.ends, **land.loose}
     holds = land.holds or meets_any_end(land.loose, state.things[node.name].outline)
     return ends, bool(land.missing), holds
+
+
+def _by_room(squares: Any, situation: Situation) -> dict[str, Any]:
+    """Return the parts of some squares (flat indices) in each room, by its name; "there" for those in none."""
+    numbers = situation.rooms.labels.ravel()[squares]
+    return {f"r{n}" if n != NO_ROOM else "there": squares[numbers == n] for n in np.unique(numbers)}
 
 
 def _common_squares(goals: Sequence[Fact], situation: Situation) -> Any:
