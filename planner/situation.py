@@ -6,8 +6,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from geometry.kernels.arrays import XY, Bools
+from geometry.raster.rasterize import squares
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
@@ -25,6 +27,8 @@ from planner.constraints import (
 from planner.screen.projection import CostMaps, dilate
 from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
+
+NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 
 
 @dataclass(frozen=True)
@@ -195,6 +199,15 @@ class Situation:
             (rows + 2 margin, columns + 2 margin) bool; all False when nothing is forbidden.
         """
         return regions_kept_off(self.task, self.binding, self.model, actor, margin, self.lenient)
+
+    def within_shut_doors(self) -> "Situation":
+        """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
+        rows, columns = self.model.labels.shape
+        necks = [shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH) for door in self.shut(ROBOT_NAME)]
+        kept_off = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
+        if self.cost_maps.kept_off is not None:
+            kept_off = kept_off | self.cost_maps.kept_off
+        return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:

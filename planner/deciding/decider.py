@@ -6,7 +6,6 @@ planner.deciding.transport brings objects where they shall be; planner.deciding.
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +33,7 @@ from planner.deciding.transport import Transporter
 from planner.deciding.verification import Verifier, check_elsewhere, look_at_contradiction, robot_square
 from planner.decision import Decision, TaskVerdict
 from planner.goals.joint import opposite_corners_reason
-from planner.goals.robot_goals import destination, robot_stands_on, unreachable_reason
+from planner.goals.robot_goals import destination, robot_stands_on, unknown_destination, unreachable_reason
 from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import next_move
@@ -360,7 +359,18 @@ class Decider:
         subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         verdict = verdict_if_not_found(situation.model) if unseen else TaskVerdict.IMPOSSIBLE
-        ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: missing, verdict)
+
+        def ask() -> Decision:
+            """Return the next command there, or to look for another way where doors are shut; else the verdict."""
+            found = self.pursuer.pursue(subgoals, stage, situation, lambda: missing, verdict)
+            if found.command is not None or not situation.shut("utak"):
+                return found
+            within = situation.within_shut_doors()
+            unknown = unknown_destination("every way that is known leads through a forbidden door")
+            others = subgoals_towards([unknown], within, reconciled, TO_REACH)
+            other = self.pursuer.pursue(others, stage, within, lambda: unknown.missing)
+            return found if other.command is None else other
+
         decision = self.pursuer.feel_before_verdict(ask, stage, situation)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 

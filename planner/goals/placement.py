@@ -19,7 +19,7 @@ from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTI
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import dilate, shift_mask
 from planner.sights.frontiers import Viewpoint
-from planner.situation import Situation
+from planner.situation import NECK_WIDTH, Situation
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
 CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
@@ -241,7 +241,7 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
     if not situation.lenient:
         mask |= situation.region_kept_off("utak", margin)
     for door in doors:
-        neck = shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH)
+        neck = shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH)
         mask |= np.pad(squares(neck, columns, rows), margin)
     return mask & ~np.pad(situation.model.mask(node.patch), margin)
 

@@ -23,9 +23,8 @@ from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
-from planner.situation import Situation
+from planner.situation import NECK_WIDTH, Situation
 
-NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
 
 
