@@ -95,7 +95,8 @@ class PlanSearch:
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
-        out_of_place = {goal.subject for goal in self._problem.goals if not goal.holds}
+        goals = self._problem.goals  # a wish that holds may not hold any more when something else was brought
+        out_of_place = {goal.subject for goal in goals if not goal.holds or goal.weight is not None}
         horizon = max(1, len(out_of_place))
         most = horizon + MAX_MORE_ERRANDS
         best: TaskPlan | None = None
