@@ -37,7 +37,7 @@ SHAKEN_DOUBT = 0.5  # squares by which the robot may be elsewhere after impressi
 
 @dataclass(frozen=True)
 class ThingTrack:
-    """What is remembered of a thing, in squares, robot frame.
+    """The track of a thing, in squares, robot frame.
 
     Attributes
     ----------
