@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.kernels.arrays import XY
-from kb.body import Release
+from kb.body import Grasp, Release
 from kb.language.terms import Fact
 from kb.language.vocabulary import TRACK_GOALS
 from kb.task.binding import Reconciliation, reconcile
@@ -165,6 +165,11 @@ class Decider:
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
+                if (
+                    isinstance(decision.command, Grasp) and self._errands.blamed_so_far
+                ):  # nothing is taken against rules
+                    why = f"{stage} cannot be attained as far as is known"
+                    decision = Decision(None, why, TaskVerdict.LIMIT)
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
                 unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE

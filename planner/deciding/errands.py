@@ -97,9 +97,20 @@ class ErrandRunner:
 
     @property
     def is_shut_out(self) -> bool:
-        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for."""
+        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
+
+        False while it is open where exactly a goal holds.
+        """
         rules = self._intention.rules
-        return bool(rules.blamed and not rules.closed)
+        return bool(rules.blamed and not rules.closed and not self._intention.is_open)
+
+    @property
+    def blamed_so_far(self) -> str:
+        """The users' rules because of which there is no plan as far as is known, in words; "" for none.
+
+        "" where a plan is under way, too, and where the rules close doors: then no way through these is taken.
+        """
+        return self.blamed if self.plan is None and not self._intention.rules.closed else ""
 
     def along_plan(self, situation: Situation) -> Situation:
         """Return the situation with the doors closed that the present errand does not pass, where users' rules count.

@@ -114,6 +114,7 @@ class TaskProblem:
     stands : by the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the
         view.
     state : how everything is now.
+    open : whether it is open where exactly some goal holds, so that it may hold elsewhere, too.
     """
 
     nodes: Mapping[str, Node]
@@ -122,6 +123,7 @@ class TaskProblem:
     fulfils: Mapping[tuple[str, str], tuple[str, ...]]
     stands: Mapping[str, Any]
     state: TableState
+    open: bool = False
 
     def with_places(self, places: Mapping[tuple[str, str], End]) -> "TaskProblem":
         """Return the problem with further places: ends by object and name of a place."""

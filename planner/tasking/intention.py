@@ -177,6 +177,11 @@ class Intention:
         self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
         self._kept = None
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it is open where exactly some goal of the problem holds."""
+        return self._problem is None or self._problem.open
+
     def along_plan(self, situation: Situation) -> Situation:
         """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
 

@@ -11,6 +11,7 @@ from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
 from kb.language.vocabulary import TRACK_GOALS
+from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
@@ -19,12 +20,15 @@ from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskPr
 from planner.situation import Situation
 from planner.stages import Stage
 
+TASK_ENCODING_NAME = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
 
 
 def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction) -> TaskProblem | None:
     """Return the problem of a stage; None while it is open what a goal means or where it holds.
+
+    Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
 
     Parameters
     ----------
@@ -44,13 +48,17 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     goals: list[PlacedGoal] = []
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
+    open_goals: list[str] = []
+    ruled = rules_reach(TASK_ENCODING_NAME, situation.rules)
     for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
-        ends, open_, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
-        if node is None or not (holds or ends) or (weight is None and open_ and not holds):
+        ends, is_open, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
+        is_open = is_open and not holds
+        if node is None or not (holds or ends) or (weight is None and is_open and not ruled):
             if weight is None:
                 return None
             continue  # a wish of which nothing is known yet
+        open_goals += [name] * (is_open and weight is None)
         goals.append(PlacedGoal(name, str(goal), node.name, holds, weight))
         for end_name, end in ends.items():
             places[node.name, place_name(name, end_name)] = end
@@ -71,7 +79,7 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
             parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
             stands |= {place_name(name, room): part for room, part in parts.items()}
             fulfils |= {(ROBOT, place_name(name, room)): names for room in parts}
-    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state)
+    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state, bool(open_goals))
 
 
 def _numbered(stage: Stage) -> Iterator[tuple[str, Fact, int | None]]:

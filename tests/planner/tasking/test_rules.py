@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from geometry.manipulation.goals import End, Inside
+from kb.body import Grasp
 from kb.language.reader import facts_from_text
 from planner.goals.object_goals import goal_placement
 from planner.goals.placement import mask_to_polygon
@@ -16,6 +17,8 @@ from planner.stages import Stage
 from planner.tasking.rule_effects import doors_led_round, effects_of_rules
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.setting import problem_of
+from simulator.scenario.settings import Settings
+from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, moved, problem_for
 
@@ -199,3 +202,22 @@ def test_a_rule_that_leaves_no_plan_is_named() -> None:
     made, situation = made_with(SWAPPED, {"g": moved(0, 2)}, rule("09"), {})
     assert made.plan.unmet == ("g1",)
     assert effects_of_rules(made, situation).blamed == (f"{rule('09')[0]}:2",)
+
+
+def test_nothing_is_touched_where_a_rule_leaves_no_plan(tmp_path: Path) -> None:
+    example = Path(__file__).resolve().parents[3] / "examples" / "push_square_next_room"
+    found = run(example, Settings(kb_files=tuple(map(str, rule("09")))))
+    assert not found.result.believed and "09_touch_nothing.lp:2 leaves no plan" in found.result.reason
+    assert not any(isinstance(command, Grasp) for command in found.commands)
+
+
+@pytest.mark.parametrize(("rules", "room"), [((), "west"), (rule("01"), "east")])
+def test_the_robot_takes_another_door_where_a_rule_forbids_the_nearest(
+    rules: tuple[Path, ...], room: str, tmp_path: Path
+) -> None:
+    ring = "2 2, 15 2, 15 7, 17 7, 17 2, 30 2, 30 6, 32 6, 32 2, 44 2, 44 16, 32 16, 32 12, 30 12, 30 16, 17 16, 17 11"
+    verge = f'verge("POLYGON ((0 0, 0 18, 46 18, 46 0, 0 0), ({ring}, 15 11, 15 16, 2 16, 2 2))").'
+    world = f'table(46, 18).\n{verge}\nutak("POINT (22.5 9.5)", 0).\n'
+    found = run(scene(tmp_path, world, "", "in(utak, room(next))."), Settings(kb_files=tuple(map(str, rules))))
+    assert found.result.believed
+    assert (found.session.table.utak[0] < 16) == (room == "west")
