@@ -174,7 +174,7 @@ class Decider:
         errand = self._errands.next(stage, situation, reconciled, self._transporter, self._tools)
         if errand is not None:
             return errand
-        for goal in stage.carried:
+        for goal in self._ordered(stage, situation):
             decision = self._transporter.towards(goal, stage, situation, reconciled, self._tools)
             if decision is None:
                 continue
@@ -186,6 +186,22 @@ class Decider:
         if decision is None:
             return None
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
+
+    def _ordered(self, stage: Stage, situation: Situation) -> list[Fact]:
+        """Return the goals for objects in the order in which they are pursued while there is no task plan.
+
+        Objects that are not known yet come first, while the hand is empty: all must be found, and once they are known
+        it can be planned which of them goes first. Else the order is that of the task.
+        """
+        if situation.model.held is not None:
+            return list(stage.carried)
+
+        def is_known(goal: Fact) -> bool:
+            """Return whether the outline of the object that a goal is about is known."""
+            node = situation.model.object(situation.binding.get(str(goal.args[0]), ""))
+            return node is not None and node.polygon is not None
+
+        return sorted(stage.carried, key=is_known)
 
     def _go(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
+from geometry.manipulation.goals import End, Inside, moved
 from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
@@ -138,6 +138,7 @@ class CarryOracle:
         self._pull, self._avoid, self._turn = pull, avoid or {}, turn
         self._doors = {door.name: door for door in situation.rooms.doors}
         self._answers: dict[Any, OracleAnswer] = {}
+        self._plans: dict[Any, CarryingPlan] = {}
 
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
@@ -181,33 +182,35 @@ class CarryOracle:
 
     def _bring(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> OracleAnswer:
         """Return the answer of geometry; the surest way counts."""
+        sure = self._plan(state, name, end, Certainty.SURE, shut)
+        if sure.status == "found":
+            return OracleAnswer(Certainty.SURE, sure.commands, self._after(state, name, sure, place), plan=sure)
+        most = self._plan(state, name, end, Certainty.REFUTED, shut)  # over any square that is not known to be occupied
+        if most.status != "found":
+            return OracleAnswer(Certainty.REFUTED, body=most.status == "impossible")
+        likely = self._plan(state, name, end, Certainty.HOPED, shut)
+        plan = likely if likely.status == "found" else most
+        return OracleAnswer(Certainty.HOPED, plan.commands, self._after(state, name, plan, place), plan=plan)
+
+    def _plan(self, state: TableState, name: str, end: End, certainty: Certainty, shut: frozenset[str]) -> CarryingPlan:
+        """Return what geometry finds over the squares of a certainty, in the frame with the margin.
+
+        Floors of two certainties may be the same squares; geometry is asked once for them.
+        """
         lying, margin = state.things[name], self.floors.margin
-        goal = moved(lying.reach(end), margin, margin)
         outline = Translate(margin, margin).carry(lying.outline)
-        body = False
-        for certainty in Certainty:
-            free = self._free(state, name, certainty, shut)
-            x, y = state.robot[0] + margin, state.robot[1] + margin
-            walk = free.copy()
-            free |= squares(outline, free.shape[1], free.shape[0])
+        walk = self._free(state, name, certainty, shut)
+        free = walk | squares(outline, walk.shape[1], walk.shape[0])
+        goal, held = moved(lying.reach(end), margin, margin), state.held == name
+        where = goal.polygon.wkb if isinstance(goal, Inside) else goal
+        key = (outline.wkb, walk.tobytes(), where, state.robot, held)
+        if key not in self._plans:
             self.asked += 1
-            plan = plan_carrying(
-                outline,
-                free,
-                (x, y),
-                goal,
-                0.0,
-                self._pull,
-                tuple(self._avoid.get(name, ())),
-                walk,
-                held=state.held == name,
-                turn=self._turn,
+            utak, avoid = (state.robot[0] + margin, state.robot[1] + margin), tuple(self._avoid.get(name, ()))
+            self._plans[key] = plan_carrying(
+                outline, free, utak, goal, 0.0, self._pull, avoid, walk, held=held, turn=self._turn
             )
-            if plan.status == "found":
-                sure = Certainty.SURE if certainty == Certainty.SURE else Certainty.HOPED
-                return OracleAnswer(sure, plan.commands, self._after(state, name, plan, place), plan=plan)
-            body = plan.status == "impossible"
-        return OracleAnswer(Certainty.REFUTED, body=body)
+        return self._plans[key]
 
     def _after(self, state: TableState, name: str, plan: CarryingPlan, place: str) -> TableState:
         """Return the state after a plan, given in the frame with the margin."""

@@ -30,6 +30,7 @@ TASK_ENCODING = PLANNER_ASP / "task.lp"
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
+MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
 
 
@@ -99,6 +100,8 @@ class PlanSearch:
         facts: tuple[str, ...] = ()
         better, least, proved, number = 0, 0, False, 0
         while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
+            if self._oracle.asked > MAX_QUESTIONS:
+                break
             number += 1
             proposal = self._propose(horizon)
             if proposal.unmet and best is None and (self._offer() or horizon < most):

@@ -9,6 +9,7 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
+from kb.objects.held_object import is_grid_aligned
 from kb.world.model import Node
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import destination, robot_stands_on
@@ -23,6 +24,8 @@ OriginFunction = Callable[[str, Node, Situation], XY]
 def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction) -> TaskProblem | None:
     """Return the problem of a stage; None while it is open what a goal means or where it holds.
 
+    None, too, while a thing that is askew is in hand: it is set down first.
+
     Parameters
     ----------
     stage : of the task: the goals that shall hold now.
@@ -32,6 +35,9 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
     """
     model = situation.model
+    held = model.object(model.held or "")
+    if held is not None and held.polygon is not None and not is_grid_aligned(held.polygon):
+        return None  # amid a turn: a plan is made for things as they are set down
     things = {node.name: node for node in model.objects if _can_be_carried(node)}
     state = TableState(
         {name: Lying(to_view_frame(node.polygon, situation), Pose(0.0, 0.0, 0.0)) for name, node in things.items()},
