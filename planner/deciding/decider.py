@@ -32,6 +32,7 @@ from planner.goals.joint import opposite_corners_reason
 from planner.goals.robot_goals import destination, robot_stands_on, unreachable_reason
 from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.navigation.subgoals import Subgoal
+from planner.per_model import PerModel
 from planner.screen.moves import next_move
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.sights.viewpoints import TO_REACH
@@ -92,7 +93,8 @@ class Decider:
         self._tools = Tools(self.executor, self.pursuer, self._verifier)
         self._transporter = Transporter()
         self._clearer = ObstacleClearer()
-        self._errands = ErrandRunner(pull)
+        self._destination = PerModel(destination)
+        self._errands = ErrandRunner(self._destination, pull)
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
@@ -226,9 +228,9 @@ class Decider:
             node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
                 return self._go_round(stage, node.name, situation, track)
-            where = [destination(goals[0], situation)]
+            where = [self._destination(goals[0], situation)]
         else:
-            where = [destination(goal, situation) for goal in goals]
+            where = [self._destination(goal, situation) for goal in goals]
             there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
             there = there or self._into_corner.is_pressing(stage, situation)
             look = self._make_sure(goals, there, stage, situation)

@@ -19,6 +19,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention, NextErrand
+from planner.tasking.setting import DestinationFunction
 from planner.tasking.task_plan import TaskPlan
 
 MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
@@ -27,12 +28,13 @@ MAX_FAILURES = 3  # errands that fail one after the other within one decision; a
 class ErrandRunner:
     """Carries out the errands of the task plan, and owns the plan."""
 
-    def __init__(self, pull: bool = True) -> None:
+    def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
         """Make a runner without a plan.
 
+        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
         pull : whether a held object may be pulled.
         """
-        self._intention = Intention(pull)
+        self._intention = Intention(where, pull)
 
     @property
     def plan(self) -> TaskPlan | None:

@@ -46,7 +46,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
     """
     facts = [f"place({ROBOT},{HERE})"]
     facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
-    facts += [f"place({name},{place})" for name, place in problem.places]
+    facts += [f"place({name},{place})" for name, place in problem.places if place != HERE]
     facts += [f"place({ROBOT},{place})" for place in problem.stands]
     facts += [f"aside({name},{place})" for name, place in aside]
     ranks: dict[str, int] = {}
@@ -107,7 +107,7 @@ def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, 
     rows, columns = shape
     for name, lying in problem.state.things.items():
         yield name, HERE, squares(lying.outline, columns, rows)
-    for (name, place), end in problem.places.items():
+    for (name, place), end in ((key, end) for key, end in problem.places.items() if key[1] != HERE):
         yield name, place, _squares_of(end, problem.state.things[name].outline, (rows, columns))
     for place, stand in problem.stands.items():
         mask: Bools = np.zeros((rows, columns), np.bool_)

@@ -17,7 +17,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.rule_effects import RuleEffects, effects_of_rules
 from planner.tasking.search import make_plan
-from planner.tasking.setting import OriginFunction, PlaceFunction, place_name, problem_of
+from planner.tasking.setting import DestinationFunction, OriginFunction, PlaceFunction, place_name, problem_of
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
@@ -76,12 +76,13 @@ class Intention:
     rules : what users' rules did to the plan that was made last.
     """
 
-    def __init__(self, pull: bool = True) -> None:
+    def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
         """Make an intention without a plan.
 
+        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
         pull : whether a held object may be pulled.
         """
-        self._pull = pull
+        self._where, self._pull = where, pull
         self._kept: _Kept | None = None
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
@@ -116,7 +117,7 @@ class Intention:
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
-        self._problem = problem_of(stage, situation, place, origin)
+        self._problem = problem_of(stage, situation, place, origin, self._where)
         if self._problem is None:
             self._kept = None
         else:

@@ -11,10 +11,27 @@ from geometry.manipulation.goals import End, Inside
 from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
 from planner.oracles.carry import Certainty, Floors
-from planner.oracles.problem import TaskProblem
+from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import covered_by, spots
 
 SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
+
+
+def with_returns(problem: TaskProblem) -> TaskProblem:
+    """Return the problem with ends for things that are where they shall be, so that they can be brought back there.
+
+    Parameters
+    ----------
+    problem : things, places and goals.
+    """
+    there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
+    ends = {(name, HERE): end_about(problem.state.things[name].outline) for name in there}
+    return replace(problem, places={**problem.places, **ends})
+
+
+def end_about(outline: Any) -> Inside:
+    """Return the end of a thing at one spot: its outline there (shapely Polygon), with SPOT_SLACK about it."""
+    return Inside(outline.buffer(SPOT_SLACK, join_style="mitre"))
 
 
 class Offers:
@@ -64,7 +81,7 @@ class Offers:
                 new[name, f"spot{number}"] = end
                 self.aside.append((name, f"spot{number}"))
             for (thing, place), region in problem.places.items():
-                if thing == name and isinstance(region, Inside):
+                if thing == name and place != HERE and isinstance(region, Inside):
                     for number, end in enumerate(self._spots_within(name, region, problem), 1):
                         new[name, f"{place}_{number}"] = end
                         fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
@@ -87,7 +104,7 @@ class Offers:
         outline = problem.state.things[name].outline
         moves = spots(self._carry(outline), floor, around, self._needed)
         shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
-        return [Inside(shape.buffer(SPOT_SLACK, join_style="mitre")) for shape in shapes]
+        return [end_about(shape) for shape in shapes]
 
     def _carry(self, shape: Any) -> Any:
         """Return a shape (shapely geometry, view frame) in the frame of the floors."""

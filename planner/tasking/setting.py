@@ -12,16 +12,19 @@ from kb.language.terms import Fact
 from kb.objects.held_object import is_grid_aligned
 from kb.world.model import Node
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
-from planner.goals.robot_goals import destination, robot_stands_on
+from planner.goals.robot_goals import Destination, robot_stands_on
 from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import TRACK_GOALS, Stage
 
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
+DestinationFunction = Callable[[Fact, Situation], Destination]
 
 
-def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction) -> TaskProblem | None:
+def problem_of(
+    stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, where: DestinationFunction
+) -> TaskProblem | None:
     """Return the problem of a stage; None while it is open what a goal means or where it holds.
 
     None, too, while a thing that is askew is in hand: it is set down first.
@@ -33,6 +36,7 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
         frame) and the situation.
     origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
+    where : returns the squares on which a goal holds for the robot, from the goal and the situation.
     """
     model = situation.model
     held = model.object(model.held or "")
@@ -63,10 +67,10 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
             fulfils[node.name, place_name(f"g{number}", name)] = (f"g{number}",)
     stands = {}
     own = [goal for goal in stage.own if goal.name not in TRACK_GOALS]
-    where = [destination(goal, situation) for goal in own]
-    if own and not any(one.missing for one in where):
-        squares = where[0].squares
-        for one in where[1:]:
+    found = [where(goal, situation) for goal in own]
+    if own and not any(one.missing for one in found):
+        squares = found[0].squares
+        for one in found[1:]:
             squares = np.intersect1d(squares, one.squares)
         if len(squares):
             name = f"g{len(goals) + 1}"
