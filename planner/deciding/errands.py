@@ -65,11 +65,13 @@ class ErrandRunner:
                 self.update(stage, situation, transporter, tools)
             found = self._intention.next_errand(stage, situation, transporter.place, transporter.origin_of)
             if found is None:
-                return None
+                break
+            tools.executor.unwanted = {found.node.name: (found.turned, found.errand.avoid)}
             decision = self._follow(found, stage, situation, reconciled, transporter, tools)
             if decision is not None and decision.command is not None:
                 return decision
             self._intention.failed(found.errand, situation)
+        tools.executor.unwanted = {}
         return None
 
     def update(self, stage: Stage, situation: Situation, transporter: Transporter, tools: Tools) -> Situation:

@@ -15,14 +15,14 @@ import shapely
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, Inside, moved
 from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
-from geometry.motion.se2 import Pose, Translate
+from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
-from planner.screen.projection import UNSEEN_LEVEL
+from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import Situation
 
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
@@ -48,6 +48,8 @@ class OracleAnswer(NamedTuple):
     body : whether the object could not even go by itself, without the robot; only for refutations.
     plan : the way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone,
         and when it is refuted.
+    avoid : grasps of the object as it lay before, as (x, y) of the robot from its middle, that the plan does not use:
+        with them the object would shut the robot in at its place.
     """
 
     certainty: Certainty
@@ -55,6 +57,14 @@ class OracleAnswer(NamedTuple):
     after: TableState | None = None
     body: bool = False
     plan: CarryingPlan | None = None
+    avoid: tuple[XY, ...] = ()
+
+
+class _Carrying(NamedTuple):
+    """A plan of geometry, and the grasps that it must not use: with them the object would shut the robot in."""
+
+    plan: CarryingPlan
+    avoid: tuple[XY, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -182,18 +192,79 @@ class CarryOracle:
 
     def _bring(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> OracleAnswer:
         """Return the answer of geometry; the surest way counts."""
-        sure = self._plan(state, name, end, Certainty.SURE, shut)
-        if sure.status == "found":
-            return OracleAnswer(Certainty.SURE, sure.commands, self._after(state, name, sure, place), plan=sure)
-        most = self._plan(state, name, end, Certainty.REFUTED, shut)  # over any square that is not known to be occupied
-        if most.status != "found":
-            return OracleAnswer(Certainty.REFUTED, body=most.status == "impossible")
-        likely = self._plan(state, name, end, Certainty.HOPED, shut)
-        plan = likely if likely.status == "found" else most
-        return OracleAnswer(Certainty.HOPED, plan.commands, self._after(state, name, plan, place), plan=plan)
+        sure = self._free_handed(state, name, end, Certainty.SURE, shut)
+        if sure.plan.status == "found":
+            return self._found(state, name, place, Certainty.SURE, sure)
+        most = self._free_handed(state, name, end, Certainty.REFUTED, shut)  # over all that is not known to be occupied
+        if most.plan.status != "found":
+            return OracleAnswer(Certainty.REFUTED, body=most.plan.status == "impossible")
+        likely = self._free_handed(state, name, end, Certainty.HOPED, shut)
+        return self._found(state, name, place, Certainty.HOPED, likely if likely.plan.status == "found" else most)
 
-    def _plan(self, state: TableState, name: str, end: End, certainty: Certainty, shut: frozenset[str]) -> CarryingPlan:
-        """Return what geometry finds over the squares of a certainty, in the frame with the margin.
+    def _found(self, state: TableState, name: str, place: str, certainty: Certainty, found: _Carrying) -> OracleAnswer:
+        """Return the answer for a plan that was found."""
+        after = self._after(state, name, found.plan, place)
+        return OracleAnswer(certainty, found.plan.commands, after, plan=found.plan, avoid=found.avoid)
+
+    def _free_handed(
+        self, state: TableState, name: str, end: End, certainty: Certainty, shut: frozenset[str]
+    ) -> _Carrying:
+        """Return a plan after which the object does not shut the robot in; any plan where there is no such plan.
+
+        A robot that pulls a thing into a dead end stands behind it at last.
+        """
+        plan = self._plan(state, name, end, certainty, shut)
+        if not plan.legs:
+            return _Carrying(plan)
+        after = self._after(state, name, plan, "")
+        inner = self._inner_grasps(after, name, plan, certainty, shut)
+        if not inner:
+            return _Carrying(plan)
+        other = self._plan(state, name, end, certainty, shut, inner)
+        return _Carrying(other, inner) if other.legs else _Carrying(plan)
+
+    def _inner_grasps(
+        self,
+        after: TableState,
+        name: str,
+        plan: CarryingPlan,
+        certainty: Certainty,
+        shut: frozenset[str],
+    ) -> tuple[XY, ...]:
+        """Return the grasps of an object from where most of the floor cannot be reached, once it lies; () if it can.
+
+        As (x, y) of the robot from the middle of the object as it lay before the plan.
+
+        Parameters
+        ----------
+        after : the state after the plan.
+        name : the object.
+        plan : the plan.
+        certainty, shut : the floor on which the robot walks.
+        """
+        margin = self.floors.margin
+        walk = self._free(after, None, certainty, shut)
+        far = reach(walk, int(after.robot[0]) + margin, int(after.robot[1]) + margin)
+        outside = walk & (far == GEODESIC_UNREACHED)
+        if 2 * outside.sum() < walk.sum():  # most of the floor can be reached
+            return ()
+        under = self._covered(name, after.things[name], (walk.shape[0], walk.shape[1]))
+        rows, columns = np.nonzero(dilate(under, 1) & ~under & (far != GEODESIC_UNREACHED))
+        middle = after.things[name].outline.centroid
+        assert plan.pose is not None
+        offsets = np.column_stack([columns + 0.5 - margin - middle.x, rows + 0.5 - margin - middle.y])
+        return tuple((float(dx), float(dy)) for dx, dy in Rotate(-plan.pose.degrees, (0.0, 0.0)).points(offsets))
+
+    def _plan(
+        self,
+        state: TableState,
+        name: str,
+        end: End,
+        certainty: Certainty,
+        shut: frozenset[str],
+        inner: tuple[XY, ...] = (),
+    ) -> CarryingPlan:
+        """Return what geometry finds over the squares of a certainty without some grasps, in the frame with the margin.
 
         Floors of two certainties may be the same squares; geometry is asked once for them.
         """
@@ -203,10 +274,13 @@ class CarryOracle:
         free = walk | squares(outline, walk.shape[1], walk.shape[0])
         goal, held = moved(lying.reach(end), margin, margin), state.held == name
         where = goal.polygon.wkb if isinstance(goal, Inside) else goal
-        key = (outline.wkb, walk.tobytes(), where, state.robot, held)
+        key = (outline.wkb, walk.tobytes(), where, state.robot, held, inner)
         if key not in self._plans:
             self.asked += 1
-            utak, avoid = (state.robot[0] + margin, state.robot[1] + margin), tuple(self._avoid.get(name, ()))
+            utak = state.robot[0] + margin, state.robot[1] + margin
+            failed = np.array(self._avoid.get(name, ())).reshape(-1, 2)
+            failed = Rotate(lying.pose.degrees, (0.0, 0.0)).points(failed)
+            avoid = (*((float(dx), float(dy)) for dx, dy in failed), *inner)
             self._plans[key] = plan_carrying(
                 outline, free, utak, goal, 0.0, self._pull, avoid, walk, held=held, turn=self._turn
             )

@@ -33,6 +33,7 @@ class NextErrand(NamedTuple):
     end : where it shall lie, in squares, view frame.
     goal : the number of the carried goal of the stage whose own end this is; None for a spot that the planner chose.
     end_name : the name of that end among the ends of the goal; "" for a spot.
+    turned : by how many degrees the object had been turned when the plan was made.
     """
 
     errand: Errand
@@ -40,6 +41,7 @@ class NextErrand(NamedTuple):
     end: End
     goal: int | None
     end_name: str
+    turned: float
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,7 @@ class _Kept:
     spots : the end of each place that the planner chose, by object and place.
     bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
     ways : the squares (x, y) that each errand crosses, (n, 2).
+    turned : by how many degrees each thing had been turned when the plan was made.
     number : the errand that is done now.
     """
 
@@ -65,6 +68,7 @@ class _Kept:
     spots: Mapping[tuple[str, str], End]
     bounds: tuple[Mapping[str, tuple[float, ...]], ...]
     ways: tuple[Any, ...]
+    turned: Mapping[str, float]
     number: int = 0
 
 
@@ -143,10 +147,12 @@ class Intention:
             return None
         spot = kept.spots.get((errand.subject, errand.place))
         node = problem.nodes[errand.subject]
+        turned = kept.turned[errand.subject]
         if spot is not None:
-            return NextErrand(errand, node, _moved_to_view(spot, situation), None, "")
+            return NextErrand(errand, node, _moved_to_view(spot, situation), None, "", turned)
         goal, end_name = _goal_of(errand, stage, problem, situation, place, origin)
-        return NextErrand(errand, node, problem.places[errand.subject, errand.place], goal, end_name)
+        end = problem.places[errand.subject, errand.place]
+        return NextErrand(errand, node, end, goal, end_name, turned)
 
     def failed(self, errand: Errand, situation: Situation) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
@@ -225,7 +231,8 @@ class Intention:
             for state in made.states
         )
         ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
-        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways)
+        turned = {name: node.turned for name, node in problem.nodes.items()}
+        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways, turned)
 
 
 def _goal_of(

@@ -182,7 +182,7 @@ class PlanSearch:
             way = errand.subject, origin, errand.place
             hoped = known.hoped | {way} if answer.certainty == Certainty.HOPED else known.hoped
             self._answers = replace(known, commands={**known.commands, way: answer.commands}, hoped=hoped)
-            found.append(replace(errand, certainty=answer.certainty, commands=answer.commands))
+            found.append(replace(errand, certainty=answer.certainty, commands=answer.commands, avoid=answer.avoid))
             state = answer.after
         return tuple(found)
 
@@ -203,6 +203,9 @@ class PlanSearch:
         shut = self._shut(errand)
         if shut and self._ask(state, errand, frozenset()).after is None:
             shut = frozenset()
+        known = self._known_circumstances(state, errand, shut)
+        if known is not None:
+            return replace(known, origin=origin, stood=None if known.stood is None else state.last)
         others = frozenset(name for name in state.things if name != errand.subject)
         alone = self._ask(state.without(others), errand, shut)
         gone = others if alone.after is None else frozenset[str]()
@@ -219,6 +222,19 @@ class PlanSearch:
         return RefutedStep(
             errand.subject, origin, errand.place, given, None if last.body else state.last, tuple(sorted(shut))
         )
+
+    def _known_circumstances(self, state: TableState, errand: Errand, shut: frozenset[str]) -> RefutedStep | None:
+        """Return an earlier refutation of the same errand from elsewhere, if what it rests on refutes it here, too."""
+        for earlier in self._answers.refutations:
+            if (earlier.subject, earlier.place, frozenset(earlier.shut)) != (errand.subject, errand.place, shut):
+                continue
+            if errand.subject == ROBOT or any(state.things[name].place != place for name, place in earlier.given):
+                continue
+            given = {name for name, _ in earlier.given}
+            rest = frozenset(state.things) - given - {errand.subject}
+            if self._ask(state.without(rest), errand, shut).after is None:
+                return earlier
+        return None
 
     def _about(self) -> list[str]:
         """Return the goals in words, by their number from 1, for the record."""
