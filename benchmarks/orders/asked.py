@@ -1,0 +1,70 @@
+"""Which tasks are asked for: worlds of benchmarks.worlds.several by kind and seed, and puzzles in scenario folders."""
+
+from itertools import product
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.language.terms import Fact
+from simulator.scenario.scenario import Scenario, read_scenario
+
+PUZZLE_KIND = "pushworld"
+TOUCHING_KIND_SUFFIX = "_touching"  # of puzzles in which a thing of the task touches another one at the start
+SOLVABLE_FILE = "SOLVABLE.tsv"  # beside the puzzles: name, verdict, ...; a head line first
+SOLVABLE_WORD = "solvable"  # the verdict of a puzzle that can be solved, pulling allowed
+MAX_TOUCHING_GAP = 1e-6  # squares between things that touch
+
+
+class AskedRun(NamedTuple):
+    """A task to be run.
+
+    Attributes
+    ----------
+    kind : of benchmarks.worlds.several.kinds, or "pushworld", or "pushworld_touching".
+    name : its seed, or the name of the puzzle's folder.
+    folder : the folder of a puzzle; "" for a random world.
+    solvable : whether a puzzle is known to be solvable when the robot may pull; False for a random world.
+    """
+
+    kind: str
+    name: str
+    folder: str = ""
+    solvable: bool = False
+
+
+def random_tasks(kinds: list[str], seed: int, count: int) -> list[AskedRun]:
+    """Return `count` random worlds of each kind from a seed on, the kinds in turn."""
+    return [AskedRun(kind, str(number)) for number, kind in product(range(seed, seed + count), kinds)]
+
+
+def puzzles(folder: Path) -> list[AskedRun]:
+    """Return the puzzles in a folder, sorted by name; those in which a thing of the task touches another one last.
+
+    Raises OSError when the folder cannot be read, BadInputError when a scenario has errors.
+    """
+    solvable = set()
+    table = folder / SOLVABLE_FILE
+    if table.is_file():
+        cells = [line.split("\t") for line in table.read_text().splitlines()[1:]]
+        solvable = {line[0] for line in cells if len(line) > 1 and line[1] == SOLVABLE_WORD}
+    asked = []
+    for place in sorted(folder.iterdir()):
+        if (place / "goal.lp").is_file():
+            kind = PUZZLE_KIND + TOUCHING_KIND_SUFFIX * is_touching(read_scenario(place))
+            asked.append(AskedRun(kind, place.name, str(place.resolve()), place.name in solvable))
+    return sorted(asked)
+
+
+def is_touching(scenario: Scenario) -> bool:
+    """Return whether a thing that expect.lp names touches another thing (not the verge) at the start."""
+    world = scenario.world
+    meant = {name for fact in scenario.expectations or () for name in _things_named(fact)}
+    things = [*world.movable, *world.fixed]
+    return any(
+        one.name in meant and one is not other and one.polygon.distance(other.polygon) <= MAX_TOUCHING_GAP
+        for one, other in product(things, things)
+    )
+
+
+def _things_named(fact: Fact) -> list[str]:
+    """Return the names among the arguments of an expectation."""
+    return [str(term) for term in fact.args]
