@@ -3,6 +3,7 @@
 Modules, in reading order:
 
 asked        which tasks are asked for: random worlds and puzzles, and what is known of them
+relaxed      what a carry needs at least, and what lies in its way
 search       a search that knows the true world
 carried_out  what the search has found, carried out in the simulated world
 row          the result of one run

@@ -17,8 +17,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from shapely import Polygon, box
+from shapely import Point, Polygon, box
+from shapely.geometry.base import BaseGeometry
 
+from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
 from benchmarks.worlds.floorplans import convex_corners
 from benchmarks.worlds.placing import digital
 from benchmarks.worlds.several.tasks import ROBOT, SeveralWorld, Want, moved_polygon
@@ -89,7 +91,7 @@ class SearchAnswer(NamedTuple):
 
 def search(world: SeveralWorld, seconds: float, pull: bool = True) -> SearchAnswer:
     """Search for few carries that do the task of a world. seconds : of this process. pull : whether it may pull."""
-    return _Search(world, pull).run(time.process_time() + seconds)
+    return _Search(world, pull).run(seconds)
 
 
 class _Search:
@@ -100,9 +102,18 @@ class _Search:
         self._numbers = {thing.name: number for number, thing in enumerate(world.things)}
         plan = world.plan
         self._floor: Bools = ~digital(plan.verge, plan.width, plan.height)
+        fixed = [digital(thing.polygon, plan.width, plan.height) for thing in world.things if thing.fixed]
+        self._still: Bools = ~np.logical_or.reduce([~self._floor, *fixed])
+        self._ways: dict[tuple[Any, ...], BaseGeometry] = {}
 
-    def run(self, end: float) -> SearchAnswer:
-        """Search until the processor's time of this process is `end`."""
+    def run(self, seconds: float) -> SearchAnswer:
+        """Search for so many seconds of the processor's time of this process."""
+        begun = time.process_time()
+        answer = self._best_first(begun + seconds / 2, 0)
+        return answer if answer.way else self._best_first(begun + seconds, MAX_DETOURS)
+
+    def _best_first(self, end: float, detours: int) -> SearchAnswer:
+        """Search until the processor's time is `end`, with at most so many carries more than seem to be needed."""
         shapes = tuple(thing.polygon for thing in self._world.things)
         begin = self._advanced(Layout(shapes, (0.0,) * len(shapes), (self._world.utak.x, self._world.utak.y)))
         count, seen = itertools.count(), {begin.key}
@@ -111,15 +122,17 @@ class _Search:
         def reached(layout: Layout) -> SearchAnswer | None:
             if layout.stage == len(self._world.stages):
                 return SearchAnswer(FOUND, layout.way, layout.carries)
-            left = self._carries_left(layout)
+            in_the_way = self._in_the_way(layout) if detours else set[int]()
+            left = self._carries_left(layout) + len(in_the_way)
             for number, target, detour in self._choices(layout):
-                guess = layout.carries + left + detour
-                heapq.heappush(queue, (guess, -layout.carries, next(count), layout, number, target))
+                guess = layout.carries + left + (detour and number not in in_the_way)
+                if detours or not detour:
+                    heapq.heappush(queue, (guess, -layout.carries, next(count), layout, number, target))
             return None
 
         if found := reached(begin):
             return found
-        most = self._carries_left(begin) + MAX_DETOURS
+        most = self._carries_left(begin) + (len(self._in_the_way(begin)) + detours if detours else 0)
         while queue:
             guess, _, _, layout, number, target = heapq.heappop(queue)
             if guess > most:
@@ -184,6 +197,28 @@ class _Search:
                 before[want.subject] = want.region
         return left
 
+    def _in_the_way(self, layout: Layout) -> set[int]:
+        """Return the numbers of the things that nothing is wanted of now, but lie in the way of what is wanted."""
+        wants = [want for want in self._world.stages[layout.stage] if want.subject != ROBOT]
+        wanted = {self._numbers[want.subject] for want in wants}
+        others = [k for k, thing in enumerate(self._world.things) if k not in wanted and not thing.fixed]
+        found = set[int]()
+        for want in wants if others else ():
+            if not self._holds(want, layout):
+                way = self._way_alone(want, layout)
+                found |= {k for k in others if layout.shapes[k].intersects(way)}
+        return found
+
+    def _way_alone(self, want: Want, layout: Layout) -> BaseGeometry:
+        """Return what a thing sweeps on its way to where it is wanted where walls and fixed things alone are."""
+        number = self._numbers[want.subject]
+        key = (want, *shapely.get_coordinates(layout.shapes[number]).round(POINT_DECIMALS).ravel().tolist())
+        if key not in self._ways:
+            end = next(self._ends(want, number, layout))
+            plan = plan_carrying(layout.shapes[number], self._still, layout.utak, end, pull=self._pull)
+            self._ways[key] = swept(layout.shapes[number], plan.legs)
+        return self._ways[key]
+
     def _choices(self, layout: Layout) -> Iterator[tuple[int, End, int]]:
         """Yield (thing, where it is carried, 1 if that is a detour): what is wanted now, and places out of the way."""
         wants = {want.subject: want for want in self._world.stages[layout.stage] if want.subject != ROBOT}
@@ -224,7 +259,10 @@ class _Search:
 
     def _carried(self, layout: Layout, number: int, target: End) -> Layout | None:
         """Return the layout after a thing was carried to an end; None when that is not found."""
-        plan = plan_carrying(layout.shapes[number], self._free(layout, number), layout.utak, target, pull=self._pull)
+        shape, free = layout.shapes[number], self._free(layout, number)
+        if not is_in_reach(shape, free, layout.utak) or not may_pass(shape, free, _region_of(target, shape)):
+            return None
+        plan = plan_carrying(shape, free, layout.utak, target, pull=self._pull)
         if plan.status != "found" or not plan.legs or plan.pose is None:
             return None
         shapes = (*layout.shapes[:number], plan.polygon, *layout.shapes[number + 1 :])
@@ -234,3 +272,15 @@ class _Search:
         pushes = [motion for motion in plan.legs[-1].motions if isinstance(motion, Translate)]
         utak = (x + sum(push.dx for push in pushes), y + sum(push.dy for push in pushes))
         return Layout(shapes, turns, utak, layout.stage, (*layout.way, Carry(number, plan.legs)))
+
+
+def _region_of(end: End, shape: Polygon) -> BaseGeometry:
+    """Return a region in which the centre of the largest circle in a thing must lie at an end."""
+    reach = Point(shape.centroid).hausdorff_distance(shape)
+    if isinstance(end, At):
+        return Point(shape.centroid.x + end.pose.x, shape.centroid.y + end.pose.y).buffer(reach)
+    if isinstance(end, InCorner):
+        return Point(end.x, end.y).buffer(2 * reach + end.slack + 1.0)
+    assert isinstance(end, Inside)
+    region: BaseGeometry = end.polygon
+    return region

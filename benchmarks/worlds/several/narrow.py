@@ -35,7 +35,8 @@ DEAD_END_KIND = "dead_end"
 PLUG_KIND = "plug"
 ROW_KIND = "row"
 THREE_SHARE = 0.4  # of the closets and dead ends take three things
-EXCHANGE_SHARE = 0.5  # of the dead ends in which that is so: two things lie there already, the wrong way round
+EXCHANGE_SHARE = 0.5  # of the dead ends for two things: they lie there already, the wrong way round
+MIN_ROW_DOOR = 4  # squares: of a neck in which things two squares thick stand a square from both walls
 HALL_SIDES = (20, 27)  # squares: of the room before the narrow place, from 20 to 26
 CLOSET_ELL = Load("l_shape", ell(5, 5, 2), 4.0)
 
@@ -69,9 +70,10 @@ def dead_end_world(rng: np.random.Generator, seed: int) -> SeveralWorld | None:
     carried, by_colour = loads(rng, count, ("square", "brick", "square")[:count])
     by_colour = by_colour or count == 3
     sizes = [tuple(int(side) for side in load.outline.bounds[2:]) for load in carried]
-    if any(high > width for _, high in sizes):
+    exchange = count == 2 and rng.random() < EXCHANGE_SHARE
+    if any(high + 2 * exchange > width for _, high in sizes):
         return None
-    gaps = [int(rng.integers(0, 3)) for _ in carried]
+    gaps = [int(rng.integers(int(exchange), 3)) for _ in carried]
     depth = sum(long for long, _ in sizes) + sum(gaps) + int(rng.integers(1, 6))
     long, across, wall = *(int(rng.integers(*HALL_SIDES)) for _ in range(2)), SEVERAL_WALL
     south, mirror = wall + int(rng.integers(0, across - width + 1)), int(rng.integers(8))
@@ -86,21 +88,20 @@ def dead_end_world(rng: np.random.Generator, seed: int) -> SeveralWorld | None:
     if not things or utak is None:
         return None
 
-    def queue(order: Sequence[int]) -> dict[int, Polygon]:
-        """Return the places of things in the dead end, the first one of the order deepest."""
+    def queue(order: Sequence[int], gap: int) -> dict[int, Polygon]:
+        """Return the places of things in the dead end, the first one deepest. gap : at least, from its side walls."""
         places, east = {}, wall + long + depth
         for k in order:
             east -= gaps[k]
-            at = south + int(rng.integers(0, width - sizes[k][1] + 1))
+            at = south + int(rng.integers(gap, width - sizes[k][1] - gap + 1))
             places[k] = mirrored(box(east - sizes[k][0], at, east, at + sizes[k][1]), *table, mirror)
             east -= sizes[k][0]
         return places
 
     order = [int(k) for k in rng.permutation(count)]
-    places, variant = queue(order), f"{count} things"
-    if count == 2 and min(gaps) and rng.random() < EXCHANGE_SHARE:  # they lie there already, the wrong way round
-        variant = "exchange"
-        begin = queue(order[::-1])
+    places, variant = queue(order, int(exchange)), "exchange" if exchange else f"{count} things"
+    if exchange:  # they lie there already, the wrong way round
+        begin = queue(order[::-1], 1)
         things = tuple(replace(thing, polygon=begin[k]) for k, thing in enumerate(things))
     scene = Scene(plan, things, by_colour, utak, quarter_heading(rng))
     wants = [_filling(k, places[k], scene) for k in range(count)]
@@ -136,8 +137,10 @@ def row_world(rng: np.random.Generator, seed: int) -> SeveralWorld | None:
     """Return a world in which x belongs beyond a neck that a row of other things fills; None for no place."""
     (carried,), _ = loads(rng, 1, ("square", "brick"))
     count = int(rng.integers(1, 4))
-    door = int(carried.least) + int(rng.integers(1, 3))
-    sizes = [(int(rng.integers(2, 5)), int(rng.integers(max(2, door - 1), door + 1))) for _ in range(count)]
+    door = max(int(carried.least), MIN_ROW_DOOR - 2) + int(rng.integers(1, 3))
+    if door < MIN_ROW_DOOR:
+        return None
+    sizes = [(int(rng.integers(2, 5)), int(rng.integers(2, door - 1))) for _ in range(count)]
     gaps = [int(rng.integers(1, 3)) for _ in range(count + 1)]
     neck_length = sum(long for long, _ in sizes) + sum(gaps)
     wall = SEVERAL_WALL
@@ -155,7 +158,7 @@ def row_world(rng: np.random.Generator, seed: int) -> SeveralWorld | None:
     x = first
     for number, ((long, high), gap) in enumerate(zip(sizes, gaps, strict=False)):
         x += gap
-        south = at + int(rng.integers(0, door - high + 1))
+        south = at + int(rng.integers(1, door - high))  # a square from the walls, where x cannot pass it
         polygon = mirrored(box(x, south, x + long, south + high), *table, mirror)
         shape = "square" if long == high else "brick"
         if shape == carried.shape:
