@@ -43,7 +43,8 @@ def main(arguments: Sequence[str] | None = None, executor: Executor | None = Non
     bounds = RunBounds(given.pull, given.max_steps, given.seconds, given.search)
     try:
         asked = random_tasks(given.kinds, given.seed, given.count)
-        asked += puzzles(given.pushworld) if given.pushworld else []
+        if given.pushworld:
+            asked += puzzles(given.pushworld)
         workers = executor or partial(run_in_processes, jobs=given.jobs, preparation=PREPARATION)
         rows = _run_all(asked, bounds, given.output, given.keep, workers)
     except (OSError, BadInputError, CannotOpenError) as error:
@@ -57,17 +58,30 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.orders", description="Measure tasks of several things.")
     kinds = ",".join(SEVERAL_KINDS)
     parser.add_argument("--kinds", type=several_kinds, default=list(SEVERAL_KINDS), help=f"of {kinds} (all)")
-    parser.add_argument("--count", type=int, default=5, help="worlds of each kind (%(default)s)")
-    parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
-    parser.add_argument("--jobs", type=int, default=1, help="processes (%(default)s)")
+    parser.add_argument("--count", type=partial(_at_least, 0), default=5, help="worlds of each kind (%(default)s)")
+    parser.add_argument("--seed", type=partial(_at_least, 0), default=0, help="the first world's seed (%(default)s)")
+    parser.add_argument("--jobs", type=partial(_at_least, 1), default=1, help="processes (%(default)s)")
     parser.add_argument("--no-pull", dest="pull", action="store_false", help="the robot may push things, never pull")
     parser.add_argument("--pushworld", type=Path, metavar="FOLDER", help="puzzles: a folder of scenarios")
-    parser.add_argument("--max-steps", type=int, default=DEFAULTS.max_steps, help="most commands (%(default)s)")
-    parser.add_argument("--seconds", type=int, default=DEFAULTS.seconds, help="processor seconds a run (%(default)s)")
-    parser.add_argument("--search", type=int, default=DEFAULTS.search, help="seconds to look for a way (%(default)s)")
+    parser.add_argument(
+        "--max-steps", type=partial(_at_least, 1), default=DEFAULTS.max_steps, help="most commands (%(default)s)"
+    )
+    parser.add_argument(
+        "--seconds", type=partial(_at_least, 1), default=DEFAULTS.seconds, help="processor seconds a run (%(default)s)"
+    )
+    parser.add_argument(
+        "--search", type=partial(_at_least, 0), default=DEFAULTS.search, help="seconds to look for a way (%(default)s)"
+    )
     parser.add_argument("-o", "--output", type=Path, help="a JSON line for each run; gone on with when it is there")
     parser.add_argument("--keep", type=Path, help="folder in which scenarios and episodes stay")
     return parser
+
+
+def _at_least(least: int, text: str) -> int:
+    """Return the whole number in a text; raise argparse.ArgumentTypeError when it is none, or too small."""
+    if not text.isascii() or not text.isdigit() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"{text} is no whole number from {least} on")
+    return int(text)
 
 
 def _run_all(

@@ -46,6 +46,7 @@ class OrderRow:
     achieved : whether the truth is as the task wants it. met, wanted : of a random world: how many of the things that
         the task wants are so at the end; of a sequence: how many steps were reached in turn.
     commands : how many were given. took : processor seconds of the run.
+    carried : how often the robot took something in hand and moved it.
     judged : the judge's findings; None without a judge or result.
     false_done, false_impossible, refutation : claims that are not so, and what refutes them.
     """
@@ -66,6 +67,7 @@ class OrderRow:
     wanted: int = 0
     commands: int = 0
     took: float = 0.0
+    carried: int = 0
     judged: list[str] | None = None
     false_done: bool = False
     false_impossible: bool = False

@@ -33,7 +33,7 @@ from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
-from simulator.sweep.executors.tasks import TOO_LONG, TaskOutcome, WorkerTask
+from simulator.sweep.executors.tasks import TOO_LONG, TaskOutcome, WorkerTask, reason_of
 
 EPISODE_NAME = "episode.jsonl"
 # A run ends itself after its processor seconds, unless compiled code does not return, or the machine is busy with other
@@ -60,18 +60,19 @@ def run_entry(argument: dict[str, Any]) -> dict[str, Any]:
 
 
 def row_of_outcome(asked: AskedRun, bounds: RunBounds, folder: Path, outcome: TaskOutcome) -> OrderRow:
-    """Return the row of a run that has ended in a worker process, also when the process was ended or broke."""
+    """Return the row of a run that has ended in a worker process.
+
+    When the process was ended, or ended itself, the row holds how many commands were given and the time by the clock.
+    """
     if not outcome.failure:
         return row_of_entry(outcome.value)
-    late = outcome.failure == TOO_LONG
-    verdict = RUN_OUT_OF_TIME if late else RUN_BROKE
-    possible = CAN_BE_DONE if asked.solvable and bounds.pull else MAY_BE_DONE
-    with suppress(OSError):
-        commands = max(0, (place_of(asked, folder) / EPISODE_NAME).read_bytes().count(b'\n{"step"') - 1)
-        return replace(
-            _empty_row(asked, bounds), possible=possible, verdict=verdict, reason=outcome.reason, commands=commands
-        )
-    return replace(_empty_row(asked, bounds), possible=possible, verdict=verdict, reason=outcome.reason)
+    return replace(
+        _first_row(asked, bounds),
+        verdict=RUN_OUT_OF_TIME if outcome.failure == TOO_LONG else RUN_BROKE,
+        reason=outcome.reason,
+        took=round(outcome.seconds, 1),
+        commands=max(0, len(list(_track(place_of(asked, folder) / EPISODE_NAME))) - 1),
+    )
 
 
 def place_of(asked: AskedRun, folder: Path) -> Path:
@@ -81,27 +82,24 @@ def place_of(asked: AskedRun, folder: Path) -> Path:
 
 def run_order(asked: AskedRun, bounds: RunBounds, folder: Path, maker: RobotMaker = make_robot) -> OrderRow:
     """Run the robot in a task and return the row. folder : where the scenario and the episode are written."""
-    place = place_of(asked, folder)
+    place, known = place_of(asked, folder), _first_row(asked, bounds)
     place.mkdir(parents=True, exist_ok=True)
+    (place / EPISODE_NAME).unlink(missing_ok=True)
     if asked.folder:
-        possible = asked.solvable and bounds.pull
-        known = replace(_empty_row(asked, bounds), possible=CAN_BE_DONE if possible else MAY_BE_DONE)
         return _judged(known, None, Path(asked.folder), place / EPISODE_NAME, bounds, maker)
     world = several_world(asked.kind, int(asked.name))
     write(world, place)
+    known = replace(known, variant=world.variant)
     found = search(world, bounds.search, bounds.pull)
-    possible = bool(found.way) and does_task(world, found.way)
-    known = replace(
-        _empty_row(asked, bounds),
-        variant=world.variant,
-        possible=CAN_BE_DONE if possible else MAY_BE_DONE,
-        carries=found.carries if possible else 0,
-    )
+    if found.way and does_task(world, found.way):
+        known = replace(known, possible=CAN_BE_DONE, carries=found.carries)
     return _judged(known, world, place, place / EPISODE_NAME, bounds, maker)
 
 
-def _empty_row(asked: AskedRun, bounds: RunBounds) -> OrderRow:
-    return OrderRow(asked.kind, asked.name, "", bounds.pull, bounds.max_steps, bounds.seconds)
+def _first_row(asked: AskedRun, bounds: RunBounds) -> OrderRow:
+    """Return the row of a run before anything is found out about it."""
+    possible = CAN_BE_DONE if asked.solvable and bounds.pull else MAY_BE_DONE
+    return OrderRow(asked.kind, asked.name, asked.variant, bounds.pull, bounds.max_steps, bounds.seconds, possible)
 
 
 def _judged(
@@ -111,13 +109,18 @@ def _judged(
 
     known : the row so far. world : of a random task. scenario : its folder. episode : the file that is written.
     """
-    begun = time.process_time()
-    result = _ran(scenario, episode, bounds, maker)
+    begun, broke = time.process_time(), ""
+    try:
+        result = _ran(scenario, episode, bounds, maker)
+    except Exception as error:  # a crash is the result of the run
+        result, broke = None, reason_of(error)
     took = round(time.process_time() - begun, 1)
     track = list(_track(episode))
     row = replace(known, took=took, commands=max(0, len(track) - 1), verdict=RUN_OUT_OF_TIME)
     met, wanted = _met(world, track)
-    row = replace(row, met=met, wanted=wanted)
+    row = replace(row, met=met, wanted=wanted, carried=carries_made(episode))
+    if broke:
+        return replace(row, verdict=RUN_BROKE, reason=broke)
     if result is None:
         return replace(row, reason=f"more than {bounds.seconds} s of processor time")
     achieved = bool(result.achieved) and met == wanted
@@ -164,16 +167,32 @@ def _processor_limit(seconds: float) -> Iterator[None]:
 
 
 def _track(episode: Path) -> Iterator[dict[str, Any]]:
-    """Yield how everything lay at each step of an episode, by name, squares, table frame."""
+    """Yield how everything lay at each step of an episode, by name, squares, table frame; nothing without a file."""
+    for entry in _steps(episode):
+        yield {ROBOT: Point(entry["utak"]), **{name: Polygon(ring) for name, ring in entry["objects"].items()}}
+
+
+def _steps(episode: Path) -> Iterator[dict[str, Any]]:
+    """Yield the lines of the steps of an episode; nothing without a file. An incomplete line is left out."""
+    if not episode.is_file():
+        return
     with episode.open() as lines:
         for line in lines:
             with suppress(json.JSONDecodeError):
                 entry = json.loads(line)
                 if "step" in entry:
-                    yield {
-                        ROBOT: Point(entry["utak"]),
-                        **{name: Polygon(ring) for name, ring in entry["objects"].items()},
-                    }
+                    yield entry
+
+
+def carries_made(episode: Path) -> int:
+    """Return how often the robot took something in hand and moved it before it let go, by an episode."""
+    count, moved = 0, False
+    for entry in _steps(episode):
+        if entry["held"] is None:
+            moved = False
+        elif entry["motion"] is not None and not moved:
+            count, moved = count + 1, True
+    return count
 
 
 def _met(world: SeveralWorld | None, track: list[dict[str, Any]]) -> tuple[int, int]:

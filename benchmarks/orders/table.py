@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from statistics import median
 
+from benchmarks.orders.asked import AT_WALL_VARIANT
 from benchmarks.orders.row import CAN_BE_DONE, RUN_BROKE, RUN_OUT_OF_TIME, OrderRow
 
 PUSH_ONLY_MARK = " --no-pull"  # after the kind of runs in which the robot might not pull
@@ -28,10 +29,14 @@ def failures(rows: Sequence[OrderRow]) -> str:
 
 
 def grouped(rows: Sequence[OrderRow]) -> list[tuple[str, list[OrderRow]]]:
-    """Return (name, rows) of each kind, with and without pulling apart, in the order in which they first occur."""
+    """Return (name, rows) of each kind, in the order in which they first occur.
+
+    Puzzles with things at walls are apart, and runs without pulling.
+    """
     groups: dict[str, list[OrderRow]] = {}
     for row in rows:
-        groups.setdefault(row.kind + PUSH_ONLY_MARK * (not row.pull), []).append(row)
+        name = row.kind + f" {row.variant}" * (row.variant == AT_WALL_VARIANT)
+        groups.setdefault(name + PUSH_ONLY_MARK * (not row.pull), []).append(row)
     return list(groups.items())
 
 
@@ -51,8 +56,15 @@ def _line(name: str, rows: Sequence[OrderRow]) -> dict[str, str]:
         "error": str(sum(row.verdict == RUN_BROKE for row in rows)),
         "judge": f"{sum(bool(row.broken_laws) for row in judged)}/{len(judged)}",
         "commands": _middle([row.commands for row in rows if row.achieved]),
+        "carries": _carries(rows),
         "seconds": _middle([row.took for row in rows if row.verdict != RUN_BROKE]),
     }
+
+
+def _carries(rows: Sequence[OrderRow]) -> str:
+    """Return how many carries the robot made where it achieved the task, and how many the search that knows all."""
+    known = [row for row in rows if row.achieved and row.carries]
+    return f"{sum(row.carried for row in known)}/{sum(row.carries for row in known)}" if known else NO_RUNS
 
 
 def _middle(values: Sequence[float]) -> str:

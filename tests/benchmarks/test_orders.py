@@ -6,12 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shapely import box
 
 from benchmarks.orders.__main__ import main
 from benchmarks.orders.asked import AskedRun, is_touching, puzzles, random_tasks
 from benchmarks.orders.carried_out import commands_of, does_task
+from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
 from benchmarks.orders.row import OrderRow, RunBounds, row_of_entry
 from benchmarks.orders.run import place_of, row_of_outcome, run_order
 from benchmarks.orders.search import EXHAUSTED, FOUND, SEARCH_LIMIT, Carry, search
@@ -19,7 +23,10 @@ from benchmarks.orders.table import failures, table
 from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.several.kinds import several_world
 from benchmarks.worlds.several.tasks import SeveralWorld
-from geometry.motion.se2 import Translate
+from geometry.manipulation.goals import Inside
+from geometry.manipulation.legs import Leg
+from geometry.manipulation.plan_carrying import plan_carrying
+from geometry.motion.se2 import Rotate, Translate
 from kb.body import Body, Command, Impression, Move
 from kb.task.task import Task
 from simulator.run.session import RobotMaker
@@ -147,7 +154,7 @@ def test_the_search_ends_in_time() -> None:
 def test_a_robot_that_does_the_task_and_says_so_is_right(tmp_path: Path) -> None:
     row = run_order(PLUG, BOUNDS, tmp_path, obedient(found_commands("plug", 0), "done"))
     assert (row.achieved, row.believed, row.possible, row.carries) == (True, True, "yes", 2)
-    assert (row.met, row.wanted) == (2, 2)
+    assert (row.met, row.wanted, row.carried) == (2, 2, 2)
     assert not row.faulty
     assert row.judged in (None, [])
     assert row_of_entry(json.loads(json.dumps(row.entry()))) == row
@@ -181,6 +188,15 @@ def test_a_run_that_takes_too_long_is_cut_off(tmp_path: Path) -> None:
     assert (row.verdict, row.achieved, row.faulty) == ("time", False, False)
     assert row.took < 5
     assert row.commands >= 1
+
+
+def test_a_robot_that_breaks_is_a_row_with_what_was_known(tmp_path: Path) -> None:
+    def make(body: Body, told: Task, settings: Settings) -> Obedient:
+        raise KeyError("o7")
+
+    row = run_order(PLUG, BOUNDS, tmp_path, make)
+    assert (row.verdict, row.possible, row.carries, row.commands, row.faulty) == ("error", "yes", 2, 0, True)
+    assert "KeyError: 'o7'" in row.reason
 
 
 class Endless(list[Command]):
@@ -218,9 +234,12 @@ def test_puzzles_are_told_apart(tmp_path: Path) -> None:
     (tmp_path / "SOLVABLE.tsv").write_text("name\tverdict\tcarries\napart\tsolvable\t1\nclose\tnot found\t\n")
     (tmp_path / "LICENSE").write_text("")
     assert [asked[:2] + asked[3:] for asked in puzzles(tmp_path)] == [
-        ("pushworld", "apart", True),
-        ("pushworld_touching", "close", False),
+        ("pushworld", "apart", True, ""),
+        ("pushworld_touching", "close", False, ""),
     ]
+    picture = (tmp_path / "apart" / "world.txt").read_text().replace("b..aa", "baa..")
+    (tmp_path / "apart" / "world.txt").write_text(picture)
+    assert puzzles(tmp_path)[0].variant == "at wall"
     assert is_touching(read_scenario(tmp_path / "close"))
 
 
@@ -284,9 +303,24 @@ def test_a_folder_of_puzzles_that_is_not_there_is_reported(counted: Callable[...
     assert counted("--count", "0", "--pushworld", "/no/such/folder") == (2, 0)
 
 
+def test_a_folder_without_puzzles_is_reported(
+    counted: Callable[..., tuple[int, int]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert counted("--count", "0", "--pushworld", str(tmp_path)) == (2, 0)
+    assert "no puzzles in" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--jobs=0", "--count=-1", "--seed=x", "--seconds=0", "--kinds=plug,door"])
+def test_an_option_that_makes_no_sense_is_refused(option: str, counted: Callable[..., tuple[int, int]]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        counted(option)
+
+
 def test_the_table_counts_and_tells_reasons() -> None:
     rows = [
-        OrderRow("swap", "0", possible="yes", verdict="done", achieved=True, commands=10, judged=[]),
+        OrderRow(
+            "swap", "0", possible="yes", verdict="done", achieved=True, commands=10, carries=2, carried=3, judged=[]
+        ),
         OrderRow(
             "swap", "1", possible="yes", verdict="done", false_done=True, refutation="not so", judged=["step 1: bad"]
         ),
@@ -297,11 +331,11 @@ def test_the_table_counts_and_tells_reasons() -> None:
         OrderRow("plug", "1", verdict="error", reason="KeyError"),
     ]
     lines = [line.split() for line in table(rows).splitlines()]
-    head = "kind tasks possible achieved false done false impossible impossible limit time error judge commands seconds"
-    assert lines[0] == head.split()
-    assert lines[1] == ["swap", "4", "3", "1", "1", "1", "2", "0", "0", "0", "1/3", "10", "0"]
+    head = "kind tasks possible achieved false done false impossible impossible limit time error judge"
+    assert lines[0] == [*head.split(), "commands", "carries", "seconds"]
+    assert lines[1] == ["swap", "4", "3", "1", "1", "1", "2", "0", "0", "0", "1/3", "10", "3/2", "0"]
     assert lines[2][:3] == ["swap", "--no-pull", "1"]
-    assert lines[3] == ["plug", "2", "1", "1", "0", "0", "0", "0", "0", "1", "0/0", "20", "0"]
+    assert lines[3] == ["plug", "2", "1", "1", "0", "0", "0", "0", "0", "1", "0/0", "20", "-", "0"]
     assert lines[4][:4] == ["all", "7", "5", "2"]
     told = failures(rows)
     assert "  2 x impossible: door is # wide" in told
@@ -312,3 +346,51 @@ def test_the_table_counts_and_tells_reasons() -> None:
 def test_kinds_come_in_turn() -> None:
     names = [(asked.kind, asked.name) for asked in random_tasks(["plug", "swap"], 4, 2)]
     assert names == [("plug", "4"), ("swap", "4"), ("plug", "5"), ("swap", "5")]
+
+
+OPEN_FLOOR = np.ones((12, 20), bool)
+
+
+def floor_with_wall(door: int) -> np.ndarray:
+    """Return a floor of 20 x 12 squares with a wall at x = 9 that has a door of a width, from y = 4 on."""
+    free = OPEN_FLOOR.copy()
+    free[:, 9] = False
+    free[4 : 4 + door, 9] = True
+    return free
+
+
+def test_what_is_behind_a_closed_wall_is_out_of_reach() -> None:
+    thing = box(12, 4, 15, 7)
+    assert is_in_reach(thing, floor_with_wall(1), (2.5, 2.5))
+    assert not is_in_reach(thing, floor_with_wall(0), (2.5, 2.5))
+    assert is_in_reach(thing, floor_with_wall(0), (11.5, 3.5))
+    assert is_in_reach(thing, floor_with_wall(0), (12.5, 4.5))  # on its squares: not decided
+
+
+@pytest.mark.parametrize(("door", "may"), [(0, False), (1, False), (5, True), (6, True)])
+def test_a_thing_that_is_wider_than_a_door_cannot_pass(door: int, may: bool) -> None:
+    assert may_pass(box(2, 4, 7, 9), floor_with_wall(door), box(11, 0, 20, 12)) == may
+    assert may_pass(box(2, 4, 7, 9), floor_with_wall(door), box(0, 0, 8, 12))
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    door=st.integers(0, 6), x=st.integers(1, 5), y=st.integers(1, 7), east=st.integers(2, 4), north=st.integers(1, 4)
+)
+def test_no_carry_that_is_found_is_ruled_out(door: int, x: int, y: int, east: int, north: int) -> None:
+    thing, free, region = box(x, y, x + east, y + north), floor_with_wall(door), box(10, 0, 20, 12)
+    plan = plan_carrying(thing, free, (0.5, 0.5), Inside(region))
+    if plan.status == "found":
+        assert is_in_reach(thing, free, (0.5, 0.5))
+        assert may_pass(thing, free, region)
+        way = swept(thing, plan.legs)
+        assert way.intersects(region)
+        assert not way.intersects(box(9, 0, 10, 3.9))
+
+
+def test_a_carry_sweeps_what_it_passes_and_not_where_it_began() -> None:
+    leg = Leg((3.5, 1.5), (0, 1), (Translate(6.0, 0.0), Rotate(90.0, (9.5, 1.5))))
+    way = swept(box(2, 2, 5, 4), [leg])
+    assert way.intersects(box(6, 2.2, 7, 3.8))
+    assert not way.intersects(box(2.5, 2.2, 4, 3.8))
+    assert way.intersects(Rotate(90.0, (9.5, 1.5)).carry(box(8, 2, 11, 4)))
