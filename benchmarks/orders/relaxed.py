@@ -1,8 +1,7 @@
-"""What is needed at least: quick tests that rule out a carry, and the things that lie in its way."""
+"""Quick tests that rule out a carry, and what a carry sweeps."""
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import shapely
@@ -12,7 +11,6 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.worlds.placing import digital
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.legs import Leg
-from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.components import components
 from geometry.screen import Screen
 
@@ -60,12 +58,6 @@ def swept(shape: Polygon, legs: Sequence[Leg]) -> BaseGeometry:
     begin, parts = shape, []
     for leg in legs:
         for motion in leg.motions:
-            parts += [_part(motion, k / PARTS_OF_MOTION).carry(shape) for k in range(1, PARTS_OF_MOTION + 1)]
+            parts += [motion.part(k / PARTS_OF_MOTION).carry(shape) for k in range(1, PARTS_OF_MOTION + 1)]
             shape = motion.carry(shape)
     return shapely.union_all(parts).difference(begin).buffer(-TOUCHING_DEPTH)
-
-
-def _part(motion: Any, fraction: float) -> Translate | Rotate:
-    """Return the first part of a motion."""
-    part: Translate | Rotate = motion.part(fraction)
-    return part

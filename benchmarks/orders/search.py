@@ -237,11 +237,13 @@ class _Search:
             degrees = (want.move[2] - layout.turns[number] + 180.0) % 360.0 - 180.0
             yield At(Pose(there.x - shape.centroid.x, there.y - shape.centroid.y, degrees))
             return
-        yield Inside(want.region)
+        rooms = [room.polygon for room in self._world.plan.rooms if want.region.covers(room.polygon)]
+        region = shapely.union_all(rooms) if rooms else want.region  # the whole room, without a part of its neck
+        yield Inside(region)
         west, south, east, north = shape.bounds
         side = min(east - west, north - south)
-        for corner in convex_corners(want.region):
-            if want.region.covers(corner_box(corner, side)):
+        for corner in convex_corners(region):
+            if region.covers(corner_box(corner, side)):
                 yield InCorner(corner[0], corner[1], -int(corner[2]), -int(corner[3]))
 
     def _aside(self) -> Iterator[End]:
