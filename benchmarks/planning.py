@@ -3,7 +3,7 @@
     python -m benchmarks.planning optimum [--count 30] [--seed S]
     python -m benchmarks.planning rooms [--count 12] [--seed S]
 
-`optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block each other.
+`optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block others.
 The plan is compared with the cheapest sequence of errands that a search over all states finds which has the same places
 and asks the same geometry, but neither the encoding nor its refutations. `rooms`: six rooms with seven doors and six
 things; plans for one, two and three goals, in seconds of the processor, without the work of the first call of a kernel.
@@ -50,7 +50,7 @@ def optimum(count: int, seed: int) -> int:
         rows, ends = small_world(np.random.default_rng([number, 5]))
         situation = drawn_situation(rows)
         problem = drawn_problem(situation, ends)
-        made = make_plan(problem, situation, CarryOracle(problem, situation))
+        made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
         best = cheapest(made, problem, situation)
         if best is None or made.plan.unmet:
             missed += best is not None
@@ -67,7 +67,7 @@ def optimum(count: int, seed: int) -> int:
 
 def cheapest(made: MadePlan, problem: TaskProblem, situation: Situation) -> int | None:
     """Return the least cost of any sequence of at most MAX_ERRANDS errands that attains all goals; None for none."""
-    oracle = CarryOracle(problem, situation)
+    oracle = CarryOracle(problem, situation, on_lattice=True)
     places: dict[str, list[tuple[str, End]]] = {}
     for (name, place), end in made.places.items():
         places.setdefault(name, []).append((place, end))
@@ -124,7 +124,7 @@ def rooms(count: int, seed: int) -> int:
             situation = drawn_situation(rows)
             problem = drawn_problem(situation, ends)
             for _ in range(2):  # the second time, for the first one may compile a kernel
-                oracle = CarryOracle(problem, situation)
+                oracle = CarryOracle(problem, situation, on_lattice=True)
                 before = time.process_time()
                 made = make_plan(problem, situation, oracle)
                 took = 1000 * (time.process_time() - before)
@@ -155,14 +155,14 @@ def six_rooms(rng: np.random.Generator, goals: int) -> tuple[list[str], dict[str
         if y > 2:
             _clear(grid, x + int(rng.integers(0, ROOM_WIDTH - DOOR_WIDTH)), y - 2, DOOR_WIDTH, 2)
     ends: dict[str, End] = {}
-    order = list(rng.permutation(6))
+    order, shift = list(rng.permutation(6)), int(rng.integers(1, 6))
     for number, name in enumerate("ghkmnp"):
         x0, y0 = corners[order[number]]
         side = int(rng.integers(2, 5))
         x, y = x0 + int(rng.integers(2, ROOM_WIDTH - side - 1)), y0 + int(rng.integers(2, ROOM_HEIGHT - side - 1))
         _fill(grid, x, y, side, side, name)
         if number < goals:
-            x1, y1 = corners[order[(number + 1 + int(rng.integers(5))) % 6]]
+            x1, y1 = corners[order[(number + shift) % 6]]
             ends[name] = At(Pose(float(x1 - x), float(y1 - y), 0.0))
     x0, y0 = corners[order[0]]
     grid[y0][x0 + ROOM_WIDTH - 1] = "U"

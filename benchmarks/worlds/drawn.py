@@ -42,7 +42,7 @@ def drawn_situation(rows: Sequence[str]) -> Situation:
         low, high = np.argwhere(marks == letter).min(0), np.argwhere(marks == letter).max(0) + 1
         patch = Patch(int(low[1]) - west, int(low[0]) - south, (marks == letter)[low[0] : high[0], low[1] : high[1]])
         box = shapely.box(patch.west, patch.south, patch.west + high[1] - low[1], patch.south + high[0] - low[0])
-        nodes.append(Node(letter, "object", 100, "part1", patch, 0, polygon=box))
+        nodes.append(Node(str(letter), "object", 100, "part1", patch, 0, polygon=box))
     model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret_regions(percept), tuple(nodes))
     return Situation(model, CostMaps(model), {}, rooms_of(model), corners(model), NO_TASK)
 

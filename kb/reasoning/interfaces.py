@@ -147,6 +147,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("overlap", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("refuted", 4): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
         ("given", 3): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
@@ -172,7 +173,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
-        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects",
+        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "lies", "connects",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
         "robot_in", "needed", "reached", "otherwise", "unmet", "asked", "closed",
     ]

@@ -45,7 +45,6 @@ class OracleAnswer(NamedTuple):
     certainty : how sure the way is.
     commands : about how many commands it takes; 0 when it is refuted.
     after : the state that it leads to; None when it is refuted.
-    body : whether the object could not even go by itself, without the robot; only for refutations.
     plan : the way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone,
         and when it is refuted.
     avoid : grasps of the object as it lay before, as (x, y) of the robot from its middle, that the plan does not use:
@@ -55,7 +54,6 @@ class OracleAnswer(NamedTuple):
     certainty: Certainty
     commands: int = 0
     after: TableState | None = None
-    body: bool = False
     plan: CarryingPlan | None = None
     avoid: tuple[XY, ...] = ()
 
@@ -131,6 +129,7 @@ class CarryOracle:
         pull: bool = True,
         avoid: Mapping[str, Sequence[XY]] | None = None,
         turn: float = 1.0,
+        on_lattice: bool = False,
     ) -> None:
         """Make an oracle for a situation.
 
@@ -141,14 +140,25 @@ class CarryOracle:
         pull : whether a held object may be pulled.
         avoid : the grasps of each object that failed, as in `plan_carrying`; none by default.
         turn : how many commands a turn counts for.
+        on_lattice : whether only ways by whole squares and quarter turns are looked for, which is much faster. What is
+            refuted then may be possible otherwise.
         """
         self.asked = 0
         self.floors = floors_of(problem, situation)
         self._problem, self._situation = problem, situation
-        self._pull, self._avoid, self._turn = pull, avoid or {}, turn
+        self._pull, self._avoid, self._turn, self._on_lattice = pull, avoid or {}, turn, on_lattice
         self._doors = {door.name: door for door in situation.rooms.doors}
         self._answers: dict[Any, OracleAnswer] = {}
         self._plans: dict[Any, CarryingPlan] = {}
+
+    def is_refuted_from_anywhere(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> bool:
+        """Return whether an object cannot be brought to an end in a state wherever the robot stands.
+
+        Parameters
+        ----------
+        state, name, end, shut : as for `bring`.
+        """
+        return self._plan(state, name, end, Certainty.REFUTED, shut, anywhere=True).status != "found"
 
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
@@ -197,7 +207,7 @@ class CarryOracle:
             return self._found(state, name, place, Certainty.SURE, sure)
         most = self._free_handed(state, name, end, Certainty.REFUTED, shut)  # over all that is not known to be occupied
         if most.plan.status != "found":
-            return OracleAnswer(Certainty.REFUTED, body=most.plan.status == "impossible")
+            return OracleAnswer(Certainty.REFUTED)
         likely = self._free_handed(state, name, end, Certainty.HOPED, shut)
         return self._found(state, name, place, Certainty.HOPED, likely if likely.plan.status == "found" else most)
 
@@ -263,10 +273,14 @@ class CarryOracle:
         certainty: Certainty,
         shut: frozenset[str],
         inner: tuple[XY, ...] = (),
+        anywhere: bool = False,
     ) -> CarryingPlan:
         """Return what geometry finds over the squares of a certainty without some grasps, in the frame with the margin.
 
         Floors of two certainties may be the same squares; geometry is asked once for them.
+
+        inner : further grasps that are not used.
+        anywhere : whether the robot may come to the object wherever it stands.
         """
         lying, margin = state.things[name], self.floors.margin
         outline = Translate(margin, margin).carry(lying.outline)
@@ -274,7 +288,8 @@ class CarryOracle:
         free = walk | squares(outline, walk.shape[1], walk.shape[0])
         goal, held = moved(lying.reach(end), margin, margin), state.held == name
         where = goal.polygon.wkb if isinstance(goal, Inside) else goal
-        key = (outline.wkb, walk.tobytes(), where, state.robot, held, inner)
+        walk = np.ones_like(walk) if anywhere else walk
+        key = (outline.wkb, free.tobytes(), where, state.robot, held, inner, anywhere)
         if key not in self._plans:
             self.asked += 1
             utak = state.robot[0] + margin, state.robot[1] + margin
@@ -282,7 +297,17 @@ class CarryOracle:
             failed = Rotate(lying.pose.degrees, (0.0, 0.0)).points(failed)
             avoid = (*((float(dx), float(dy)) for dx, dy in failed), *inner)
             self._plans[key] = plan_carrying(
-                outline, free, utak, goal, 0.0, self._pull, avoid, walk, held=held, turn=self._turn
+                outline,
+                free,
+                utak,
+                goal,
+                0.0,
+                self._pull,
+                avoid,
+                walk,
+                held=held,
+                turn=self._turn,
+                on_lattice=self._on_lattice,
             )
         return self._plans[key]
 

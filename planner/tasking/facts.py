@@ -5,6 +5,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
 
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
@@ -13,8 +14,11 @@ from kb.world.facts import FELT_COLOUR_CONFIDENCE
 from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
 from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.oracles.spots import SPOT_SLACK
 from planner.situation import Situation
 from planner.tasking.task_plan import RefutedStep
+
+OVERLAP_ROUNDING = 1e-6  # squares by which two places may seem to overlap, though they only touch
 
 Way = tuple[str, str, str]  # a thing, the place that it comes from, the place that it is brought to
 
@@ -35,7 +39,12 @@ class Answers:
     refutations: tuple[RefutedStep, ...] = ()
 
 
-def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situation: Situation) -> tuple[str, ...]:
+def problem_facts(
+    problem: TaskProblem,
+    aside: Sequence[tuple[str, str]],
+    situation: Situation,
+    spots: AbstractSet[tuple[str, str]] = frozenset(),
+) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops.
 
     Parameters
@@ -43,6 +52,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
     problem : things, places and goals.
     aside : by object and place: the places where an object is out of the way.
     situation : what is believed: world model, rooms, doors, corners and track.
+    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     """
     facts = [f"place({ROBOT},{HERE})"]
     facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
@@ -57,6 +67,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
+    facts += _overlaps(problem, spots)
     return (*facts, *_room_facts(problem, situation), *_world_facts(situation))
 
 
@@ -88,6 +99,29 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
         room = int(counts.argmax())
         if room != NO_ROOM and 2 * counts[room] > counts.sum():
             yield f"lies({name},{place},r{room})"
+
+
+def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[str]:
+    """Yield which exact places of two things overlap: where they lie now, poses and spots; regions do not count."""
+    names, outlines = [], []
+    for name, lying in problem.state.things.items():
+        names.append((name, HERE))
+        outlines.append(lying.outline)
+    for (name, place), end in problem.places.items():
+        lying = problem.state.things[name]
+        if isinstance(end, At):
+            outline = shape_at_pose(lying.outline, end.pose)
+        elif isinstance(end, Inside) and (name, place) in spots:
+            outline = end.polygon.buffer(-SPOT_SLACK, join_style="mitre")
+        else:
+            continue
+        names.append((name, place))
+        outlines.append(outline.buffer(-OVERLAP_ROUNDING))
+    tree = shapely.STRtree(outlines)
+    for one, other in sorted(zip(*(column.tolist() for column in tree.query(outlines, "intersects")), strict=True)):
+        (x, p), (y, q) = names[one], names[other]
+        if x < y and (p, q) != (HERE, HERE):
+            yield f"overlap({x},{p},{y},{q})"
 
 
 def _world_facts(situation: Situation) -> Iterator[str]:

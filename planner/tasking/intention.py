@@ -216,9 +216,12 @@ class Intention:
         believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
         if believed == self._hopeless:
             return None
-        oracle = CarryOracle(problem, situation, self._pull, avoid, turn)
         tried = [refutation for where, refutation in self._tried if where == lying]
-        made = make_plan(problem, situation, oracle, tried)
+        for on_lattice in (True, False):  # ways by whole squares are found fast, and mostly they do
+            oracle = CarryOracle(problem, situation, self._pull, avoid, turn, on_lattice)
+            made = make_plan(problem, situation, oracle, tried)
+            if not made.plan.unmet:
+                break
         self.rules = effects_of_rules(made, situation)
         self._hopeless = believed if made.plan.unmet else None
         if made.plan.unmet:

@@ -12,9 +12,7 @@ from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
 from planner.oracles.carry import Certainty, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import covered_by, spots
-
-SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
+from planner.oracles.spots import SPOT_SLACK, covered_by, spots
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -40,6 +38,7 @@ class Offers:
     Attributes
     ----------
     aside : by object and place: the offered places where an object is out of the way.
+    spots : by object and place: all offered places.
     fresh : whether places were offered since this was set to False.
     shape : (rows, columns) of the floors.
     """
@@ -48,6 +47,7 @@ class Offers:
         """Make offers for some floors; nothing is in the way."""
         sure = floors.by_certainty[Certainty.SURE]
         self.aside: list[tuple[str, str]] = []
+        self.spots: set[tuple[str, str]] = set()
         self.fresh = False
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
@@ -85,6 +85,7 @@ class Offers:
                     for number, end in enumerate(self._spots_within(name, region, problem), 1):
                         new[name, f"{place}_{number}"] = end
                         fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
+        self.spots |= new.keys()
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:

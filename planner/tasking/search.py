@@ -153,7 +153,7 @@ class PlanSearch:
         if offered is None:
             return False
         self._problem = offered
-        self._facts = problem_facts(offered, self._offers.aside, self._situation)
+        self._facts = problem_facts(offered, self._offers.aside, self._situation, self._offers.spots)
         return True
 
     def _estimated(self, errands: Sequence[Errand]) -> int:
@@ -218,10 +218,15 @@ class PlanSearch:
                 gone |= {name}
         given = tuple((name, state.things[name].place) for name in sorted(others - gone))
         self._offers.note_in_way([name for name, _ in given])
-        last = self._ask(state.without(gone), errand, shut)
-        return RefutedStep(
-            errand.subject, origin, errand.place, given, None if last.body else state.last, tuple(sorted(shut))
-        )
+        stood = state.last if self._depends_on_robot(state.without(gone), errand, shut) else None
+        return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)))
+
+    def _depends_on_robot(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:
+        """Return whether a refuted errand could be done if the robot stood elsewhere."""
+        if errand.subject == ROBOT:
+            return True
+        end = self._problem.places[errand.subject, errand.place]
+        return not self._oracle.is_refuted_from_anywhere(state, errand.subject, end, shut)
 
     def _known_circumstances(self, state: TableState, errand: Errand, shut: frozenset[str]) -> RefutedStep | None:
         """Return an earlier refutation of the same errand from elsewhere, if what it rests on refutes it here, too."""
