@@ -1,6 +1,7 @@
 """The facts of planner/asp/task.lp: things, places, goals and rooms of a problem, and what geometry said so far."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
@@ -122,6 +123,18 @@ def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iter
         (x, p), (y, q) = names[one], names[other]
         if x < y and (p, q) != (HERE, HERE):
             yield f"overlap({x},{p},{y},{q})"
+
+
+def things_in_way(facts: Iterable[str]) -> list[str]:
+    """Return the things that lie now where another thing may have to lie, by facts `overlap`, each once.
+
+    Parameters
+    ----------
+    facts : facts of the encoding, without full stops.
+    """
+    pairs = [re.fullmatch(r"overlap\((\w+),(\w+),(\w+),(\w+)\)", fact) for fact in facts]
+    found = [match[1] if match[2] == HERE else match[3] for match in pairs if match and HERE in (match[2], match[4])]
+    return list(dict.fromkeys(found))
 
 
 def _world_facts(situation: Situation) -> Iterator[str]:

@@ -89,10 +89,14 @@ class Offers:
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
-        """Return places on sure floor, off the ways of others where that can be, and off other things."""
+        """Return places on sure floor, off the ways of others where that can be, and off other things.
+
+        Those to which it can be pushed past the other things; where there are none, those that need others moved first.
+        """
         floor = self._floors.by_certainty[Certainty.SURE]
         others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
-        return self._spots(name, problem, floor & ~covered_by(others, self.shape), floor)
+        open_floor = floor & ~covered_by(others, self.shape)
+        return self._spots(name, problem, open_floor, open_floor) or self._spots(name, problem, open_floor, floor)
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
         """Return places within the region of a goal."""

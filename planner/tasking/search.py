@@ -22,7 +22,7 @@ from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
 from planner.oracles.problem import HERE, ROBOT, TableState, TaskProblem
 from planner.situation import Situation
-from planner.tasking.facts import Answers, answer_facts, problem_facts
+from planner.tasking.facts import Answers, answer_facts, problem_facts, things_in_way
 from planner.tasking.offers import Offers, with_returns
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
@@ -89,6 +89,7 @@ class PlanSearch:
         self._answers = Answers(refutations=tuple(tried))
         self._offers = Offers(oracle.floors)
         self._facts = problem_facts(problem, (), situation)
+        self._offers.note_in_way(things_in_way(self._facts))
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
 
     def run(self) -> MadePlan:
