@@ -129,6 +129,7 @@ def plan_carrying(
     walls: Any = None,
     held: bool = False,
     turn: float = 1.0,
+    on_lattice: bool = False,
 ) -> CarryingPlan:
     """Return a plan by which the robot carries a body to a goal.
 
@@ -154,6 +155,8 @@ def plan_carrying(
         grasp in `avoid` is released.
     turn : how many commands a turn counts for, 1 to MAX_TURN_COST: more where turns should be avoided. Only plans by
         whole squares depend on it.
+    on_lattice : whether to look only for plans by whole squares and quarter turns. That is much faster where there is
+        none; then nothing is proved, and the status is "limit".
 
     Returns
     -------
@@ -180,7 +183,7 @@ def plan_carrying(
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
-    return replace(first_plan(query), held=held)
+    return replace(first_plan(query, None if on_lattice else OFF_LATTICE_PLANNERS), held=held)
 
 
 class OffLatticePlanners(NamedTuple):
@@ -203,21 +206,22 @@ class OffLatticePlanners(NamedTuple):
 OFF_LATTICE_PLANNERS = OffLatticePlanners()
 
 
-def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners = OFF_LATTICE_PLANNERS) -> CarryingPlan:
+def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None = OFF_LATTICE_PLANNERS) -> CarryingPlan:
     """Return the plan of the first planner that finds one, or a plan without legs that says why none does.
 
     The CarryingPlan holds a status ("found", "impossible" or "limit"), legs in order and the end of the body, squares,
     table frame; when not found the reason, "body", "hold", "start" or "goal", and the motion plan of the body alone.
     `query` : the body, the robot, the goal, and what is in the way. `off_lattice` : the planners asked after those by
-    whole squares.
+    whole squares; None for none.
     """
     plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
         plan = _plan_of(query, plan_on_lattice(query))
-    plan = plan or _plan_of(query, off_lattice.aligned(query))
-    if plan is not None:
-        return plan
+    if plan is None and off_lattice is not None:
+        plan = _plan_of(query, off_lattice.aligned(query))
+    if plan is not None or off_lattice is None:
+        return plan or CarryingPlan("limit", reason="hold")
     body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)

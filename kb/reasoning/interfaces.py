@@ -150,6 +150,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("size", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
+        ("overlap", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("refuted", 4): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
         ("given", 3): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
@@ -175,7 +176,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
-        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "lies", "connects", "size",
+        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "lies", "connects",
+        "size",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
     ]

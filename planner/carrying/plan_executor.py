@@ -36,7 +36,7 @@ from planner.carrying.remaining_plan import (
 from planner.goals.placement import mask_to_polygon, pull_out_end
 from planner.screen.projection import SquareIndices
 from planner.situation import Situation
-from planner.skills.failed_grasps import FailedGrasps
+from planner.skills.failed_grasps import FailedGrasps, rotated_grasps
 from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push
 from planner.skills.unjam import retreat_push
 
@@ -59,6 +59,8 @@ class PlanExecutor:
     pull : whether a held object may be pulled.
     failed : the grasps by which an object did not move. Only this class changes it.
     missed : how many plans ended, with the object in hand, before they led to their end, since `forget_misses`.
+    unwanted : by the name of an object, grasps that plans for it do not use, as (x, y) of the robot from its middle as
+        it lay when they were stated, in squares along the axes of the map, and by how many degrees it had been turned.
     """
 
     def __init__(
@@ -80,6 +82,7 @@ class PlanExecutor:
         self.pull = pull
         self.failed = FailedGrasps()
         self.missed = 0
+        self.unwanted: Mapping[str, tuple[float, tuple[XY, ...]]] = {}
         self._oracle = oracle or ManipulationOracle(pull)
         # Asked for ways to a viewpoint: one that finds nothing there shall not change the order of questions elsewhere.
         self._viewpoint_oracle = ManipulationOracle(pull)
@@ -454,7 +457,9 @@ class PlanExecutor:
         held = model.held == node.name and not stalled
         contacts = self._contacts.get(node.name, 0)
         contacts += model.frame.origin != CENTRE and max(model.leeway) > PLACE_SLACK
-        return Request(node, ends, self.failed.grasps(node), last, contacts, held, turn_cost(model))
+        turned, unwanted = self.unwanted.get(node.name, (0.0, ()))
+        avoid = (*self.failed.grasps(node), *rotated_grasps(unwanted, node.turned - turned))
+        return Request(node, ends, avoid, last, contacts, held, turn_cost(model))
 
     def _plan_aside(
         self, other: Node, found: ManipulationPlan, situation: Situation

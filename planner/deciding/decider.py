@@ -36,6 +36,7 @@ from planner.goals.joint import opposite_corners_reason
 from planner.goals.robot_goals import destination, robot_stands_on, unknown_destination, unreachable_reason
 from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.navigation.subgoals import Subgoal
+from planner.per_model import PerModel
 from planner.screen.moves import next_move
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.sights.viewpoints import TO_REACH
@@ -98,7 +99,8 @@ class Decider:
         self._tools = Tools(self.executor, self.pursuer, self._verifier)
         self._transporter = Transporter()
         self._clearer = ObstacleClearer()
-        self._errands = ErrandRunner(pull)
+        self._destination = PerModel(destination)
+        self._errands = ErrandRunner(self._destination, pull)
         self._into_corner = IntoCorner()
         self._keeper = ConstraintKeeper(task)
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
@@ -268,7 +270,7 @@ class Decider:
         errand = self._errands.next(stage, situation, reconciled, self._transporter, self._tools)
         if errand is not None:
             return errand
-        for goal in stage.carried:
+        for goal in self._ordered(stage, situation):
             decision = self._transporter.towards(goal, stage, situation, reconciled, self._tools)
             if decision is None:
                 continue
@@ -324,6 +326,22 @@ class Decider:
             return None
         return decision
 
+    def _ordered(self, stage: Stage, situation: Situation) -> list[Fact]:
+        """Return the goals for objects in the order in which they are pursued while there is no task plan.
+
+        Objects that are not known yet come first, while the hand is empty: all must be found, and once they are known
+        it can be planned which of them goes first. Else the order is that of the task.
+        """
+        if situation.model.held is not None:
+            return list(stage.carried)
+
+        def is_known(goal: Fact) -> bool:
+            """Return whether the outline of the object that a goal is about is known."""
+            node = situation.model.object(situation.binding.get(str(goal.args[0]), ""))
+            return node is not None and node.polygon is not None
+
+        return sorted(stage.carried, key=is_known)
+
     def _go(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
     ) -> Decision | None:
@@ -347,9 +365,9 @@ class Decider:
             node = situation.model.object(self.bound.get(str(goals[0].args[1]), ""))
             if node is not None:
                 return self._go_round(stage, node.name, situation, track)
-            where = [destination(goals[0], situation)]
+            where = [self._destination(goals[0], situation)]
         else:
-            where = [destination(goal, situation) for goal in goals]
+            where = [self._destination(goal, situation) for goal in goals]
             there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
             there = there or self._into_corner.is_pressing(stage, situation)
             look = self._make_sure(goals, there, stage, situation)

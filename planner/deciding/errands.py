@@ -22,6 +22,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention, NextErrand
+from planner.tasking.setting import DestinationFunction
 from planner.tasking.task_plan import Errand, TaskPlan
 
 MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
@@ -30,12 +31,13 @@ MAX_FAILURES = 3  # errands that fail one after the other within one decision; a
 class ErrandRunner:
     """Carries out the errands of the task plan, and owns the plan."""
 
-    def __init__(self, pull: bool = True) -> None:
+    def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
         """Make a runner without a plan.
 
+        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
         pull : whether a held object may be pulled.
         """
-        self._intention = Intention(pull)
+        self._intention = Intention(where, pull)
 
     @property
     def plan(self) -> TaskPlan | None:
@@ -66,12 +68,14 @@ class ErrandRunner:
                 self.update(stage, situation, transporter, tools)
             found = self._intention.next_errand(stage, situation, transporter.place, transporter.origin_of)
             if found is None:
-                return None
+                break
+            tools.executor.unwanted = {found.node.name: (found.turned, found.errand.avoid)}
             along = self.along_plan(situation)
             decision = self._follow(found, stage, along, reconciled, transporter, tools)
             if decision is not None and decision.command is not None:
                 return decision
             self._intention.failed(found.errand, situation)
+        tools.executor.unwanted = {}
         return None
 
     def update(self, stage: Stage, situation: Situation, transporter: Transporter, tools: Tools) -> Situation:

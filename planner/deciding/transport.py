@@ -29,6 +29,7 @@ from planner.goals.origins import Origins
 from planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
 from planner.goals.robot_goals import unknown_destination
 from planner.navigation.subgoals import Subgoal
+from planner.per_model import PerModel
 from planner.screen.moves import orientation_is_uncertain
 from planner.situation import Situation
 from planner.skills.measure_size import SizeEstimator, least_outline
@@ -60,7 +61,8 @@ class Transporter:
         search : returns the subgoals that are worth doing while something is missing; as
             planner.deciding.search.subgoals_towards.
         """
-        self._place, self._search = place, search
+        self._place: Callable[[Fact, Node, XY, Situation], Placement] = PerModel(place)
+        self._search = search
         self._origins = Origins()
         self._size_estimator = SizeEstimator()
         self._presser = Presser()

@@ -13,16 +13,16 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
+from geometry.manipulation.goals import End, Inside, moved
 from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
-from geometry.motion.se2 import Pose, Translate
+from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
-from planner.screen.projection import UNSEEN_LEVEL
+from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import NECK_WIDTH, Situation
 
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
@@ -44,16 +44,24 @@ class OracleAnswer(NamedTuple):
     certainty : how sure the way is.
     commands : about how many commands it takes; 0 when it is refuted.
     after : the state that it leads to; None when it is refuted.
-    body : whether the object could not even go by itself, without the robot; only for refutations.
     plan : the way of an object, in squares, view frame moved by the margin of the floors; None for the robot alone,
         and when it is refuted.
+    avoid : grasps of the object as it lay before, as (x, y) of the robot from its middle, that the plan does not use:
+        with them the object would shut the robot in at its place.
     """
 
     certainty: Certainty
     commands: int = 0
     after: TableState | None = None
-    body: bool = False
     plan: CarryingPlan | None = None
+    avoid: tuple[XY, ...] = ()
+
+
+class _Carrying(NamedTuple):
+    """A plan of geometry, and the grasps that it must not use: with them the object would shut the robot in."""
+
+    plan: CarryingPlan
+    avoid: tuple[XY, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -120,6 +128,7 @@ class CarryOracle:
         pull: bool = True,
         avoid: Mapping[str, Sequence[XY]] | None = None,
         turn: float = 1.0,
+        on_lattice: bool = False,
     ) -> None:
         """Make an oracle for a situation.
 
@@ -130,13 +139,25 @@ class CarryOracle:
         pull : whether a held object may be pulled.
         avoid : the grasps of each object that failed, as in `plan_carrying`; none by default.
         turn : how many commands a turn counts for.
+        on_lattice : whether only ways by whole squares and quarter turns are looked for, which is much faster. What is
+            refuted then may be possible otherwise.
         """
         self.asked = 0
         self.floors = floors_of(problem, situation)
         self._problem, self._situation = problem, situation
-        self._pull, self._avoid, self._turn = pull, avoid or {}, turn
+        self._pull, self._avoid, self._turn, self._on_lattice = pull, avoid or {}, turn, on_lattice
         self._doors = {door.name: door for door in situation.rooms.doors}
         self._answers: dict[Any, OracleAnswer] = {}
+        self._plans: dict[Any, CarryingPlan] = {}
+
+    def is_refuted_from_anywhere(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> bool:
+        """Return whether an object cannot be brought to an end in a state wherever the robot stands.
+
+        Parameters
+        ----------
+        state, name, end, shut : as for `bring`.
+        """
+        return self._plan(state, name, end, Certainty.REFUTED, shut, anywhere=True).status != "found"
 
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
@@ -180,32 +201,114 @@ class CarryOracle:
 
     def _bring(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> OracleAnswer:
         """Return the answer of geometry; the surest way counts."""
+        sure = self._free_handed(state, name, end, Certainty.SURE, shut)
+        if sure.plan.status == "found":
+            return self._found(state, name, place, Certainty.SURE, sure)
+        most = self._free_handed(state, name, end, Certainty.REFUTED, shut)  # over all that is not known to be occupied
+        if most.plan.status != "found":
+            return OracleAnswer(Certainty.REFUTED)
+        likely = self._free_handed(state, name, end, Certainty.HOPED, shut)
+        return self._found(state, name, place, Certainty.HOPED, likely if likely.plan.status == "found" else most)
+
+    def _found(self, state: TableState, name: str, place: str, certainty: Certainty, found: _Carrying) -> OracleAnswer:
+        """Return the answer for a plan that was found."""
+        after = self._after(state, name, found.plan, place)
+        return OracleAnswer(certainty, found.plan.commands, after, plan=found.plan, avoid=found.avoid)
+
+    def _free_handed(
+        self, state: TableState, name: str, end: End, certainty: Certainty, shut: frozenset[str]
+    ) -> _Carrying:
+        """Return a plan after which the object does not shut the robot in; any plan where there is no such plan.
+
+        A robot that pulls a thing into a dead end stands behind it at last.
+        """
+        plan = self._plan(state, name, end, certainty, shut)
+        if not plan.legs:
+            return _Carrying(plan)
+        after = self._after(state, name, plan, "")
+        inner = self._inner_grasps(after, name, plan, certainty, shut)
+        if not inner:
+            return _Carrying(plan)
+        other = self._plan(state, name, end, certainty, shut, inner)
+        return _Carrying(other, inner) if other.legs else _Carrying(plan)
+
+    def _inner_grasps(
+        self,
+        after: TableState,
+        name: str,
+        plan: CarryingPlan,
+        certainty: Certainty,
+        shut: frozenset[str],
+    ) -> tuple[XY, ...]:
+        """Return the grasps of an object from where most of the floor cannot be reached, once it lies; () if it can.
+
+        As (x, y) of the robot from the middle of the object as it lay before the plan.
+
+        Parameters
+        ----------
+        after : the state after the plan.
+        name : the object.
+        plan : the plan.
+        certainty, shut : the floor on which the robot walks.
+        """
+        margin = self.floors.margin
+        walk = self._free(after, None, certainty, shut)
+        far = reach(walk, int(after.robot[0]) + margin, int(after.robot[1]) + margin)
+        outside = walk & (far == GEODESIC_UNREACHED)
+        if 2 * outside.sum() < walk.sum():  # most of the floor can be reached
+            return ()
+        under = self._covered(name, after.things[name], (walk.shape[0], walk.shape[1]))
+        rows, columns = np.nonzero(dilate(under, 1) & ~under & (far != GEODESIC_UNREACHED))
+        middle = after.things[name].outline.centroid
+        assert plan.pose is not None
+        offsets = np.column_stack([columns + 0.5 - margin - middle.x, rows + 0.5 - margin - middle.y])
+        return tuple((float(dx), float(dy)) for dx, dy in Rotate(-plan.pose.degrees, (0.0, 0.0)).points(offsets))
+
+    def _plan(
+        self,
+        state: TableState,
+        name: str,
+        end: End,
+        certainty: Certainty,
+        shut: frozenset[str],
+        inner: tuple[XY, ...] = (),
+        anywhere: bool = False,
+    ) -> CarryingPlan:
+        """Return what geometry finds over the squares of a certainty without some grasps, in the frame with the margin.
+
+        Floors of two certainties may be the same squares; geometry is asked once for them.
+
+        inner : further grasps that are not used.
+        anywhere : whether the robot may come to the object wherever it stands.
+        """
         lying, margin = state.things[name], self.floors.margin
-        goal = moved(lying.reach(end), margin, margin)
         outline = Translate(margin, margin).carry(lying.outline)
-        body = False
-        for certainty in Certainty:
-            free, walk = self._free(state, name, certainty, shut), self._free(state, name, certainty, shut, alone=True)
-            x, y = state.robot[0] + margin, state.robot[1] + margin
-            free |= squares(outline, free.shape[1], free.shape[0])
+        free = self._free(state, name, certainty, shut)
+        free |= squares(outline, free.shape[1], free.shape[0])
+        goal, held = moved(lying.reach(end), margin, margin), state.held == name
+        where = goal.polygon.wkb if isinstance(goal, Inside) else goal
+        walk = np.ones_like(free) if anywhere else self._free(state, name, certainty, shut, alone=True)
+        key = (outline.wkb, free.tobytes(), walk.tobytes(), where, state.robot, held, inner)
+        if key not in self._plans:
             self.asked += 1
-            plan = plan_carrying(
+            utak = state.robot[0] + margin, state.robot[1] + margin
+            failed = np.array(self._avoid.get(name, ())).reshape(-1, 2)
+            failed = Rotate(lying.pose.degrees, (0.0, 0.0)).points(failed)
+            avoid = (*((float(dx), float(dy)) for dx, dy in failed), *inner)
+            self._plans[key] = plan_carrying(
                 outline,
                 free,
-                (x, y),
+                utak,
                 goal,
                 0.0,
                 self._pull,
-                tuple(self._avoid.get(name, ())),
+                avoid,
                 walk,
-                held=state.held == name,
+                held=held,
                 turn=self._turn,
+                on_lattice=self._on_lattice,
             )
-            if plan.status == "found":
-                sure = Certainty.SURE if certainty == Certainty.SURE else Certainty.HOPED
-                return OracleAnswer(sure, plan.commands, self._after(state, name, plan, place), plan=plan)
-            body = plan.status == "impossible"
-        return OracleAnswer(Certainty.REFUTED, body=body)
+        return self._plans[key]
 
     def _after(self, state: TableState, name: str, plan: CarryingPlan, place: str) -> TableState:
         """Return the state after a plan, given in the frame with the margin."""

@@ -13,6 +13,7 @@ from geometry.kernels.arrays import Bools, Ints
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 
+SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
 MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
 MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on choices
 

@@ -1,5 +1,7 @@
 """Failed grasps: grasps by which an object did not move. They are avoided until no other is left."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from geometry.kernels.arrays import XY, Floats
@@ -40,7 +42,7 @@ class FailedGrasps:
         middle = node.polygon.centroid
         square = np.floor(model.place) + np.array(CENTRE)
         grasps = np.array([model.place, square]) - (middle.x, middle.y)
-        self._failed[node.name] = (*self._failed.get(node.name, ()), *_rotated(grasps, -node.turned))
+        self._failed[node.name] = (*self._failed.get(node.name, ()), *rotated_grasps(grasps, -node.turned))
 
     def grasps(self, node: Node) -> tuple[XY, ...]:
         """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
@@ -51,7 +53,7 @@ class FailedGrasps:
         ----------
         node : the object, a node of the world model.
         """
-        return _rotated(np.array(self._failed.get(node.name, ())).reshape(-1, 2), node.turned)
+        return rotated_grasps(self._failed.get(node.name, ()), node.turned)
 
     def forgive(self, node: Node) -> bool:
         """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
@@ -73,10 +75,11 @@ class FailedGrasps:
         return True
 
 
-def _rotated(grasps: Floats, degrees: float) -> tuple[XY, ...]:
+def rotated_grasps(grasps: Sequence[XY] | Floats, degrees: float) -> tuple[XY, ...]:
     """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
 
     grasps : (n, 2), (x, y) from the object's middle, in squares.
     degrees : counter-clockwise positive.
     """
-    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(grasps))
+    points = np.array(grasps, np.float64).reshape(-1, 2)
+    return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(points))

@@ -1,10 +1,12 @@
 """The facts of planner/asp/task.lp: things, places, goals and rooms of a problem, and what geometry said so far."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
 
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
@@ -13,8 +15,11 @@ from kb.world.facts import FELT_COLOUR_CONFIDENCE
 from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
 from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.oracles.spots import SPOT_SLACK
 from planner.situation import Situation
 from planner.tasking.task_plan import RefutedStep
+
+OVERLAP_ROUNDING = 1e-6  # squares by which two places may seem to overlap, though they only touch
 
 Way = tuple[str, str, str]  # a thing, the place that it comes from, the place that it is brought to
 
@@ -35,7 +40,12 @@ class Answers:
     refutations: tuple[RefutedStep, ...] = ()
 
 
-def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situation: Situation) -> tuple[str, ...]:
+def problem_facts(
+    problem: TaskProblem,
+    aside: Sequence[tuple[str, str]],
+    situation: Situation,
+    spots: AbstractSet[tuple[str, str]] = frozenset(),
+) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops.
 
     Parameters
@@ -43,10 +53,11 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
     problem : things, places and goals.
     aside : by object and place: the places where an object is out of the way.
     situation : what is believed: world model, rooms, doors, corners and track.
+    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     """
     facts = [f"place({ROBOT},{HERE})"]
     facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
-    facts += [f"place({name},{place})" for name, place in problem.places]
+    facts += [f"place({name},{place})" for name, place in problem.places if place != HERE]
     facts += [f"place({ROBOT},{place})" for place in problem.stands]
     facts += [f"aside({name},{place})" for name, place in aside]
     ranks: dict[str, int] = {}
@@ -57,6 +68,7 @@ def problem_facts(problem: TaskProblem, aside: Sequence[tuple[str, str]], situat
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
+    facts += _overlaps(problem, spots)
     return (*facts, *_room_facts(problem, situation), *_world_facts(situation))
 
 
@@ -90,6 +102,43 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
             yield f"lies({name},{place},r{room})"
 
 
+def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[str]:
+    """Yield which exact places of two things overlap: where they lie now, poses and spots; regions do not count."""
+    names, outlines = [], []
+    for name, lying in problem.state.things.items():
+        names.append((name, HERE))
+        outlines.append(lying.outline)
+    for (name, place), end in problem.places.items():
+        lying = problem.state.things[name]
+        if isinstance(end, At):
+            outline = shape_at_pose(lying.outline, end.pose)
+        elif isinstance(end, Inside) and (name, place) in spots:
+            outline = end.polygon.buffer(-SPOT_SLACK, join_style="mitre")
+        else:
+            continue
+        names.append((name, place))
+        outlines.append(outline.buffer(-OVERLAP_ROUNDING))
+    if not outlines:
+        return
+    tree = shapely.STRtree(outlines)
+    for one, other in sorted(zip(*(column.tolist() for column in tree.query(outlines, "intersects")), strict=True)):
+        (x, p), (y, q) = names[one], names[other]
+        if x < y and (p, q) != (HERE, HERE):
+            yield f"overlap({x},{p},{y},{q})"
+
+
+def things_in_way(facts: Iterable[str]) -> list[str]:
+    """Return the things that lie now where another thing may have to lie, by facts `overlap`, each once.
+
+    Parameters
+    ----------
+    facts : facts of the encoding, without full stops.
+    """
+    pairs = [re.fullmatch(r"overlap\((\w+),(\w+),(\w+),(\w+)\)", fact) for fact in facts]
+    found = [match[1] if match[2] == HERE else match[3] for match in pairs if match and HERE in (match[2], match[4])]
+    return list(dict.fromkeys(found))
+
+
 def _world_facts(situation: Situation) -> Iterator[str]:
     """Yield what is believed of the objects and of what the task calls them, for users' rules."""
     for parameter, name in sorted(situation.binding.items()):
@@ -108,7 +157,7 @@ def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, 
     rows, columns = shape
     for name, lying in problem.state.things.items():
         yield name, HERE, squares(lying.outline, columns, rows)
-    for (name, place), end in problem.places.items():
+    for (name, place), end in ((key, end) for key, end in problem.places.items() if key[1] != HERE):
         yield name, place, _squares_of(end, problem.state.things[name].outline, (rows, columns))
     for place, stand in problem.stands.items():
         mask: Bools = np.zeros((rows, columns), np.bool_)

@@ -20,6 +20,7 @@ from planner.stages import Stage
 from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
 from planner.tasking.search import TASK_ENCODING, make_plan
 from planner.tasking.setting import (
+    DestinationFunction,
     OriginFunction,
     PlaceFunction,
     goal_of_place,
@@ -42,6 +43,7 @@ class NextErrand(NamedTuple):
     end : where it shall lie, in squares, view frame.
     goal : the goal or wish whose own end this is; None for a spot that the planner chose.
     end_name : the name of that end among the ends of the goal; "" for a spot.
+    turned : by how many degrees the object had been turned when the plan was made.
     """
 
     errand: Errand
@@ -49,6 +51,7 @@ class NextErrand(NamedTuple):
     end: End
     goal: Fact | None
     end_name: str
+    turned: float
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class _Kept:
     spots : the end of each place that the planner chose, by object and place.
     bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
     ways : the squares (x, y) that each errand crosses, (n, 2).
+    turned : by how many degrees each thing had been turned when the plan was made.
     led_round : the middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans.
     number : the errand that is done now.
     """
@@ -75,6 +79,7 @@ class _Kept:
     spots: Mapping[tuple[str, str], End]
     bounds: tuple[Mapping[str, tuple[float, ...]], ...]
     ways: tuple[Any, ...]
+    turned: Mapping[str, float]
     led_round: tuple[tuple[XY, ...], ...] = ()
     number: int = 0
 
@@ -87,12 +92,13 @@ class Intention:
     rules : what users' rules did to the plan that was made last.
     """
 
-    def __init__(self, pull: bool = True) -> None:
+    def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
         """Make an intention without a plan.
 
+        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
         pull : whether a held object may be pulled.
         """
-        self._pull = pull
+        self._where, self._pull = where, pull
         self._kept: _Kept | None = None
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
@@ -129,7 +135,7 @@ class Intention:
         turn : how many commands a turn counts for.
         """
         stage = self._without_dropped(stage)
-        self._problem = problem_of(stage, situation, place, origin)
+        self._problem = problem_of(stage, situation, place, origin, self._where)
         if self._problem is None:
             self._kept = None
         else:
@@ -155,10 +161,12 @@ class Intention:
             return None
         spot = kept.spots.get((errand.subject, errand.place))
         node = problem.nodes[errand.subject]
+        turned = kept.turned[errand.subject]
         if spot is not None:
-            return NextErrand(errand, node, _moved_to_view(spot, situation), None, "")
+            return NextErrand(errand, node, _moved_to_view(spot, situation), None, "", turned)
         goal, end_name = _goal_of(errand, stage, problem, situation, place, origin)
-        return NextErrand(errand, node, problem.places[errand.subject, errand.place], goal, end_name)
+        end = problem.places[errand.subject, errand.place]
+        return NextErrand(errand, node, end, goal, end_name, turned)
 
     def failed(self, errand: Errand, situation: Situation) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
@@ -264,9 +272,12 @@ class Intention:
         believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
         if believed == self._hopeless:
             return None
-        oracle = CarryOracle(problem, situation, self._pull, avoid, turn)
         tried = [refutation for where, refutation in self._tried if where == lying]
-        made = make_plan(problem, situation, oracle, tried)
+        for on_lattice in (True, False):  # ways by whole squares are found fast, and mostly they do
+            oracle = CarryOracle(problem, situation, self._pull, avoid, turn, on_lattice)
+            made = make_plan(problem, situation, oracle, tried)
+            if not made.plan.unmet:
+                break
         self.rules = effects_of_rules(made, situation)
         self._hopeless = believed if made.plan.unmet else None
         if made.plan.unmet:
@@ -279,8 +290,10 @@ class Intention:
             for state in made.states
         )
         ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
+        turned = {name: node.turned for name, node in problem.nodes.items()}
+        names, places = tuple(problem.nodes), frozenset(problem.places)
         led_round = doors_led_round(made, situation)
-        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways, led_round)
+        return _Kept(made.plan, stage, names, places, spots, bounds, ways, turned, led_round)
 
 
 def _goal_of(

@@ -12,10 +12,25 @@ from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
 from kb.world.rooms import NO_ROOM
 from planner.oracles.carry import Certainty, Floors
-from planner.oracles.problem import TaskProblem
-from planner.oracles.spots import covered_by, spots
+from planner.oracles.problem import HERE, TaskProblem
+from planner.oracles.spots import SPOT_SLACK, covered_by, spots
 
-SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
+
+def with_returns(problem: TaskProblem) -> TaskProblem:
+    """Return the problem with ends for things that are where they shall be, so that they can be brought back there.
+
+    Parameters
+    ----------
+    problem : things, places and goals.
+    """
+    there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
+    ends = {(name, HERE): end_about(problem.state.things[name].outline) for name in there}
+    return replace(problem, places={**problem.places, **ends})
+
+
+def end_about(outline: Any) -> Inside:
+    """Return the end of a thing at one spot: its outline there (shapely Polygon), with SPOT_SLACK about it."""
+    return Inside(outline.buffer(SPOT_SLACK, join_style="mitre"))
 
 
 class Offers:
@@ -24,6 +39,7 @@ class Offers:
     Attributes
     ----------
     aside : by object and place: the offered places where an object is out of the way.
+    spots : by object and place: all offered places.
     fresh : whether places were offered since this was set to False.
     shape : (rows, columns) of the floors.
     """
@@ -38,6 +54,7 @@ class Offers:
         self._rooms = None if rooms is None else np.pad(rooms, floors.margin)
         sure = floors.by_certainty[Certainty.SURE]
         self.aside: list[tuple[str, str]] = []
+        self.spots: set[tuple[str, str]] = set()
         self.fresh = False
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
@@ -71,24 +88,35 @@ class Offers:
                 new[name, f"spot{number}"] = end
                 self.aside.append((name, f"spot{number}"))
             for (thing, place), region in problem.places.items():
-                if thing == name and isinstance(region, Inside):
+                if thing == name and place != HERE and isinstance(region, Inside):
                     for number, end in enumerate(self._spots_within(name, region, problem), 1):
                         new[name, f"{place}_{number}"] = end
                         fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
+        self.spots |= new.keys()
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
-        """Return places on sure floor, off the ways of others where that can be, and off other things."""
+        """Return places on sure floor, off the ways of others where that can be, and off other things.
+
+        Those to which it can be pushed past the other things; where there are none, those that need others moved first.
+        """
         floor = self._floors.by_certainty[Certainty.SURE]
         others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
-        free = floor & ~covered_by(others, self.shape)
-        found = self._spots(name, problem, free, floor)
+        open_floor = floor & ~covered_by(others, self.shape)
+        found = self._spots_over(name, problem, open_floor, open_floor, floor)
         if self._rooms is None:
             return found
         own = squares(self._carry(problem.state.things[name].outline), self.shape[1], self.shape[0])
         rooms = np.unique(self._rooms[own & (self._rooms != NO_ROOM)])
-        within = self._spots(name, problem, free & np.isin(self._rooms, rooms), floor)
+        in_rooms = open_floor & np.isin(self._rooms, rooms)
+        within = self._spots_over(name, problem, in_rooms, open_floor, floor)
         return found + [end for end in within if end not in found]
+
+    def _spots_over(
+        self, name: str, problem: TaskProblem, where: Bools, open_floor: Bools, floor: Bools
+    ) -> list[Inside]:
+        """Return places on some squares to which a thing can be pushed past others; else over all of the floor."""
+        return self._spots(name, problem, where, open_floor) or self._spots(name, problem, where, floor)
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
         """Return places within the region of a goal."""
@@ -101,7 +129,7 @@ class Offers:
         outline = problem.state.things[name].outline
         moves = spots(self._carry(outline), floor, around, self._needed)
         shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
-        return [Inside(shape.buffer(SPOT_SLACK, join_style="mitre")) for shape in shapes]
+        return [end_about(shape) for shape in shapes]
 
     def _carry(self, shape: Any) -> Any:
         """Return a shape (shapely geometry, view frame) in the frame of the floors."""

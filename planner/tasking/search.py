@@ -22,14 +22,15 @@ from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
 from planner.oracles.problem import HERE, ROBOT, TableState, TaskProblem
 from planner.situation import Situation
-from planner.tasking.facts import Answers, answer_facts, problem_facts
-from planner.tasking.offers import Offers
+from planner.tasking.facts import Answers, answer_facts, problem_facts, things_in_way
+from planner.tasking.offers import Offers, with_returns
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 TASK_ENCODING = PLANNER_ASP / "task.lp"
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
+MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
 LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encoding
 
@@ -87,11 +88,12 @@ class PlanSearch:
         oracle : verifies the steps.
         tried : steps that failed when they were carried out, as refutations.
         """
-        self._problem, self._situation, self._oracle = problem, situation, oracle
+        self._problem, self._situation, self._oracle = with_returns(problem), situation, oracle
         self._answers = Answers(refutations=tuple(tried))
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
         self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
         self._facts = problem_facts(problem, (), situation)
+        self._offers.note_in_way(things_in_way(self._facts))
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
@@ -103,6 +105,8 @@ class PlanSearch:
         facts: tuple[str, ...] = ()
         better, least, proved, number, best_price = 0, 0, False, 0, 0
         while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
+            if self._oracle.asked > MAX_QUESTIONS:
+                break
             number += 1
             proposal = self._propose(horizon)
             if proposal.unmet and best is None and (self._offer(proposal.unmet) or horizon < most):
@@ -166,7 +170,7 @@ class PlanSearch:
         if offered is None:
             return False
         self._problem = offered
-        self._facts = problem_facts(offered, self._offers.aside, self._situation)
+        self._facts = problem_facts(offered, self._offers.aside, self._situation, self._offers.spots)
         return True
 
     def _estimated(self, errands: Sequence[Errand]) -> int:
@@ -183,6 +187,9 @@ class PlanSearch:
     def _verify(self, errands: Sequence[Errand]) -> tuple[Errand, ...] | None:
         """Return the errands with what geometry says of each; None when one is refuted. Changes the answers."""
         state, found = self._problem.state, list[Errand]()
+        weighed = self._ruled or any(goal.weight is not None for goal in self._problem.goals)
+        if len(self._problem.nodes) == 1 and len(errands) == 1 and not weighed:
+            return tuple(errands)  # one thing and one way: the plan executor asks geometry, and there is no other plan
         for errand in errands:
             origin = HERE if errand.subject == ROBOT else state.things[errand.subject].place
             answer = self._ask(state, errand, self._shut(errand))
@@ -194,7 +201,7 @@ class PlanSearch:
             way = errand.subject, origin, errand.place
             hoped = known.hoped | {way} if answer.certainty == Certainty.HOPED else known.hoped
             self._answers = replace(known, commands={**known.commands, way: answer.commands}, hoped=hoped)
-            found.append(replace(errand, certainty=answer.certainty, commands=answer.commands))
+            found.append(replace(errand, certainty=answer.certainty, commands=answer.commands, avoid=answer.avoid))
             state = answer.after
         return tuple(found)
 
@@ -215,6 +222,9 @@ class PlanSearch:
         shut = self._shut(errand)
         if shut and self._ask(state, errand, frozenset()).after is None:
             shut = frozenset()
+        known = self._known_circumstances(state, errand, shut)
+        if known is not None:
+            return replace(known, origin=origin, stood=None if known.stood is None else state.last)
         others = frozenset(name for name in state.things if name != errand.subject)
         alone = self._ask(state.without(others), errand, shut)
         gone = others if alone.after is None else frozenset[str]()
@@ -227,10 +237,28 @@ class PlanSearch:
                 gone |= {name}
         given = tuple((name, state.things[name].place) for name in sorted(others - gone))
         self._offers.note_in_way([name for name, _ in given])
-        last = self._ask(state.without(gone), errand, shut)
-        return RefutedStep(
-            errand.subject, origin, errand.place, given, None if last.body else state.last, tuple(sorted(shut))
-        )
+        stood = state.last if self._depends_on_robot(state.without(gone), errand, shut) else None
+        return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)))
+
+    def _depends_on_robot(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:
+        """Return whether a refuted errand could be done if the robot stood elsewhere."""
+        if errand.subject == ROBOT:
+            return True
+        end = self._problem.places[errand.subject, errand.place]
+        return not self._oracle.is_refuted_from_anywhere(state, errand.subject, end, shut)
+
+    def _known_circumstances(self, state: TableState, errand: Errand, shut: frozenset[str]) -> RefutedStep | None:
+        """Return an earlier refutation of the same errand from elsewhere, if what it rests on refutes it here, too."""
+        for earlier in self._answers.refutations:
+            if (earlier.subject, earlier.place, frozenset(earlier.shut)) != (errand.subject, errand.place, shut):
+                continue
+            if errand.subject == ROBOT or any(state.things[name].place != place for name, place in earlier.given):
+                continue
+            given = {name for name, _ in earlier.given}
+            rest = frozenset(state.things) - given - {errand.subject}
+            if self._ask(state.without(rest), errand, shut).after is None:
+                return earlier
+        return None
 
     def _about(self) -> list[str]:
         """Return the goals in words, by their number from 1, for the record."""
@@ -240,6 +268,8 @@ class PlanSearch:
         """Return a plan with the states that it leads to and the squares that it crosses."""
         margin, state = self._oracle.floors.margin, self._problem.state
         states, ways = list[TableState](), list[Bools]()
+        if not plan.verified:
+            return MadePlan(plan, self._problem.places, (state,) * len(plan.errands), (), margin, facts)
         for errand in plan.errands if not plan.unmet else ():
             answer = self._ask(state, errand, self._shut(errand))
             assert answer.after is not None

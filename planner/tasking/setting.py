@@ -11,11 +11,12 @@ from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
 from kb.language.vocabulary import TRACK_GOALS
+from kb.objects.held_object import is_grid_aligned
 from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
-from planner.goals.robot_goals import destination, robot_stands_on
+from planner.goals.robot_goals import Destination, robot_stands_on
 from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
@@ -23,11 +24,15 @@ from planner.stages import Stage
 TASK_ENCODING_NAME = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
+DestinationFunction = Callable[[Fact, Situation], Destination]
 
 
-def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction) -> TaskProblem | None:
+def problem_of(
+    stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, where: DestinationFunction
+) -> TaskProblem | None:
     """Return the problem of a stage; None while it is open what a goal means or where it holds.
 
+    None, too, while a thing that is askew is in hand: it is set down first.
     Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
 
     Parameters
@@ -37,8 +42,12 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
     place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
         frame) and the situation.
     origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
+    where : returns the squares on which a goal holds for the robot, from the goal and the situation.
     """
     model = situation.model
+    held = model.object(model.held or "")
+    if held is not None and held.polygon is not None and not is_grid_aligned(held.polygon):
+        return None  # amid a turn: a plan is made for things as they are set down
     things = {node.name: node for node in model.objects if _can_be_carried(node)}
     state = TableState(
         {name: Lying(to_view_frame(node.polygon, situation), Pose(0.0, 0.0, 0.0)) for name, node in things.items()},
@@ -65,7 +74,7 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
             fulfils[node.name, place_name(name, end_name)] = (name,)
     stands: dict[str, Any] = {}
     own = [goal for goal in stage.own if goal.name not in TRACK_GOALS]
-    squares = _common_squares(own, situation) if own else None
+    squares = _common_squares(own, situation, where) if own else None
     own_name = f"g{len(stage.carried) + 1}"
     if squares is not None and len(squares):
         goals.append(PlacedGoal(own_name, " and ".join(map(str, own)), ROBOT, robot_stands_on(squares, model)))
@@ -73,7 +82,7 @@ def problem_of(stage: Stage, situation: Situation, place: PlaceFunction, origin:
         stands |= {place_name(own_name, room): part for room, part in parts.items()}
         fulfils |= {(ROBOT, place_name(own_name, room)): (own_name,) for room in parts}
     for name, goal, weight in _numbered_wishes(stage):
-        wished = _common_squares([*own, goal], situation) if str(goal.args[0]) == ROBOT else None
+        wished = _common_squares([*own, goal], situation, where) if str(goal.args[0]) == ROBOT else None
         if wished is not None and len(wished):
             goals.append(PlacedGoal(name, str(goal), ROBOT, robot_stands_on(wished, model), weight))
             parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
@@ -141,13 +150,13 @@ def _by_room(squares: Any, situation: Situation) -> dict[str, Any]:
     return {f"r{n}" if n != NO_ROOM else "there": squares[numbers == n] for n in np.unique(numbers)}
 
 
-def _common_squares(goals: Sequence[Fact], situation: Situation) -> Any:
+def _common_squares(goals: Sequence[Fact], situation: Situation, where: DestinationFunction) -> Any:
     """Return the squares on which all of some goals hold for the robot, flat indices; None while that is open."""
-    where = [destination(goal, situation) for goal in goals]
-    if any(one.missing for one in where):
+    found = [where(goal, situation) for goal in goals]
+    if any(one.missing for one in found):
         return None
-    squares = where[0].squares
-    for one in where[1:]:
+    squares = found[0].squares
+    for one in found[1:]:
         squares = np.intersect1d(squares, one.squares)
     return squares
 

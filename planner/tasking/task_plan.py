@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from geometry.kernels.arrays import XY
 from planner.oracles.carry import Certainty
 
 
@@ -17,6 +18,8 @@ class Errand:
     doors : the doors that are passed on the way, sorted.
     certainty : what geometry said: the way is sure, or hoped to be free; None when it was not asked.
     commands : about how many commands it takes.
+    avoid : grasps, as (x, y) of the robot from the middle of the object as it lies before, with which it would shut the
+        robot in at its place.
     """
 
     action: str
@@ -25,6 +28,7 @@ class Errand:
     doors: tuple[str, ...] = ()
     certainty: Certainty | None = None
     commands: int = 0
+    avoid: tuple[XY, ...] = ()
 
     def __str__(self) -> str:
         """Return the step as the encoding writes it, such as carry(o1,g1_r2)."""

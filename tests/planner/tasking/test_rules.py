@@ -11,6 +11,7 @@ from kb.body import Grasp
 from kb.language.reader import facts_from_text
 from planner.goals.object_goals import goal_placement
 from planner.goals.placement import mask_to_polygon
+from planner.goals.robot_goals import destination
 from planner.oracles.carry import CarryOracle
 from planner.situation import Situation
 from planner.stages import Stage
@@ -78,7 +79,7 @@ def walk_with(rules: tuple[Path, ...]) -> tuple[MadePlan, Situation]:
     """Return the plan of a robot that shall go to a room next to that in which it is."""
     situation = situation_with(WALKER, rules, {})
     stage = Stage(facts_from_text("in(utak, room(next))."))
-    problem = problem_of(stage, situation, goal_placement, lambda _x, _node, _situation: (0.5, 0.5))
+    problem = problem_of(stage, situation, goal_placement, lambda _x, _node, _situation: (0.5, 0.5), destination)
     assert problem is not None and len(problem.stands) == 2
     return make_plan(problem, situation, CarryOracle(problem, situation)), situation
 

@@ -8,6 +8,7 @@ import pytest
 from kb.language.reader import facts_from_text
 from kb.task.task import Task
 from planner.goals.object_goals import goal_placement
+from planner.goals.robot_goals import destination
 from planner.oracles.carry import CarryOracle
 from planner.oracles.problem import ROBOT
 from planner.situation import Situation
@@ -34,7 +35,7 @@ def origin(parameter: str, node: object, situation: Situation) -> tuple[float, f
 def planned(rows: list[str], text: str) -> MadePlan:
     """Return the plan for a task in a drawn world, whose things g and h the task calls x and y."""
     situation = replace(known_situation(rows), binding={"x": "g", "y": "h"})
-    problem = problem_of(stage_of(text), situation, goal_placement, origin)
+    problem = problem_of(stage_of(text), situation, goal_placement, origin, destination)
     assert problem is not None
     return make_plan(problem, situation, CarryOracle(problem, situation))
 
@@ -92,7 +93,7 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
     situation = replace(known_situation(SWAPPED), binding={"x": "g", "y": "h"})
     x, y = origin("x", None, situation)
     east, north = situation.model.frame.place_to_utak(x, y)
-    stage, intention = stage_of(f'pose(x, "POINT ({east} {north})", 0). prefer({WISH}, 50).'), Intention()
+    stage, intention = stage_of(f'pose(x, "POINT ({east} {north})", 0). prefer({WISH}, 50).'), Intention(destination)
     intention.update(stage, situation, goal_placement, origin, {}, 1.0)
     found = intention.next_errand(stage, situation, goal_placement, origin)
     assert found is not None and found.goal == stage.wishes[0][0]
@@ -104,5 +105,5 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
 @pytest.mark.parametrize("weight", [0, 3])
 def test_a_wish_of_which_nothing_is_known_changes_nothing(weight: int, tmp_path: Path) -> None:
     situation = replace(known_situation(SWAPPED), binding={"x": "g"})
-    problem = problem_of(stage_of(f"{GOAL} prefer({WISH}, {weight})."), situation, goal_placement, origin)
+    problem = problem_of(stage_of(f"{GOAL} prefer({WISH}, {weight})."), situation, goal_placement, origin, destination)
     assert problem is not None and [goal.name for goal in problem.goals] == ["g1"]

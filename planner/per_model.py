@@ -1,0 +1,36 @@
+"""Answers that depend on a world model: computed once for it, and forgotten with the next one."""
+
+from collections.abc import Callable
+from typing import Any, Generic, TypeVar
+
+from kb.language.terms import Fact
+from planner.situation import Situation
+
+Answer = TypeVar("Answer")
+
+
+class PerModel(Generic[Answer]):
+    """Remembers what a function of a goal and the situation returned for the present world model."""
+
+    def __init__(self, function: Callable[..., Answer]) -> None:
+        """Make a memory of a function, which is called with a goal, further arguments, and at last the situation."""
+        self._function = function
+        self._model: Any = None
+        self._known: dict[Any, Answer] = {}
+
+    def __call__(self, goal: Fact, *arguments: Any) -> Answer:
+        """Return what the function returns; from memory where it was asked the same of the same world model.
+
+        Parameters
+        ----------
+        goal : of the task.
+        arguments : further arguments, of which the last is the situation. The others are nodes, named, or values.
+        """
+        *others, situation = arguments
+        assert isinstance(situation, Situation)
+        if self._model is not situation.model:
+            self._model, self._known = situation.model, {}
+        key = (str(goal), *(getattr(one, "name", one) for one in others))
+        if key not in self._known:
+            self._known[key] = self._function(goal, *arguments)
+        return self._known[key]

@@ -1,0 +1,112 @@
+"""The oracle of carrying, in drawn rooms: what it finds can be carried out, and what it refutes is shut off."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.worlds.drawn import drawn_problem, drawn_situation
+from geometry.manipulation.goals import At, Inside
+from geometry.motion.se2 import Pose, Translate
+from planner.oracles.carry import CarryOracle, Certainty
+from planner.oracles.spots import spots
+
+ROOM = [
+    "b" * 20,
+    *["b" + "." * 18 + "b"] * 4,
+    *["b...ggg.....hhh....b"] * 3,
+    "b" + "." * 9 + "U" + "." * 8 + "b",
+    *["b" + "." * 18 + "b"] * 3,
+    "b" * 20,
+]
+CORRIDOR = [
+    "b" * 20,
+    *["b" + "." * 8 + "b" * 11] * 2,
+    *["b..ggg.............b"] * 3,
+    "b.......U" + "b" * 11,
+    *["b" + "." * 8 + "b" * 11] * 2,
+    "b" * 20,
+]
+
+
+def test_a_thing_is_brought_to_a_pose_and_the_robot_stands_beside_it() -> None:
+    situation = drawn_situation(ROOM)
+    problem = drawn_problem(situation, {"g": At(Pose(2.0, 3.0, 0.0))})
+    oracle = CarryOracle(problem, situation)
+    answer = oracle.bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose")
+    assert answer.certainty == Certainty.SURE and answer.after is not None
+    before, after = problem.state.things["g"], answer.after.things["g"]
+    assert after.outline.equals_exact(Translate(2.0, 3.0).carry(before.outline), 1e-9)
+    assert after.outline.distance(shapely.Point(answer.after.robot)) <= np.sqrt(0.5) + 1e-9
+    assert answer.after.things["h"] == problem.state.things["h"]
+    assert after.reach(problem.places["g", "g1_pose"]) == At(Pose(0.0, 0.0, 0.0))
+
+
+def test_an_answer_is_remembered() -> None:
+    situation = drawn_situation(ROOM)
+    problem = drawn_problem(situation, {"g": At(Pose(2.0, 3.0, 0.0))})
+    oracle = CarryOracle(problem, situation)
+    answers = [oracle.bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose") for _ in range(2)]
+    assert answers[0] is answers[1] and oracle.asked == 1
+
+
+@pytest.mark.parametrize("on_lattice", [True, False])
+def test_a_pose_within_a_wall_is_refuted_wherever_the_robot_stands(on_lattice: bool) -> None:
+    situation = drawn_situation(ROOM)
+    problem = drawn_problem(situation, {"g": At(Pose(-6.0, 0.0, 0.0))})
+    oracle = CarryOracle(problem, situation, on_lattice=on_lattice)
+    end = problem.places["g", "g1_pose"]
+    assert oracle.bring(problem.state, "g", end, "g1_pose").certainty == Certainty.REFUTED
+    assert oracle.is_refuted_from_anywhere(problem.state, "g", end, frozenset())
+
+
+def test_a_thing_is_not_pulled_into_a_dead_end_in_front_of_the_robot() -> None:
+    situation = drawn_situation(CORRIDOR)
+    problem = drawn_problem(situation, {"g": At(Pose(8.0, 0.0, 0.0))})
+    answer = CarryOracle(problem, situation).bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose")
+    assert answer.after is not None
+    assert answer.after.robot[0] < answer.after.things["g"].outline.bounds[0]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(-9, 9), st.integers(-7, 7))
+def test_found_and_refuted_poses_are_those_that_fit(dx: int, dy: int) -> None:
+    """In an open room a thing can be brought to just the poses in which it lies on the floor and on no other thing."""
+    situation = drawn_situation(ROOM)
+    problem = drawn_problem(situation, {"g": At(Pose(float(dx), float(dy), 0.0))})
+    oracle = CarryOracle(problem, situation, on_lattice=True)
+    outline = Translate(float(dx), float(dy)).carry(problem.state.things["g"].outline)
+    rows, columns = situation.model.labels.shape
+    fits = shapely.box(1, 1, columns - 1, rows - 1).contains(outline)
+    fits = fits and outline.intersection(problem.state.things["h"].outline).area == 0
+    answer = oracle.bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose")
+    assert (answer.certainty != Certainty.REFUTED) == fits
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_spots_lie_on_the_floor_apart_from_each_other_and_off_what_must_stay_clear(data: st.DataObject) -> None:
+    rows, columns = data.draw(st.integers(8, 16)), data.draw(st.integers(8, 16))
+    floor = np.ones((rows, columns), np.bool_)
+    floor[0] = floor[-1] = False
+    floor[:, 0] = floor[:, -1] = False
+    keep = np.zeros_like(floor)
+    keep[data.draw(st.integers(1, rows - 2))] = True
+    outline = shapely.box(2, 2, 4, 4)
+    moves = spots(outline, floor, floor, keep)
+    places = [Translate(float(x), float(y)).carry(outline) for x, y in moves]
+    inside = shapely.box(1, 1, columns - 1, rows - 1)
+    assert all(inside.contains(place) for place in places)
+    assert len(set(moves)) == len(moves) and (0, 0) not in moves
+    on_keep = [bool(keep[int(place.bounds[1]) : int(place.bounds[3]), 2].any()) for place in places]
+    assert on_keep == sorted(on_keep)  # places off what must stay clear come first
+
+
+def test_a_region_is_reached_where_it_is_free() -> None:
+    situation = drawn_situation(ROOM)
+    x0, y0, x1, y1 = drawn_problem(situation, {}).state.things["h"].outline.bounds
+    problem = drawn_problem(situation, {"g": Inside(shapely.box(x0 - 1, y0 - 1, x1 + 1, y1 + 4))})
+    answer = CarryOracle(problem, situation).bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose")
+    assert answer.after is not None
+    assert not answer.after.things["g"].outline.intersection(answer.after.things["h"].outline).area
