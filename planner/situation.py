@@ -17,6 +17,7 @@ from kb.world.model import WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
 from planner.constraints import (
     CARRY_NOTHING_THROUGH,
+    MAX_KEPT_SPREAD,
     OBJECT_DISTANCE,
     ROBOT_NAME,
     avoidances,
@@ -184,7 +185,8 @@ class Situation:
     def region_kept_off(self, actor: str, margin: int = 0) -> Bools:
         """Compute the squares that the task forbids to the robot or to an object by avoid(T, "WKT").
 
-        Plans keep objects OBJECT_DISTANCE from a region, since nothing tells exactly where these are.
+        Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
+        nothing tells exactly where these are.
 
         Parameters
         ----------
@@ -262,7 +264,9 @@ def regions_kept_off(
             continue
         region = in_view_frame(region_of(fact), model.frame, model.view.west, model.view.south)
         if not lenient and actor != ROBOT_NAME:
-            region = region.buffer(OBJECT_DISTANCE, join_style="mitre")
+            far = float(region_of(fact).hausdorff_distance(shapely.Point(0.0, 0.0)))
+            distance = OBJECT_DISTANCE + min(model.spread, MAX_KEPT_SPREAD) * far
+            region = region.buffer(distance, join_style="mitre")
         mask |= region_squares(region, shape, lenient, margin)
     return mask
 
