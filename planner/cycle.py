@@ -293,7 +293,9 @@ class Robot:
         places = Places(self.decider.rooms, self.decider.corners)
         task = self.decider.task
         objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
-        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
+        plan = None if self.decision.command is None else self.decider.plan  # after a verdict nothing is planned
+        planned = () if plan is None else plan.facts
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects, planned)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
 

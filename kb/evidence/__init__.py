@@ -9,6 +9,7 @@ witness    reasons that are cells: why a square, an outline or a colour is belie
 atoms      atoms as text, taken apart
 proving    proof trees of encodings as reasons
 inputs     reasons for what encodings were given
+plans      reasons for the facts of the task plan
 beliefs    reasons for the facts of the world model
 absences   why facts are not believed: what is missing or in the way
 goals      reasons for commands and verdicts

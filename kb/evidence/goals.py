@@ -6,6 +6,7 @@ from typing import Any
 
 from kb.evidence.atoms import atom_parts
 from kb.evidence.beliefs import ROBOT_ALIAS, FactExplainer
+from kb.evidence.plans import plan_step_reasons
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.tracing.decisions import SolverCall
@@ -16,6 +17,7 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "routes": ("choose", "this route was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
     "boldness": ("take", "this manipulation plan was taken"),
+    "task": ("unmet", "no plan that was found attains this goal"),
 }
 STEP_WORDS = ("first", "then")  # goals that are steps of a sequence
 PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
@@ -58,14 +60,15 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
     Returns
     -------
     Reason
-        It rests on the goals with the facts that they are about, on what parameters mean, and on the choices of the
+        It rests on the step of the task plan that it serves, on the goals with the facts that they are about, on what parameters mean, and on the choices of the
         planner's encodings, each with the alternatives that were not chosen or were refuted.
     """
     now = beliefs.record.steps[step]
     if now.action is None:
         return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
     command = command_reason(now)
-    below = (*_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
+    planned = plan_step_reasons(beliefs, step - 1)
+    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
     return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
 
 

@@ -119,7 +119,9 @@ class PlanSearch:
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
             solve([TASK_ENCODING, *self._situation.rules], facts, about=self._about())
         refutations = self._answers.refutations
-        plan = replace(best, least=min(least, best.cost), proved=proved, refutations=refutations, rounds=number)
+        least = min(least, best.cost)
+        plan = replace(best, least=least, proved=proved, refutations=refutations, rounds=number)
+        plan = replace(plan, goals=self._problem.goals)
         return self._with_geometry(plan)
 
     def _propose(self, horizon: int) -> Proposal:
