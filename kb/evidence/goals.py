@@ -60,8 +60,9 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
     Returns
     -------
     Reason
-        It rests on the step of the task plan that it serves, on the goals with the facts that they are about, on what parameters mean, and on the choices of the
-        planner's encodings, each with the alternatives that were not chosen or were refuted.
+        It rests on the step of the task plan that it serves, on the goals with the facts that they are about, on what
+        parameters mean, and on the choices of the planner's encodings, each with the alternatives that were not chosen
+        or were refuted.
     """
     now = beliefs.record.steps[step]
     if now.action is None:

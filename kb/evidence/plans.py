@@ -9,9 +9,11 @@ from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.language.vocabulary import PLAN_PREDICATES
 from kb.tracing.decisions import SolverCall
+from kb.world.stated_plan import stated_plan
 
 TASK_ENCODING_NAME = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
+ROBOT_NAME = "utak"  # the robot among what a plan brings
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 
 
@@ -30,8 +32,8 @@ class PlanExplainer(Protocol):
 def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     """Return the reason of a fact of the task plan at a step.
 
-    A step of the plan rests on the decision of task.lp, on the goals that it serves, and, when a thing is moved aside,
-    on the refutations that rest on this thing. What the task states, and what geometry said, are leaves.
+    A step of the plan rests on the decision of task.lp, on the goals that it serves, and on the refutations that
+    concern what it brings. What the task states, and what geometry said, are leaves.
 
     Parameters
     ----------
@@ -40,7 +42,7 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     step : the number of the step.
     """
     name, arguments = atom_parts(fact)
-    says = words_of("belief", fact)
+    says = _in_words(beliefs, name, arguments, step) or words_of("belief", fact)
     if name == "means":
         return Reason(fact, says, ReasonKind.TASK, "the task")
     below = tuple(_below(beliefs, name, arguments, step))
@@ -72,7 +74,7 @@ def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: in
     elif name == "plan":
         yield from _decided(beliefs, int(arguments[0]), arguments[1], step)
         yield from _goals_served(beliefs, arguments[0], step)
-        yield from _made_room_for(beliefs, arguments[1], step)
+        yield from _refutations_about(beliefs, arguments[1], step)
         for fact in (f"takes({arguments[0]},", f"verified({arguments[0]})"):
             yield from _stated(beliefs, fact, step)
     elif name == "passes":
@@ -103,22 +105,41 @@ def _goals_served(beliefs: PlanExplainer, number: str, step: int) -> Iterator[Re
             yield from _stated(beliefs, f"goal({atom_parts(fact)[1][1]})", step)
 
 
-def _made_room_for(beliefs: PlanExplainer, planned: str, step: int) -> Iterator[Reason]:
-    """Yield the refutations that rest on a thing that a step of the plan moves aside; with the goals beyond them."""
-    action, arguments = atom_parts(planned)
-    if action != "clear":
-        return
+def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Iterator[Reason]:
+    """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it.
+
+    After each that a thing moved aside makes room for, the goals of the steps of the plan for which it does.
+    """
     facts = beliefs.record.steps[step].facts
+    thing = _brought(planned)
     rests_on = [atom_parts(fact)[1] for fact in facts if fact.startswith("given(")]
-    numbers = {number for number, given in rests_on if given.startswith(f"at({arguments[0]},")}
+    numbers = {number for number, given in rests_on if given.startswith(f"at({thing},")}
     for fact in facts:
         name, parts = atom_parts(fact)
-        if name == "refuted" and parts[1] in numbers and parts[0] != planned:
-            yield from _stated(beliefs, fact, step)
+        if name != "refuted" or not (parts[1] in numbers or _brought(parts[0]) == thing):
+            continue
+        yield from _stated(beliefs, fact, step)
+        if planned.startswith("clear(") and _brought(parts[0]) != thing:
             later = [atom_parts(one)[1] for one in facts if one.startswith("plan(")]
             for number, what in later:
-                if atom_parts(what)[1][:1] == atom_parts(parts[0])[1][:1]:
+                if _brought(what) == _brought(parts[0]):
                     yield from _goals_served(beliefs, number, step)
+
+
+def _brought(planned: str) -> str:
+    """Return the name of what a step of the plan brings; that of the robot for its own way."""
+    action, arguments = atom_parts(planned)
+    return arguments[0] if action in ("carry", "clear") else ROBOT_NAME
+
+
+def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
+    """Return a step of the plan, or a refutation, in words; "" for other facts of the plan."""
+    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if name in ("plan", "refuted") else None
+    if plan is None:
+        return ""
+    if name == "plan":
+        return next((f"{one.words}; {one.certainty}" for one in plan.steps if str(one.number) == arguments[0]), "")
+    return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")
 
 
 def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> Iterator[Reason]:

@@ -32,7 +32,7 @@ def rename_utak_to_org(clause: Clause) -> Clause:
 
 
 def _utak_arguments(atom: Atom) -> list[int]:
-    """Return the indices, from 0, of the arguments of an atom in which facts say `utak`; [] for an unknown predicate."""
+    """Return the indices, from 0, of the arguments in which facts say `utak`; [] for an unknown predicate."""
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
     return [at for at, slot in enumerate(slots) if slot in UTAK_TYPES]
 

@@ -88,8 +88,8 @@ PROMPT_COMMANDS: Mapping[str, PromptCommand] = {
         "what is wanted and planned, what the robot does next, and why",
         changing.plan,
         "Of each step of the plan: what it does, the doors on its way, about how many commands it takes, and whether\n"
-        "its way is verified over sure floor, or only hoped to be free; > marks the present step. Then the cost of the\n"
-        "whole plan with its lower bound, and what geometry refuted in which circumstances. The same stands in facts:\n"
+        "its way is verified over sure floor or only hoped to be free; > marks the present step. Then the cost of the\n"
+        "whole plan with its lower bound, and what geometry refuted, and when. The facts say the same:\n"
         "    ?- plan(I, S), takes(I, K), not verified(I).",
     ),
     "goal": PromptCommand(

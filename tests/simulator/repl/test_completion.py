@@ -11,7 +11,7 @@ COMMANDS = ["?-", ";", "assume", "back", "diff", "facts", "goal", "goto", "help"
 FACTS = ["kind(o1,object,90).", "kind(o12,object,30).", "in(org,r1).", "in(o1,r2).", "door(d1).", "bound(x,o1)."]
 OFFERED = {
     "st": {"step"},
-    "g": {"goal", "goto"},
+    "g": {"given(", "goal", "goal(", "goto"},
     "sha": {"shape("},
     "?- sha": {"shape("},
     "?- shape(o1": {"o12"},
