@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from kb.language.diagnostics import BadInputError, Problem
+from kb.language.diagnostics import BadInputError
 from kb.language.reader import parse_facts
 from kb.language.source_text import source_from_bytes
 from kb.language.terms import Fact
@@ -185,7 +185,7 @@ def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
     found = [fact for fact in parse_facts(source) if (fact.name, len(fact.args)) in PLAN_PREDICATES]
     types = {predicate: declared.arguments for (predicate, _), declared in PLAN_PREDICATES.items()}
     if problems := check_facts(source, found, types):
-        raise BadInputError([Problem(name, one.span, one.what, one.line, one.hint) for one in problems])
+        raise BadInputError(problems)
     said: dict[str, list[tuple[str, ...]]] = {}
     for fact in found:
         said.setdefault(fact.name, []).append(_arguments(fact))
