@@ -41,8 +41,8 @@ class Plan:
     route : tuple of (east, north)
         The way that was chosen for it, in squares, robot frame; () where none was weighed.
     task : kb.world.stated_plan.StatedPlan or None
-        The task plan that the steps are of: `goals`, `steps`, `refutations`, `cost`, `least`, `proved`, `gap`; None
-        where there is none.
+        The task plan that the steps are of: `goals`, `steps`, `refutations`, `cost`, `least`, `proved`, `gap`. Where
+        no plan was found, `found` is False, and the goals tell which are not attained; None where nothing is known.
     """
 
     command: Command | None

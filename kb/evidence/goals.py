@@ -17,7 +17,6 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "routes": ("choose", "this route was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
     "boldness": ("take", "this manipulation plan was taken"),
-    "task": ("unmet", "no plan that was found attains this goal"),
 }
 STEP_WORDS = ("first", "then")  # goals that are steps of a sequence
 PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
@@ -74,14 +73,14 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
 
 
 def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
-    """Return the reason of the verdict, with the goals, the facts that they are about and the last choices.
+    """Return the reason of the verdict: what was planned, the goals with the facts they are about, the last choices.
 
     None while the run goes on.
     """
     if task.result is None:
         return None
     last = len(beliefs.record.steps) - 1
-    below = (*_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
+    below = (*plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
     claim = f"verdict({task.result['verdict']})"
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 

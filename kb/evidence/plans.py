@@ -52,7 +52,7 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
-    """Yield the reason of the present step of the plan at a step of the run; nothing when there is no plan.
+    """Yield the reason of the present step of the plan at a step of the run, or of goals that no plan attains.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
     step : the number of the step of the run.
     """
     for fact in beliefs.record.steps[step].facts:
-        if fact.startswith("plan(0,"):
+        if fact.startswith(("plan(0,", "unmet(")):
             yield plan_fact_reason(beliefs, fact, step)
 
 
@@ -84,6 +84,9 @@ def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: in
         found = _decision(beliefs.record, step)
         if found is not None and f"unmet({arguments[0]})" in (found[1].answer or ()):
             yield beliefs.prove(found[1], f"unmet({arguments[0]})", found[0])
+        for fact in beliefs.record.steps[step].facts:
+            if fact.startswith("refuted(") and _place(fact).startswith(f"{arguments[0]}_"):
+                yield from _stated(beliefs, fact, step)
     elif name == "refuted":
         yield from _stated(beliefs, f"given({arguments[1]},", step)
     elif name == "price":
@@ -130,6 +133,11 @@ def _brought(planned: str) -> str:
     """Return the name of what a step of the plan brings; that of the robot for its own way."""
     action, arguments = atom_parts(planned)
     return arguments[0] if action in ("carry", "clear") else ROBOT_NAME
+
+
+def _place(refuted: str) -> str:
+    """Return the place to which the step of a fact refuted(Step, Number) brings something."""
+    return atom_parts(atom_parts(refuted)[1][0])[1][-1]
 
 
 def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:

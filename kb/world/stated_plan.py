@@ -89,7 +89,10 @@ class PlanRefutation(NamedTuple):
 
 @dataclass(frozen=True)
 class StatedPlan:
-    """The task plan of a step: what the robot means to do, from its present step on.
+    """The task plan of a step: what the robot means to do, from its present step on; or that there is none.
+
+    While no plan attains all goals there are no steps and no cost: the goals tell which are not attained, and the
+    refutations why.
 
     Attributes
     ----------
@@ -107,6 +110,11 @@ class StatedPlan:
     cost: int | None = None
     least: int | None = None
     proved: bool = False
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a plan that the robot follows."""
+        return self.cost is not None or bool(self.steps)
 
     @property
     def gap(self) -> int | None:
@@ -129,7 +137,7 @@ class StatedPlan:
                 step.certainty
             )
         if not self.steps:
-            yield "no step is left"
+            yield "no step is left" if self.found else "no plan that was found attains all goals"
         if self.cost is not None:
             end = "the search ended with it" if self.proved else "best found, not proved"
             yield (
@@ -145,6 +153,7 @@ class StatedPlan:
     def as_dict(self) -> dict[str, Any]:
         """Return the plan as JSON values, as `utak plan --json` prints it."""
         return {
+            "found": self.found,
             "goals": [{"name": g.name, "means": list(g.means), "attained": g.attained} for g in self.goals],
             "steps": [
                 {
@@ -169,7 +178,7 @@ class StatedPlan:
 
 
 def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
-    """Return the plan that the facts of a step state; None when they state none.
+    """Return the plan that the facts of a step state, or that no plan was found; None when they say nothing of it.
 
     Parameters
     ----------
@@ -189,7 +198,7 @@ def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
     said: dict[str, list[tuple[str, ...]]] = {}
     for fact in found:
         said.setdefault(fact.name, []).append(_arguments(fact))
-    return _plan(said) if "plan" in said or "price" in said else None
+    return _plan(said) if said.keys() & {"plan", "price", "unmet"} else None
 
 
 def _arguments(fact: Fact) -> tuple[str, ...]:

@@ -77,6 +77,7 @@ class Intention:
         """
         self._pull = pull
         self._kept: _Kept | None = None
+        self._attempt: TaskPlan | None = None  # the last plan that does not attain all goals, while there is no other
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
 
@@ -86,6 +87,11 @@ class Intention:
         if self._kept is None:
             return None
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
+
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """What was found in place of a plan: it leaves goals unmet, and is not followed; None while there is a plan."""
+        return self._attempt if self._kept is None else None
 
     def next_errand(
         self,
@@ -110,7 +116,7 @@ class Intention:
         """
         problem = problem_of(stage, situation, place, origin)
         if problem is None:
-            self._kept = None
+            self._kept = self._attempt = None
             return None
         self._kept = self._kept_still(stage, problem, situation)
         if self._kept is None:
@@ -186,6 +192,7 @@ class Intention:
     ) -> _Kept | None:
         """Return a new plan with what it rests on; None when there is none that attains all goals."""
         if all(goal.holds for goal in problem.goals):
+            self._attempt = None
             return None
         lying = _lying(situation)
         believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
@@ -195,6 +202,7 @@ class Intention:
         tried = [refutation for where, refutation in self._tried if where == lying]
         made = make_plan(problem, situation, oracle, tried)
         self._hopeless = believed if made.plan.unmet else None
+        self._attempt = made.plan if made.plan.unmet else None
         if made.plan.unmet:
             return None
         view = situation.model.view

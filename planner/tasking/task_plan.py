@@ -121,6 +121,11 @@ class TaskPlan:
         """The plan as facts without full stops, as kb/asp/belief.lp declares them."""
         return (*self._goal_facts(), *self._step_facts(), *self._search_facts())
 
+    @property
+    def failure_facts(self) -> tuple[str, ...]:
+        """The goals, those that are unmet, and what was refuted, as facts: of a plan that is not followed."""
+        return (*self._goal_facts(), *self._refutation_facts())
+
     def _goal_facts(self) -> Iterator[str]:
         """Yield the names of the goals, and what the task states for each."""
         for goal in self.goals:
@@ -143,6 +148,10 @@ class TaskPlan:
     def _search_facts(self) -> Iterator[str]:
         """Yield what the plan costs, how the search ended, and what was refuted on its way."""
         yield f"price({self.cost},{self.least},{'proved' if self.proved else 'found'})"
+        yield from self._refutation_facts()
+
+    def _refutation_facts(self) -> Iterator[str]:
+        """Yield what was refuted, by number, and the circumstances of each refutation."""
         for number, refutation in enumerate(self.refutations):
             yield f"refuted({refutation.step},{number})"
             yield from (f"given({number},{circumstance})" for circumstance in refutation.circumstances)

@@ -36,6 +36,7 @@ PLAN_OUTPUT = Keys(
         "plan": OrNull(
             Keys(
                 {
+                    "found": Noted("whether there is a plan; else goals and refuted say why not", FLAG),
                     "goals": ListOf(
                         Keys(
                             {

@@ -90,7 +90,14 @@ def plan(dialogue: Dialogue, rest: str) -> None:
     bound = [fact for fact in facts if fact.startswith("bound(")]
     lines += [f"meant: {' '.join(bound)}"] if bound else []
     planned = stated_plan(facts)
-    lines += ["planned:", *(f"  {escape_controls(one, False)}" for one in planned.lines())] if planned else []
+    lines += (
+        [
+            "planned:" if planned.found else "not planned:",
+            *(f"  {escape_controls(one, False)}" for one in planned.lines()),
+        ]
+        if planned
+        else []
+    )
     if story.result is not None:
         lines.append(f"the run has ended: {story.result['verdict']}: {escape_controls(str(story.result['reason']))}")
     elif (coming := story.next_action) is None:

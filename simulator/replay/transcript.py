@@ -36,7 +36,7 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
         line, facts = story.line, [_clean(fact) for fact in story.line["belief"]["facts"]]
         head = f"step {line['step']}: {describe(line['action'])}: {_clean(line['why'])}"
         plan = _plan(facts)
-        told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan
+        told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan  # or that there is none, as before
         yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *told, *_changes(before, facts), "", ""])
         before, planned = facts, plan
         if not story.advance():

@@ -25,7 +25,8 @@ def add(parts: Any) -> None:
         description="Show the task plan: its steps with their cost and what geometry says of each, the lower bound, "
         "and what was refuted.",
         epilog="Of a scenario, without --at, the robot runs until it has a plan or a verdict; of an episode the last "
-        "step that has a plan is shown. Where there is no plan, the exit code is 1.",
+        "step that has a plan is shown. Where there is no plan, the goals that none attains and what was refuted are "
+        "shown as far as they are known, and the exit code is 1.",
     )
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("--at", type=step_number, metavar="STEP", help="the step whose plan is shown (0: on waking)")
@@ -50,9 +51,10 @@ def execute(options: argparse.Namespace) -> int:
         print(as_json({"step": step, "plan": None if plan is None else plan.as_dict()}))
     elif plan is not None:
         print(escape_controls("\n".join([f"step {step}", *plan.lines()])))
-    if plan is None:
+    if plan is None or not plan.found:
         print(_absence(story, options.at), file=sys.stderr)
-    return exits.NOT_REACHED if plan is None else exits.SUCCESS
+        return exits.NOT_REACHED
+    return exits.SUCCESS
 
 
 def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
@@ -81,7 +83,7 @@ def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None
 def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
     """Return a plan, and let the story be at its step: the first one of a run, the last one of an episode.
 
-    None, with the story at its end, when no step has one.
+    When no step has one, the story is at its end; what that says of unmet goals is returned, or None.
     """
     from simulator.run.recorded_story import RecordedStory
 
@@ -89,11 +91,11 @@ def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None"
         last = len(story.lines) - 1
         for step in range(last, -1, -1):
             story.go_to(step)
-            if (plan := plan_of(story, name)) is not None:
+            if (plan := plan_of(story, name)) is not None and plan.found:
                 return plan
         story.go_to(last)
-        return None
-    while (plan := plan_of(story, name)) is None and story.advance():
+        return plan_of(story, name)
+    while ((plan := plan_of(story, name)) is None or not plan.found) and story.advance():
         pass
     return plan
 

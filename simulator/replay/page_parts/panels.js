@@ -59,6 +59,8 @@ function planPanel(at) {
       return html("li", i ? {} : { "aria-current": "step" }, i ? "" : html("b", {}, "▶ "), html("code", {}, shown(step)), " ", told.filter(Boolean).join(", "));
     })));
   } else parts.push(html("p", { class: "quiet" }, "The facts of this step have no plan."));
+  const unmet = said("unmet", 1).map(([goal]) => shown(goal));
+  if (unmet.length) parts.push(html("p", {}, "no plan that was found attains " + unmet.join(", ")));
   for (const [cost, least, end] of said("price", 3)) parts.push(html("p", {}, `cost ${shown(cost)} commands in all, at least ${shown(least)}; ${end === "proved" ? "the search ended with it" : "best found, not proved"}`));
   const refuted = said("refuted", 2);
   if (refuted.length) parts.push(html("p", {}, "refuted:"), html("ul", {}, ...refuted.map(([step, given]) => html("li", {}, html("code", {}, shown(step)), " given ", html("code", {}, of("given", given).join(", ") || shown(given))))));

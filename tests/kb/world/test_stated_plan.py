@@ -129,3 +129,17 @@ def test_any_facts_are_a_plan_or_refused(facts: list[str]) -> None:
 def test_facts_of_plans_fit_the_vocabulary(plan: TaskPlan) -> None:
     names = {name for name, _ in PLAN_PREDICATES}
     assert {fact.partition("(")[0] for fact in plan.facts} <= names
+
+
+@given(PLANS)
+@settings(max_examples=20)
+def test_where_no_plan_was_found_the_goals_and_refutations_are_told(plan: TaskPlan) -> None:
+    found = stated_plan(plan.failure_facts)
+    if not plan.unmet:
+        assert found is None
+        return
+    assert found is not None
+    assert (found.found, found.steps, found.cost, found.gap) == (False, (), None, None)
+    assert found.unmet == plan.unmet
+    assert len(found.refutations) == len(plan.refutations)
+    assert "no plan that was found attains all goals" in str(found)

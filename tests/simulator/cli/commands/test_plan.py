@@ -172,6 +172,26 @@ def test_a_run_in_python_shows_its_plan() -> None:
     assert plan._repr_html_().count("<tr>") == 1 + len(plan.steps)
 
 
+def test_where_no_plan_was_found_the_unmet_goal_and_what_was_refuted_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = WORLD.splitlines()
+    rows[4], rows[6] = (row[:12] + "b" + row[13:] for row in (rows[4], rows[6]))
+    rows[4] = rows[4].replace("gg", "..")
+    rows[5] = rows[5].replace("gg", "..")
+    for name, text in (("world.txt", "\n".join(rows)), ("start.lp", START), ("goal.lp", GOAL)):
+        (tmp_path / name).write_text(text)
+    log = tmp_path / "ep.jsonl"
+    assert main(["run", str(tmp_path), "--max-steps", "3", "--log", str(log)]) == 75
+    found = json.loads(printed(capsys, "plan", str(log), "--json", code=1))
+    assert accepts(NAMED_FORMS["plan"], found)
+    assert (found["plan"]["found"], found["plan"]["steps"]) == (False, [])
+    assert [goal["name"] for goal in found["plan"]["goals"] if not goal["attained"]] == ["g1"]
+    assert {one["step"] for one in found["plan"]["refuted"]} == {"carry(o1,g1_r2)"}
+    questions = questions_of_episode(read_episode(log))
+    assert "unmet(g1)" in {reason.claim for reason in questions.why("verdict(V)").walk()}
+
+
 def damaged(episode: Episode, fact: str) -> Episode:
     """Return an episode whose last step states one more fact."""
     last = episode.steps[-1]
