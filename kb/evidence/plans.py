@@ -18,7 +18,7 @@ TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 
 
 class PlanExplainer(Protocol):
-    """What the reasons of a plan are made with: `kb.evidence.beliefs.FactExplainer`."""
+    """Explains facts and answers of encodings, as `kb.evidence.beliefs.FactExplainer` does."""
 
     record: Record
 

@@ -194,22 +194,22 @@ COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
 KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))  # the kinds of nodes
 SEARCH_ENDS = ("proved", "found")  # whether the search for a plan ended with it, or at its bound on rounds
 NEVER_OBJECTS = frozenset({"org", "floor", "verge"})  # nodes without a shape class, colour and movability
-# A goal of the task plan, as a name: g1, g2, ... in the order of the task.
-GOAL_NAME_ARGUMENT = pattern_argument("name of a goal", "g[0-9]+", "g1")
+# A goal of the task plan, as a name: g1, g2, ... in the order of the task; users' rules may add others.
+GOAL_NAME_ARGUMENT = ArgumentType("name of a goal", NAME_ARGUMENT.check)
 # A goal of the task plan as the task states it.
-GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
+TASK_GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
 # A place of the task plan: `here`, a place where a goal holds (g1_...), or a spot that the planner chose.
-PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
+PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
 # The steps of the task plan (planner/asp/task.lp).
-PLAN_STEPS: Vocabulary = {
-    "carry": (OBJECT_ARGUMENT, PLACE_ARGUMENT),
-    "clear": (OBJECT_ARGUMENT, PLACE_ARGUMENT),
-    "arrive": (PLACE_ARGUMENT,),
+STATED_STEPS: Vocabulary = {
+    "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
+    "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
+    "arrive": (PLANNED_PLACE_ARGUMENT,),
 }
-PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", PLAN_STEPS)
+PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.
 CIRCUMSTANCES: Vocabulary = {
-    "at": (NAME_ARGUMENT, PLACE_ARGUMENT),
+    "at": (NAME_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "stood": (NAME_ARGUMENT,),
     "shut": (DOOR_ARGUMENT,),
 }
@@ -217,7 +217,7 @@ CIRCUMSTANCE_ARGUMENT = fact_argument("a circumstance", CIRCUMSTANCES)
 # The predicates of the task plan (planner.tasking.task_plan); they are stated as long as there is a plan.
 PLAN_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("goal", 1): BeliefPredicate((GOAL_NAME_ARGUMENT,), Openness.NEVER),
-    ("means", 2): BeliefPredicate((GOAL_NAME_ARGUMENT, GOAL_ARGUMENT), Openness.NEVER),
+    ("means", 2): BeliefPredicate((GOAL_NAME_ARGUMENT, TASK_GOAL_ARGUMENT), Openness.NEVER),
     ("unmet", 1): BeliefPredicate((GOAL_NAME_ARGUMENT,), Openness.NEVER),
     ("plan", 2): BeliefPredicate((COUNT_ARGUMENT, PLAN_STEP_ARGUMENT), Openness.NEVER),
     ("serves", 2): BeliefPredicate((COUNT_ARGUMENT, GOAL_NAME_ARGUMENT), Openness.NEVER),

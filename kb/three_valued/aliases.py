@@ -9,11 +9,15 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, GOAL_ARGUMENT, KIND_ARGUMENT
+from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, TASK_GOAL_ARGUMENT, KIND_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
-UTAK_TYPES = (KIND_ARGUMENT, GOAL_ARGUMENT, CIRCUMSTANCE_ARGUMENT)  # the types of arguments in which facts say `utak`
+UTAK_TYPES = (
+    KIND_ARGUMENT,
+    TASK_GOAL_ARGUMENT,
+    CIRCUMSTANCE_ARGUMENT,
+)  # the types of arguments in which facts say `utak`
 
 
 def rename_utak_to_org(clause: Clause) -> Clause:

@@ -21,7 +21,7 @@ class PlanGoal(NamedTuple):
     Attributes
     ----------
     name : g1, g2, ... in the order of the task.
-    means : what the task states for it, as facts without full stops.
+    means : what the task states for it, as facts without full stops; () for a goal that a user's rule added.
     attained : whether the plan attains it.
     """
 
@@ -52,7 +52,7 @@ class PlanStep(NamedTuple):
 
     @property
     def certainty(self) -> str:
-        """What geometry said: `verified`, `hoped` or `not asked`."""
+        """The answer of geometry in words: `verified`, `hoped` or `not asked`."""
         return "verified" if self.verified else "not asked" if self.commands is None else "hoped"
 
     @property
@@ -118,7 +118,7 @@ class StatedPlan:
 
     @property
     def gap(self) -> int | None:
-        """How many commands the cost is above the lower bound; None where they are not stated."""
+        """The cost less the lower bound, in commands; None where they are not stated."""
         return None if self.cost is None or self.least is None else self.cost - self.least
 
     @property
@@ -129,7 +129,8 @@ class StatedPlan:
     def lines(self) -> Iterator[str]:
         """Yield the plan as lines of text: its goals, its steps, its cost, and what was refuted."""
         for goal in self.goals:
-            yield f"goal {goal.name}: {' and '.join(goal.means)}" + ("" if goal.attained else "; not attained")
+            means = f": {' and '.join(goal.means)}" if goal.means else ""
+            yield f"goal {goal.name}{means}{'' if goal.attained else '; not attained'}"
         for step in self.steps:
             through = f", through {' and '.join(step.doors)}" if step.doors else ""
             takes = "" if step.commands is None else f"about {_commands(step.commands)}, "
@@ -215,10 +216,8 @@ def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:
 
     unmet = {name for (name,) in said.get("unmet", ())}
     verified = {number for (number,) in said.get("verified", ())}
-    goals = [
-        PlanGoal(name, of("means", name), name not in unmet)
-        for name in sorted((name for (name,) in said.get("goal", ())), key=_by_number)
-    ]
+    names = {name for (name,) in said.get("goal", ())} | unmet  # users' rules may add goals that are unmet
+    goals = [PlanGoal(name, of("means", name), name not in unmet) for name in sorted(names, key=_by_number)]
     steps = [
         PlanStep(
             int(number),

@@ -103,7 +103,7 @@ class Decider:
 
     @property
     def attempt(self) -> TaskPlan | None:
-        """What was found in place of a plan: it leaves goals unmet, and is not followed; None while there is a plan."""
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._errands.attempt
 
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:

@@ -41,7 +41,7 @@ class ErrandRunner:
 
     @property
     def attempt(self) -> TaskPlan | None:
-        """What was found in place of a plan: it leaves goals unmet, and is not followed; None while there is a plan."""
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._intention.attempt
 
     def next(

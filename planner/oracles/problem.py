@@ -100,7 +100,7 @@ class PlacedGoal:
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """What the task states, each as a fact without full stop; more than one only for the robot itself."""
+        """The goals that the task states, each as a fact without full stop; more than one only for the robot itself."""
         return tuple(self.words.split(" and "))
 
 
