@@ -9,7 +9,7 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, TASK_GOAL_ARGUMENT, KIND_ARGUMENT
+from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, KIND_ARGUMENT, TASK_GOAL_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
