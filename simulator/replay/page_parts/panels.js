@@ -54,7 +54,7 @@ function planPanel(at) {
   const steps = said("plan", 2).sort((a, b) => a[0] - b[0]);
   if (steps.length) {
     parts.push(html("ol", { class: "plan", start: 0 }, ...steps.map(([number, step], i) => {
-      const [takes] = of("takes", number), told = [of("serves", number).join(" and "), of("passes", number).map((door) => `through ${door}`).join(" and ")];
+      const [takes] = of("takes", number), told = [of("serves", number).map((goal) => `for ${goal}`).join(" and "), of("passes", number).map((door) => `through ${door}`).join(" and ")];
       told.push(takes === undefined ? "" : `about ${takes} command${takes === "1" ? "" : "s"}`, verified.has(number) ? "✓ verified" : takes === undefined ? "not asked" : "hoped");
       return html("li", i ? {} : { "aria-current": "step" }, i ? "" : html("b", {}, "▶ "), html("code", {}, shown(step)), " ", told.filter(Boolean).join(", "));
     })));
