@@ -25,8 +25,8 @@ def add(parts: Any) -> None:
         description="Show the task plan: its steps with their cost and what geometry says of each, the lower bound, "
         "and what was refuted.",
         epilog="Of a scenario, without --at, the robot runs until it has a plan or a verdict; of an episode the last "
-        "step that has a plan is shown. Where there is no plan, the goals that none attains and what was refuted are "
-        "shown as far as they are known, and the exit code is 1.",
+        "plan that has steps left is shown. Where there is no plan, the goals that none attains and what was refuted "
+        "are shown as far as they are known, and the exit code is 1.",
     )
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("--at", type=step_number, metavar="STEP", help="the step whose plan is shown (0: on waking)")
@@ -81,7 +81,7 @@ def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None
 
 
 def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
-    """Return a plan, and let the story be at its step: the first one of a run, the last one of an episode.
+    """Return a plan with steps, and let the story be at its step: the first one of a run, the last one of an episode.
 
     When no step has one, the story is at its end; what that says of unmet goals is returned, or None.
     """
@@ -91,11 +91,11 @@ def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None"
         last = len(story.lines) - 1
         for step in range(last, -1, -1):
             story.go_to(step)
-            if (plan := plan_of(story, name)) is not None and plan.found:
+            if (plan := plan_of(story, name)) is not None and plan.steps:
                 return plan
         story.go_to(last)
         return plan_of(story, name)
-    while ((plan := plan_of(story, name)) is None or not plan.found) and story.advance():
+    while ((plan := plan_of(story, name)) is None or not plan.steps) and story.advance():
         pass
     return plan
 

@@ -58,7 +58,7 @@ function planPanel(at) {
       told.push(takes === undefined ? "" : `about ${takes} command${takes === "1" ? "" : "s"}`, verified.has(number) ? "✓ verified" : takes === undefined ? "not asked" : "hoped");
       return html("li", i ? {} : { "aria-current": "step" }, i ? "" : html("b", {}, "▶ "), html("code", {}, shown(step)), " ", told.filter(Boolean).join(", "));
     })));
-  } else parts.push(html("p", { class: "quiet" }, "The facts of this step have no plan."));
+  } else parts.push(html("p", { class: "quiet" }, said("price", 3).length ? "No step of the plan is left." : "The facts of this step have no plan."));
   const unmet = said("unmet", 1).map(([goal]) => shown(goal));
   if (unmet.length) parts.push(html("p", {}, "no plan that was found attains " + unmet.join(", ")));
   for (const [cost, least, end] of said("price", 3)) parts.push(html("p", {}, `cost ${shown(cost)} commands in all, at least ${shown(least)}; ${end === "proved" ? "the search ended with it" : "best found, not proved"}`));
