@@ -3,6 +3,7 @@
 In the scenario a movable block stands before the door through which a square shall be pushed.
 """
 
+import io
 import json
 from pathlib import Path
 from typing import Any
@@ -158,6 +159,17 @@ def test_text_replay_tells_a_plan_once_and_then_its_present_step(run: Path) -> N
     assert "\n  1 carry(o1,g1_r2): " in texts[1]
     assert "\nplan as before: > 0 clear(o2," in texts[2]
     assert "\n> 0 carry(o1,g1_r2): " in texts[STEPS]
+
+
+def test_the_prompt_tells_the_plan_that_the_command_tells(
+    run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = printed(capsys, "plan", str(run / "ep.jsonl"), "--at", "1").splitlines()
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"goto 1\nplan\nplan(0, S).\nhelp plan\n")))
+    said = printed(capsys, "repl", str(run / "ep.jsonl"))
+    assert "planned:\n" + "".join(f"  {line}\n" for line in told[1:]) + "next: " in said
+    assert "\nS\nclear(o2,spot" in said
+    assert "> marks the present step" in said
 
 
 def test_a_run_in_python_shows_its_plan() -> None:
