@@ -103,6 +103,11 @@ class Decider:
         """The task plan under way, from its present errand on; None while there is none."""
         return self._errands.plan
 
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
+        return self._errands.attempt
+
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
 

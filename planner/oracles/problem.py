@@ -88,7 +88,7 @@ class PlacedGoal:
     Attributes
     ----------
     name : g1, g2, ... in the order of the task.
-    words : the goal as the task states it.
+    words : the goal as the task states it; those of the robot joined by "and".
     subject : the object that it is about, or ROBOT.
     holds : whether it holds now.
     """
@@ -97,6 +97,11 @@ class PlacedGoal:
     words: str
     subject: str
     holds: bool
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """The goals that the task states, each as a fact without full stop; more than one only for the robot itself."""
+        return tuple(self.words.split(" and "))
 
 
 @dataclass(frozen=True)

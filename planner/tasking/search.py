@@ -30,7 +30,7 @@ TASK_ENCODING = PLANNER_ASP / "task.lp"
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
-MAX_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
+MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
 MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
 
@@ -127,17 +127,17 @@ class PlanSearch:
         if best is None:
             best = TaskPlan((), tuple(goal.name for goal in self._problem.goals if not goal.holds))
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
-            solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_CONFLICTS, self._about())
+            solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS, self._about())
         refutations = self._answers.refutations
-        proved = proved and not self._cut
-        plan = replace(best, least=min(least, best.cost), proved=proved, refutations=refutations, rounds=number)
+        plan = replace(best, least=min(least, best.cost), proved=proved and not self._cut, rounds=number)
+        plan = replace(plan, refutations=refutations, goals=self._problem.goals)
         return self._with_geometry(plan, facts)
 
     def _propose(self, horizon: int) -> Proposal:
         """Return the plan of the encoding with at most `horizon` errands."""
         facts = (f"horizon({horizon})", *self._facts, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
-            answer = solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_CONFLICTS)
+            answer = solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS)
         atoms, self._cut = answer.atoms or (), self._cut or not answer.proved
         unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
         doors: dict[int, list[str]] = {}
