@@ -83,6 +83,37 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     return things
 
 
+def embedded_things(colours: Mapping[RowColumn, str], things: list[Bools], shape: tuple[int, ...]) -> list[Bools]:
+    """Return what was felt to be no verge and belongs to no thing that sticks out: things that fill a gap in a wall.
+
+    How far such a thing goes on in the wall cannot be seen, so it has just the squares on which it was felt: those of
+    one colour that share edges.
+
+    Parameters
+    ----------
+    colours : mapping of (row, column) to str
+        The colour of each square that was felt; VERGE_TOUCH_COLOUR where it was verge.
+    things : list of (rows, columns) bool
+        The things that stick out, as of `separate_things`.
+    shape : (rows, columns)
+        The shape of the masks.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        One mask for each thing, in the order of their colours, then of their squares; [] when there are none.
+    """
+    known = np.any(things, axis=0) if things else np.zeros(shape, np.bool_)
+    found = []
+    for colour in sorted(set(colours.values()) - {VERGE_TOUCH_COLOUR}):
+        mask = np.zeros(shape, np.bool_)
+        for place, felt in colours.items():
+            mask[place] = felt == colour and not known[place]
+        parts = components(mask)
+        found += [parts.labels == n for n in range(1, parts.number + 1)]
+    return found
+
+
 def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:
     """Return what of some parts may be a thing, or more of one, and was not felt yet.
 

@@ -3,8 +3,7 @@
 It is asked only when nothing else is left to do, for an object that was moved no longer is where it was meant to be.
 """
 
-from collections.abc import Iterator, Sequence
-from itertools import product
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -12,19 +11,21 @@ import numpy as np
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
+from geometry.motion.se2 import Pose
+from geometry.raster.components import with_edge_neighbours
 from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
+from planner.deciding.feeling import feel_rim, feel_walls, walls_to_feel
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
+from planner.goals.embedded import Supposition, suppose, supposed_in_walls
 from planner.goals.placement import (
     CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
     floor_leads_away,
     mask_to_polygon,
-    possible_extension,
     pull_out_pose,
 )
 from planner.navigation.routes import PlannedRoute, find_routes
@@ -35,6 +36,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
+TRIAL_PUSH = 1.0  # squares by which a thing is pushed into a wall to see whether it goes; a convention
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 
 
@@ -45,45 +47,53 @@ class Obstacle(NamedTuple):
     ----------
     node : the object.
     aside : where it shall lie so that the way is free, or so that all of it is seen; in squares, view frame.
+    situation : what is believed, with the object as it is in `node`.
+    supposed : how it is supposed to go on in a wall; None for an object that is as it was seen.
     """
 
     node: Node
     aside: End
+    situation: Situation
+    supposed: Supposition | None = None
 
 
-def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle]:
+def obstacles(things: Sequence[Node], situation: Situation, walls: Bools | None = None) -> Iterator[Obstacle]:
     """Yield those of some objects that block the way to floor, known or unseen, that is reached without them.
 
     The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
-    stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
+    stand behind each other is yielded; else objects that block if they go on in what seems to be wall.
     Nothing is yielded when no object blocks.
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free.
 
     The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route. For an
-    object that goes on in a wall it is At: a translation (x, y) in squares from where it lies, out of the wall.
+    object that may go on in a wall it is that first, for the object as it lies if it does. Then it is At: a translation
+    (x, y) in squares from where it lies, out of the wall, and after that further into it.
 
     Parameters
     ----------
     things : the objects in question.
     situation : what is believed (world model, rooms, doors, corners, track).
+    walls : (rows, columns) bool on the arrays of the view, walls that are to be felt: a nook beside one is worth the
+        way, too. None for none.
     """
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
-    found = [(thing, way) for thing, mask in zip(things, under, strict=True) for way in _routes_opened(mask, situation)]
+    found = [
+        (thing, way)
+        for thing, mask in zip(things, under, strict=True)
+        for way in _routes_opened(mask, situation, walls)
+    ]
     if not found and things:
         together = np.any(under, axis=0)
-        found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation)]
+        found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation, walls)]
     for thing, way in sorted(found, key=lambda pair: pair[1].length):
-        columns, rows = np.array(way.squares).T
-        room = situation.cost_maps.free(0) | model.mask(thing.patch)
-        room[rows, columns] = False
-        yield Obstacle(thing, Inside(mask_to_polygon(room)))
-    for depth, thing in product(range(1, 1 + MAX_HIDDEN_DEPTH), things if not found else []):
-        yield from _hidden_in_doors(thing, depth, situation)
+        yield Obstacle(thing, _off_route(thing, way, situation), situation)
+    for thing in things if not found else []:
+        yield from _hidden_in_walls(thing, situation)
 
 
-def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
+def _routes_opened(under: Bools, situation: Situation, walls: Bools | None = None) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
 
     At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
@@ -95,6 +105,7 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
 
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
     situation : what is believed: world model, rooms, doors, corners and track.
+    walls : (rows, columns) bool on the arrays of the view: a nook beside one of these squares counts; None for none.
     """
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (
@@ -102,9 +113,38 @@ def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
         & (cost_maps.distances[UNSEEN_LEVEL] == GEODESIC_UNREACHED)
         & ~under
     )
-    if not floor_leads_away(beyond, under):
+    worth = walls is not None and (with_edge_neighbours(beyond) & walls).any()
+    if not worth and not floor_leads_away(beyond, under):
         return []
     return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(beyond), "grid")
+
+
+def _off_route(thing: Node, way: PlannedRoute, situation: Situation) -> Inside:
+    """Return where an object lies off a route: its own squares and surely free ones, in squares, view frame."""
+    columns, rows = np.array(way.squares).T
+    room = situation.cost_maps.free(0) | situation.model.mask(thing.patch)
+    room[rows, columns] = False
+    return Inside(mask_to_polygon(room))
+
+
+def before_walls(things: Sequence[Node], situation: Situation, walls: Bools) -> Iterator[Obstacle]:
+    """Yield those of some objects that stand right before walls that are to be felt, so that they cannot be.
+
+    An Obstacle holds the object, and an end: where it shall lie so that these walls can be felt, in squares, view
+    frame: on its own squares and surely free ones that touch none of these walls.
+
+    Parameters
+    ----------
+    things : the objects in question.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    walls : (rows, columns) bool on the arrays of the view, the walls that are to be felt.
+    """
+    for thing in things:
+        mask = situation.model.mask(thing.patch)
+        hidden = with_edge_neighbours(mask) & walls
+        if hidden.any():
+            room = (situation.cost_maps.free(0) | mask) & ~with_edge_neighbours(hidden)
+            yield Obstacle(thing, Inside(mask_to_polygon(room)), situation)
 
 
 def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
@@ -122,28 +162,28 @@ def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> N
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
 
-def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
-    """Yield an object that blocks the robot if it goes on by `depth` squares in what seems to be wall.
+def _hidden_in_walls(thing: Node, situation: Situation) -> Iterator[Obstacle]:
+    """Yield an object that blocks the robot if it goes on in what seems to be wall; nothing when it does not so.
 
-    It is drawn out by one square more than that, or as far as there is room: so all of it is seen. One Obstacle for
-    each side on which that is so, its end relative to where the object lies; nothing for an object that does not block
-    so.
+    For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends: off
+    the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so that
+    all of it is seen; and pushed TRIAL_PUSH squares further in.
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
     Parameters
     ----------
     thing : the object.
-    depth : in squares, 1 or more.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
-    model, mask = situation.model, situation.model.mask(thing.patch)
-    for side in SIDE_DIRECTIONS:
-        behind = possible_extension(thing, side, depth, model)
-        blocks = behind.any() and _routes_opened(mask | behind, situation)
-        pose = pull_out_pose(thing, side, depth, situation) if blocks else None
+    for supposed in supposed_in_walls(thing, situation, lambda under: bool(_routes_opened(under, situation))):
+        node, side, within = supposed.node, supposed.side, supposed.situation
+        for way in _routes_opened(situation.model.mask(node.patch), situation):
+            yield Obstacle(node, _off_route(node, way, within), within, supposed)
+        pose = pull_out_pose(thing, side, supposed.depth, situation)
         if pose is not None:
-            yield Obstacle(thing, At(pose))
+            yield Obstacle(node, At(pose), within, supposed)
+        yield Obstacle(node, At(Pose(TRIAL_PUSH * side[0], TRIAL_PUSH * side[1], 0.0)), within, supposed)
 
 
 class ObstacleClearer:
@@ -155,6 +195,7 @@ class ObstacleClearer:
     def __init__(self) -> None:
         """Make a clearer that is moving nothing."""
         self._moving = ""
+        self._supposed: Supposition | None = None  # how the object that is being moved is supposed to lie in a wall
         self._stays: frozenset[str] = frozenset()
 
     def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
@@ -176,7 +217,11 @@ class ObstacleClearer:
             instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools, node.name)
             if instead is not None:
                 return instead
-        act = tools.executor.continue_plan(node, situation) if node is not None and held == node.name else None
+        act = None
+        if node is not None and held == node.name:
+            last = self._supposed
+            again = None if last is None else suppose(node, last.side, last.depth, situation)
+            act = tools.executor.continue_plan(node, situation if again is None else again.situation)
         if act is None or tools.pursuer.closes_loop(situation.model, act.command):
             self._moving = ""
             return None
@@ -204,11 +249,19 @@ class ObstacleClearer:
         if not decision.verdict:
             return decision
         self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
-        instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools)
+        movable = self._movable(self._stays, situation)
+        instead = self._move_first(movable, stage, situation, tools)
         if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
             return instead or decision
+        decision = feel_walls(decision, stage, situation, tools.pursuer)
+        if not decision.verdict:
+            return decision
+        walls = walls_to_feel(stage, situation)
+        instead = self._move_first_of(before_walls(movable, situation, walls), stage, tools)
+        if instead is not None:
+            return instead
         things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
-        blocking = next((node.name for node, _ in obstacles(things, situation)), "")
+        blocking = next((one.node.name for one in obstacles(things, situation)), "")
         why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
         return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
 
@@ -239,10 +292,25 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         name : only the object of that name is moved; "" for any of `things`.
         """
-        for node, aside in obstacles(things, situation):
-            instead = _move_aside(node, aside, stage, situation, tools) if name in ("", node.name) else None
+        found = obstacles(things, situation, walls_to_feel(stage, situation))
+        return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
+
+    def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
+        """Return the next command to move aside the first obstacle that can be, and remember which it is; None for none.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        found : the obstacles, in the order in which they are tried.
+        stage : of the task: the goals that shall hold now.
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        for one in found:
+            instead = _move_aside(one.node, one.aside, stage, one.situation, tools)
             if instead is not None:
-                self._moving = node.name
+                self._moving, self._supposed = one.node.name, one.supposed
                 return instead
         return None
 
@@ -261,6 +329,9 @@ def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tool
     situation : what is believed (world model, rooms, doors, corners, track).
     tools : executor, pursuer and verifier, with which the command is worked out.
     """
+    rim = feel_rim(node, stage, situation, tools.pursuer)
+    if rim is not None:
+        return rim
     if node.confidence < CERTAIN_OBJECT:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
         look = tools.pursuer.pursue_look(touch, stage, situation)

@@ -21,6 +21,7 @@ from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
+from planner.deciding.feeling import parting_walls_count
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -132,7 +133,11 @@ class Decider:
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
                 unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
-                return replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
+                return (
+                    replace(decision, verdict=TaskVerdict.LIMIT)
+                    if unproved
+                    else qualify(decision, situation, parting_walls_count(stage, situation))
+                )
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"

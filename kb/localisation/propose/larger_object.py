@@ -17,7 +17,7 @@ from kb.mapping.occupancy import FREE
 from kb.mapping.patch import patch_of_polygon, patch_of_squares
 from kb.objects.held_object import HeldObject, is_grid_aligned
 
-MAX_HIDDEN_DEPTH = 3  # squares by which an object may go on in what seems to be wall; tuned on random worlds
+MAX_HIDDEN_DEPTH = 8  # squares by which an object may go on in what seems to be wall; a bound on time
 SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 

@@ -1,0 +1,144 @@
+"""Feeling: before the robot gives up, it feels the walls that may be things, the likeliest places first.
+
+planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses where to halt next.
+"""
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from kb.reasoning.solver import solve
+from kb.world.model import Node
+from planner.deciding.pursuit import Pursuer
+from planner.decision import Decision, TaskVerdict
+from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
+from planner.screen.moves import one_move_squares
+from planner.screen.projection import CostMaps, dilate, indices_to_mask
+from planner.sights.walls import FeelingPlace, WallKind, feeling_places, walls_in_question
+from planner.situation import Situation
+from planner.stages import TRACK_GOALS, Stage
+from planner.subgoal_kind import SubgoalKind
+
+MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
+FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it is felt"
+
+
+def parting_walls_count(stage: Stage, situation: Situation) -> bool:
+    """Return whether a thing in a wall between two parts of the floor that is reached could help a stage.
+
+    It could where an object must find its way, where the robot must go round something, and where a door is forbidden.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    track = any(goal.name in TRACK_GOALS for goal in stage.own)
+    return bool(stage.carried) or track or bool(situation.forbidden("utak"))
+
+
+def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
+    """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not.
+
+    (rows, columns) bool on the arrays of the view.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    parting = parting_walls_count(stage, situation)
+    walls = walls_in_question(situation.model, situation.cost_maps.floor, parting)
+    mask: Bools = np.any(list(walls.values()), axis=0)
+    return mask
+
+
+def feel_walls(decision: Decision, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision:
+    """Return what is decided; in place of `impossible`, the next command to feel walls, while some are left to feel.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    decision : what was decided. One that no open fact can overturn is returned as it is.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    pursuer : walks after the subgoal.
+    """
+    if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
+        return decision
+    halt = choose_halt(feeling_places(situation.cost_maps, parting_walls_count(stage, situation)), situation.cost_maps)
+    return _walk(halt, stage, situation, pursuer) or decision
+
+
+def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    node : the object.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    pursuer : walks after the subgoal.
+    """
+    if node.moved or node.colour is None:
+        return None
+    near = dilate(situation.model.mask(node.patch), 2).ravel()
+    places = [
+        place
+        for place in feeling_places(situation.cost_maps, parting=True)
+        if WallKind.THING in place.squares and near[place.square]
+    ]
+    return _walk(choose_halt(places, situation.cost_maps), stage, situation, pursuer)
+
+
+def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | None:
+    """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view),
+    the reason in words, its chance in percent, and a price in squares of way.
+
+    The facts for the encoding, each a string without a full stop, for each place, numbered from 0: `halt(number, walk,
+    moves)` with the way in tenths of squares, and `tells(number, kind, doorway or square, count)`.
+
+    Parameters
+    ----------
+    places : the squares to choose from; only the nearest of each kind of wall are offered to the encoding.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+    """
+    if not places:
+        return None
+    squares = np.array([place.square for place in places])
+    ways = cost_maps.far(squares)
+    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(squares, cost_maps.floor.shape)).ravel()
+    offered: set[int] = set()
+    order = np.argsort(ways, kind="stable").tolist()
+    for kind in WallKind:
+        of_kind = [n for n in order if places[n].squares[kind] or places[n].doorways[kind]]
+        full = [n for n in of_kind if places[n].doorways[kind] == max(places[m].doorways[kind] for m in of_kind)]
+        offered.update(of_kind[:MAX_HALTS_OF_KIND], full[:MAX_HALTS_OF_KIND])
+    facts = []
+    for number in sorted(offered):
+        place = places[number]
+        moves = 1 if straight[place.square] else 2
+        facts.append(f"halt({number},{round(TENTHS_PER_SQUARE * float(ways[number]))},{moves})")
+        for size, told in (("doorway", place.doorways), ("square", place.squares)):
+            facts += [f"tells({number},{kind},{size},{told[kind]})" for kind in WallKind if told[kind]]
+    answer = solve([PLANNER_ASP / "feel.lp"], facts)
+    if not answer:
+        return None
+    chosen = places[answer[0].arguments[0].number]
+    return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
+
+
+def _walk(halt: Subgoal | None, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command towards a halt; None for no halt, or when no way leads there.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+    """
+    look = pursuer.pursue_look(halt, stage, situation)
+    return None if look is None or look.command is None else look
