@@ -22,7 +22,7 @@ from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR, embedded_things, protrusions, separate_things
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things, with_embedded_things
 from kb.perception.regions import Percept, Region, label_of
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
@@ -83,7 +83,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
     sticking_out = separate_things(protrusions(free_squares(view), occupied, view.seen), colours)
-    for thing in [*sticking_out, *embedded_things(colours, sticking_out, labels.shape)]:
+    for thing in with_embedded_things(sticking_out, colours, occupied):
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(_separated_region(thing, label, view))

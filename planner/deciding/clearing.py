@@ -12,17 +12,18 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
-from geometry.raster.components import with_edge_neighbours
+from geometry.raster.components import components, with_edge_neighbours
 from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
-from planner.deciding.feeling import feel_rim, feel_walls, walls_to_feel
+from planner.deciding.feeling import feel_rim, feel_walls, parting_walls_count, walls_to_feel
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
 from planner.goals.embedded import Supposition, suppose, supposed_in_walls
 from planner.goals.placement import (
     CERTAIN_OBJECT,
+    NOOK_RANGE,
     POSSIBLE_OBJECT,
     floor_leads_away,
     mask_to_polygon,
@@ -30,7 +31,7 @@ from planner.goals.placement import (
 )
 from planner.navigation.routes import PlannedRoute, find_routes
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import UNSEEN_LEVEL, CostMaps
+from planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
 from planner.sights.frontiers import touch_viewpoint
 from planner.situation import Situation
 from planner.stages import Stage
@@ -57,7 +58,9 @@ class Obstacle(NamedTuple):
     supposed: Supposition | None = None
 
 
-def obstacles(things: Sequence[Node], situation: Situation, walls: Bools | None = None) -> Iterator[Obstacle]:
+def obstacles(
+    things: Sequence[Node], situation: Situation, walls: Bools | None = None, parting: bool = False
+) -> Iterator[Obstacle]:
     """Yield those of some objects that block the way to floor, known or unseen, that is reached without them.
 
     The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
@@ -76,6 +79,7 @@ def obstacles(things: Sequence[Node], situation: Situation, walls: Bools | None 
     situation : what is believed (world model, rooms, doors, corners, track).
     walls : (rows, columns) bool on the arrays of the view, walls that are to be felt: a nook beside one is worth the
         way, too. None for none.
+    parting : whether an object that may fill a gap in a wall blocks, too, where the floor behind it is reached already.
     """
     model = situation.model
     under = [model.mask(thing.patch) for thing in things]
@@ -89,8 +93,8 @@ def obstacles(things: Sequence[Node], situation: Situation, walls: Bools | None 
         found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation, walls)]
     for thing, way in sorted(found, key=lambda pair: pair[1].length):
         yield Obstacle(thing, _off_route(thing, way, situation), situation)
-    for thing in things if not found else []:
-        yield from _hidden_in_walls(thing, situation)
+    if not found:
+        yield from hidden_in_walls(things, situation, parting)
 
 
 def _routes_opened(under: Bools, situation: Situation, walls: Bools | None = None) -> list[PlannedRoute]:
@@ -162,8 +166,8 @@ def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> N
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
 
 
-def _hidden_in_walls(thing: Node, situation: Situation) -> Iterator[Obstacle]:
-    """Yield an object that blocks the robot if it goes on in what seems to be wall; nothing when it does not so.
+def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool) -> Iterator[Obstacle]:
+    """Yield those of some objects that block the way if they go on in what seems to be wall.
 
     For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends: off
     the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so that
@@ -173,17 +177,34 @@ def _hidden_in_walls(thing: Node, situation: Situation) -> Iterator[Obstacle]:
 
     Parameters
     ----------
-    thing : the object.
+    things : the objects in question.
     situation : what is believed (world model, rooms, doors, corners, track).
+    parting : whether a way counts, too, that opens to floor that is reached already.
     """
-    for supposed in supposed_in_walls(thing, situation, lambda under: bool(_routes_opened(under, situation))):
-        node, side, within = supposed.node, supposed.side, supposed.situation
-        for way in _routes_opened(situation.model.mask(node.patch), situation):
-            yield Obstacle(node, _off_route(node, way, within), within, supposed)
-        pose = pull_out_pose(thing, side, supposed.depth, situation)
-        if pose is not None:
-            yield Obstacle(node, At(pose), within, supposed)
-        yield Obstacle(node, At(Pose(TRIAL_PUSH * side[0], TRIAL_PUSH * side[1], 0.0)), within, supposed)
+
+    def opens(under: Bools) -> bool:
+        """Return whether a way opens when some squares are free, (rows, columns) bool on the arrays of the view."""
+        return bool(_routes_opened(under, situation)) or (parting and _joins_floors(under, situation))
+
+    for thing in things:
+        for supposed in supposed_in_walls(thing, situation, opens):
+            node, side, within = supposed.node, supposed.side, supposed.situation
+            for way in _routes_opened(situation.model.mask(node.patch), situation):
+                yield Obstacle(node, _off_route(node, way, within), within, supposed)
+            pose = pull_out_pose(thing, side, supposed.depth, situation)
+            if pose is not None:
+                yield Obstacle(node, At(pose), within, supposed)
+            yield Obstacle(node, At(Pose(TRIAL_PUSH * side[0], TRIAL_PUSH * side[1], 0.0)), within, supposed)
+
+
+def _joins_floors(under: Bools, situation: Situation) -> bool:
+    """Return whether some squares have floor on two sides that do not hang together around them.
+
+    under : (rows, columns) bool on the arrays of the view.
+    """
+    near = situation.model.space & dilate(under, NOOK_RANGE) & ~under
+    beside = components(near).labels[with_edge_neighbours(under) & near]
+    return len(np.unique(beside)) > 1
 
 
 class ObstacleClearer:
@@ -253,17 +274,62 @@ class ObstacleClearer:
         instead = self._move_first(movable, stage, situation, tools)
         if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
             return instead or decision
-        decision = feel_walls(decision, stage, situation, tools.pursuer)
+        decision = self._feel(decision, movable, stage, situation, tools)
         if not decision.verdict:
             return decision
-        walls = walls_to_feel(stage, situation)
-        instead = self._move_first_of(before_walls(movable, situation, walls), stage, tools)
-        if instead is not None:
-            return instead
         things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
         blocking = next((one.node.name for one in obstacles(things, situation)), "")
         why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
         return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
+
+    def open_walls(
+        self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision:
+        """Return a decision; in place of `impossible`, the next command to feel walls, or to clear what fills them.
+
+        It is for a verdict that is proved whatever objects are moved aside, as far as these were seen: only what may go
+        on in walls is moved, and what stands before walls that were never felt.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        decision : what was decided towards the goals; one that no open fact can overturn is returned unchanged.
+        goals : the goals that the decision is about; what they speak of stays where it is.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
+            return decision
+        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
+        movable = self._movable(self._stays, situation)
+        hidden = hidden_in_walls(movable, situation, parting_walls_count(stage, situation))
+        instead = self._move_first_of(hidden, stage, tools)
+        return instead or self._feel(decision, movable, stage, situation, tools)
+
+    def _feel(
+        self, decision: Decision, movable: Sequence[Node], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision:
+        """Return a decision; in place of `impossible`, the next command to feel walls, or to move what stands before them.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        decision : what was decided.
+        movable : the objects that may be moved.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        decision = feel_walls(decision, stage, situation, tools.pursuer)
+        if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
+            return decision
+        hidden = before_walls(movable, situation, walls_to_feel(stage, situation))
+        return self._move_first_of(hidden, stage, tools) or decision
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none.
@@ -292,7 +358,8 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         name : only the object of that name is moved; "" for any of `things`.
         """
-        found = obstacles(things, situation, walls_to_feel(stage, situation))
+        walls, parting = walls_to_feel(stage, situation), parting_walls_count(stage, situation)
+        found = obstacles(things, situation, walls, parting)
         return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
 
     def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:

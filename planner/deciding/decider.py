@@ -132,12 +132,9 @@ class Decider:
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
-                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
-                return (
-                    replace(decision, verdict=TaskVerdict.LIMIT)
-                    if unproved
-                    else qualify(decision, situation, parting_walls_count(stage, situation))
-                )
+                if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
+                    return replace(decision, verdict=TaskVerdict.LIMIT)
+                return qualify(decision, situation, parting_walls_count(stage, situation))
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"
@@ -167,8 +164,8 @@ class Decider:
             if decision is None:
                 continue
             decision = self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
-            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever else is moved or hidden in walls
-                return decision
+            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever is moved that was seen
+                return self._clearer.open_walls(decision, (goal,), stage, situation, self._tools)
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
         decision = self._go(stage, situation, reconciled, track) if stage.own else None
         if decision is None:

@@ -39,7 +39,8 @@ class Supposition:
 def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools], bool]) -> Iterator[Supposition]:
     """Yield how an object lies if it goes on in a wall, for each side on which its removal would open a way then.
 
-    Nothing is yielded for an object that was moved, for it was seen to end, or whose outline is not known.
+    For each side it goes on first up to the floor that is seen behind it, then just so far that a way would open, if
+    these differ. Nothing is yielded for an object that was moved, for it was seen to end, or whose outline is not known.
 
     Parameters
     ----------
@@ -47,18 +48,19 @@ def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools],
     situation : what is believed (world model, rooms, doors, corners, track).
     opens : tells of squares, (rows, columns) bool on the arrays of the view, whether a way opens when they are free.
     """
-    mask, before = situation.model.mask(node.patch), 0
+    mask = situation.model.mask(node.patch)
     for side in SIDE_DIRECTIONS:
-        before = 0
-        for depth in range(1, MAX_HIDDEN_DEPTH + 1):
-            behind = possible_extension(node, side, depth, situation.model)
-            if behind.sum() == before:
-                break
-            before = int(behind.sum())
-            supposed = suppose(node, side, depth, situation) if opens(mask | behind) else None
+        parts = [possible_extension(node, side, depth, situation.model) for depth in range(MAX_HIDDEN_DEPTH + 2)]
+        sizes = [int(part.sum()) for part in parts]
+        whole = sizes.index(sizes[-1])
+        depths = range(1, min(whole, MAX_HIDDEN_DEPTH) + 1)
+        least = next((depth for depth in depths if opens(mask | parts[depth])), None)
+        if least is None:
+            continue
+        for depth in [whole] * (least < whole <= MAX_HIDDEN_DEPTH) + [least]:
+            supposed = suppose(node, side, depth, situation)
             if supposed is not None:
                 yield supposed
-                break
 
 
 def suppose(node: Node, side: Square, depth: int, situation: Situation) -> Supposition | None:
