@@ -96,7 +96,10 @@ def run_one(kind: str, task: str, seed: int, limits: Limits, folder: Path, keep:
 def plug_table(rows: Sequence[PlugRow]) -> str:
     """Return the results by kind, task and pulling, and of all, as aligned text."""
     groups = sorted({(row.kind, row.task, row.pull) for row in rows}, key=lambda g: (PLUG_KINDS.index(g[0]), *g[1:]))
-    lines = [_line(k, t, "yes" if p else "no", [r for r in rows if (r.kind, r.task, r.pull) == (k, t, p)]) for k, t, p in groups]
+    lines = [
+        _line(k, t, "yes" if p else "no", [r for r in rows if (r.kind, r.task, r.pull) == (k, t, p)])
+        for k, t, p in groups
+    ]
     lines.append(_line("all", "", "", rows))
     cells = [list(lines[0]), *(list(line.values()) for line in lines)]
     widths = [max(len(cell) for cell in column) for column in zip(*cells, strict=True)]

@@ -47,13 +47,15 @@ def plugged_world(kind: str, task: str, seed: int) -> OddWorld:
 def _plugged(rng: np.random.Generator, kind: str, task: str, seed: int) -> OddWorld | None:
     wall, door = int(rng.integers(*WALL_SIZES)), int(rng.integers(*DOOR_SIZES))
     depths, high = (int(rng.integers(*ROOM_SIZES)), int(rng.integers(*ROOM_SIZES))), int(rng.integers(*ROOM_SIZES))
-    if 2 * door > min(*depths, high) or (kind == "recessed" and wall < 3):
+    if 2 * door >= min(*depths, high) or (kind == "recessed" and wall < 3):
         return None
     at = int(rng.integers(1, high - door))
-    first, second, neck = straight(depths, (high, high), wall, door, at)
-    plan = two_rooms(first, second, [neck], 90.0 * int(rng.integers(4)))
+    west, east, neck = straight(depths, (high, high), wall, door, at)
+    plan = two_rooms(west, east, [neck], 90.0 * int(rng.integers(4)))
     home = int(rng.integers(2))
     spans = _spans(rng, kind, wall)
+    if task != "next" and any(last - first == door for first, last in spans):
+        return None  # it would be a square, as x is
     plugs = [PlacedThing(f"p{n}", colour(rng), "polygon", _across(plan, wall, *s)) for n, s in enumerate(spans, 1)]
     taken = [*(plug.polygon for plug in plugs), *(neck.polygon.buffer(2.0) for neck in plan.necks)]
     return _scene(rng, kind, task, seed, plan, home, plugs, taken)

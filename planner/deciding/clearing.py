@@ -171,7 +171,8 @@ def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool)
 
     For each side on which that is so there are up to three Obstacles, the object as it lies then, with their ends: off
     the route that opens; drawn out of the wall by one square more than it goes on, or as far as there is room, so that
-    all of it is seen; and pushed TRIAL_PUSH squares further in.
+    all of it is seen; and pushed TRIAL_PUSH squares further in. An object that did not move the last time is drawn out
+    first: something may stand behind it.
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
@@ -189,11 +190,11 @@ def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool)
     for thing in things:
         for supposed in supposed_in_walls(thing, situation, opens):
             node, side, within = supposed.node, supposed.side, supposed.situation
-            for way in _routes_opened(situation.model.mask(node.patch), situation):
-                yield Obstacle(node, _off_route(node, way, within), within, supposed)
+            routes = _routes_opened(situation.model.mask(node.patch), situation)
+            off = [Obstacle(node, _off_route(node, way, within), within, supposed) for way in routes]
             pose = pull_out_pose(thing, side, supposed.depth, situation)
-            if pose is not None:
-                yield Obstacle(node, At(pose), within, supposed)
+            out = [] if pose is None else [Obstacle(node, At(pose), within, supposed)]
+            yield from [*out, *off] if thing.stuck else [*off, *out]
             yield Obstacle(node, At(Pose(TRIAL_PUSH * side[0], TRIAL_PUSH * side[1], 0.0)), within, supposed)
 
 
@@ -218,11 +219,13 @@ class ObstacleClearer:
         self._moving = ""
         self._supposed: Supposition | None = None  # how the object that is being moved is supposed to lie in a wall
         self._stays: frozenset[str] = frozenset()
+        self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
     def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the next command for the obstacle that is being moved; None when there is none that blocks still.
 
-        Also None when its command would close a loop: then it is no longer being moved.
+        Also None when its command would close a loop: then it is no longer being moved. Feeling that was begun is gone
+        on with first, until something is found or nothing is left to feel.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
@@ -234,6 +237,10 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
         node, held = situation.model.object(self._moving), situation.model.held
+        if self._feeling and held is None:
+            instead = self._feel_on(stage, situation, tools)
+            if instead is not None:
+                return instead
         if node is not None and held is None:
             instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools, node.name)
             if instead is not None:
@@ -325,11 +332,34 @@ class ObstacleClearer:
         situation : what is believed (world model, rooms, doors, corners, track).
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
-        decision = feel_walls(decision, stage, situation, tools.pursuer)
-        if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
-            return decision
-        hidden = before_walls(movable, situation, walls_to_feel(stage, situation))
-        return self._move_first_of(hidden, stage, tools) or decision
+        if decision.verdict == TaskVerdict.IMPOSSIBLE and decision.unless is not None:
+            felt = feel_walls(stage, situation, tools.pursuer)
+            if felt is not None:
+                self._feeling = True
+                return felt
+            hidden = before_walls(movable, situation, walls_to_feel(stage, situation))
+            return self._move_first_of(hidden, stage, tools) or decision
+        return decision
+
+    def _feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next command to clear what was found in a wall, or to feel walls; None when nothing is left to feel.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        hidden = hidden_in_walls(
+            self._movable(self._stays, situation), situation, parting_walls_count(stage, situation)
+        )
+        found = self._move_first_of(hidden, stage, tools)
+        felt = None if found is not None else feel_walls(stage, situation, tools.pursuer)
+        self._feeling = felt is not None
+        return found or felt
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none.

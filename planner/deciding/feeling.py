@@ -9,7 +9,7 @@ from geometry.kernels.arrays import Bools
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from planner.deciding.pursuit import Pursuer
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
@@ -52,23 +52,20 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
     return mask
 
 
-def feel_walls(decision: Decision, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision:
-    """Return what is decided; in place of `impossible`, the next command to feel walls, while some are left to feel.
+def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command to feel walls that may be things; None when none is left that can be reached.
 
     A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
     and its reason.
 
     Parameters
     ----------
-    decision : what was decided. One that no open fact can overturn is returned as it is.
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.
     pursuer : walks after the subgoal.
     """
-    if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
-        return decision
     halt = choose_halt(feeling_places(situation.cost_maps, parting_walls_count(stage, situation)), situation.cost_maps)
-    return _walk(halt, stage, situation, pursuer) or decision
+    return _walk(halt, stage, situation, pursuer)
 
 
 def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
