@@ -30,7 +30,10 @@ OUT_OF_TIME = (-24, -9)  # SIGXCPU, SIGKILL
 
 @dataclass(frozen=True)
 class Limits:
-    """The conditions of all runs: noise, its seed, limits of commands, processor time, memory and search, and pulling."""
+    """The conditions of all runs: noise, its seed, limits of commands, processor time, memory and search.
+
+    pull : whether a held object may be pulled.
+    """
 
     noise: float = 0.0
     noise_seed: int = 0

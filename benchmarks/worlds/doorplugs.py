@@ -19,8 +19,8 @@ from benchmarks.worlds.odd.tasks import OddScene, OddWorld
 from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing, write
 
-# flush: the thing ends with the wall on both sides. recessed: it leaves a niche on one side or both. out: it sticks out.
-# two: two things fill the doorway, one behind the other. closed: a room without any door.
+# flush: the thing ends with the wall on both sides. recessed: it leaves a niche on one side or both. out: it sticks
+# out. two: two things fill the doorway, one behind the other. closed: a room without any door.
 PLUG_KINDS = ("flush", "recessed", "out", "two", "closed")
 PLUG_TASKS = ("next", "carry_next")
 ROOM_SIZES = (9, 17)  # squares, the least and one more than the most

@@ -16,11 +16,12 @@ from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import POSSIBLE_OBJECT
 from planner.screen.moves import orientation_is_settled
-from planner.sights.walls import walls_in_question
+from planner.screen.projection import dilate
+from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
 from planner.situation import Situation
 
 
-def qualify(decision: Decision, situation: Situation, parting: bool = True) -> Decision:
+def qualify(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
     """Return a decision with `possible_if` in place of `impossible` where an open fact would overturn that.
 
     The fact is added to the reason.
@@ -33,7 +34,7 @@ def qualify(decision: Decision, situation: Situation, parting: bool = True) -> D
     decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
         says that there can be none.
     situation : what is believed (world model, rooms, doors, corners, track).
-    parting : whether a thing in a wall between two parts of the floor that is reached could overturn it, or move aside.
+    scope : which walls matter for the task.
 
     Returns
     -------
@@ -43,7 +44,7 @@ def qualify(decision: Decision, situation: Situation, parting: bool = True) -> D
     if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
         return decision
     near = decision.near or situation.model.place_on_view
-    fact = decision.unless or nearest_open_fact(situation, near, parting)
+    fact = decision.unless or nearest_open_fact(situation, near, scope)
     if not fact:
         return decision
     why = f"{decision.why}; it may be possible if {fact}"
@@ -70,7 +71,7 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
 
 
-def nearest_open_fact(situation: Situation, near: XY, parting: bool = True) -> str:
+def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_WALLS) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
 
     A wall that was never felt comes first, then floor that goes on unseen, then an object that was never moved. A
@@ -80,17 +81,21 @@ def nearest_open_fact(situation: Situation, near: XY, parting: bool = True) -> s
     ----------
     situation : what is believed (world model, rooms, doors, corners, track).
     near : (x, y) in squares, view frame.
-    parting : whether a thing in a wall between two parts of the floor that is reached may allow another plan.
+    scope : which walls matter for the task. Where no wall between two parts of the floor does, objects all around which
+        the floor is reached do not either.
     """
     model, reached = situation.model, situation.cost_maps.floor
-    walls = walls_in_question(model, reached, parting).values()
+    walls = walls_in_question(model, reached, scope).values()
     wall = _nearest_square(np.any(list(walls), axis=0), near)
     if wall is not None:
         return f"the wall at {model.point_in_words(wall)}, which was never felt, is a thing that can be moved"
-    unseen = _nearest_square(with_edge_neighbours(model.space) & ~model.view.seen, near)
+    unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
     unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
+    if not scope.parting:
+        masks = {node.name: model.mask(node.patch) for node in unmoved}
+        unmoved = [node for node in unmoved if (dilate(masks[node.name], 1) & ~masks[node.name] & ~reached).any()]
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
 
 

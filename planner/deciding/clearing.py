@@ -17,7 +17,7 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
 from kb.world.model import Node, WorldModel
 from planner.advice import Act
-from planner.deciding.feeling import feel_rim, feel_walls, parting_walls_count, walls_to_feel
+from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
 from planner.goals.embedded import Supposition, suppose, supposed_in_walls
@@ -312,14 +312,14 @@ class ObstacleClearer:
             return decision
         self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
         movable = self._movable(self._stays, situation)
-        hidden = hidden_in_walls(movable, situation, parting_walls_count(stage, situation))
+        hidden = hidden_in_walls(movable, situation, feeling_scope(stage, situation).parting)
         instead = self._move_first_of(hidden, stage, tools)
         return instead or self._feel(decision, movable, stage, situation, tools)
 
     def _feel(
         self, decision: Decision, movable: Sequence[Node], stage: Stage, situation: Situation, tools: Tools
     ) -> Decision:
-        """Return a decision; in place of `impossible`, the next command to feel walls, or to move what stands before them.
+        """Return a decision; in place of `impossible`, the next command to feel walls, or to move what hides them.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
@@ -354,7 +354,7 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
         hidden = hidden_in_walls(
-            self._movable(self._stays, situation), situation, parting_walls_count(stage, situation)
+            self._movable(self._stays, situation), situation, feeling_scope(stage, situation).parting
         )
         found = self._move_first_of(hidden, stage, tools)
         felt = None if found is not None else feel_walls(stage, situation, tools.pursuer)
@@ -388,7 +388,7 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         name : only the object of that name is moved; "" for any of `things`.
         """
-        walls, parting = walls_to_feel(stage, situation), parting_walls_count(stage, situation)
+        walls, parting = walls_to_feel(stage, situation), feeling_scope(stage, situation).parting
         found = obstacles(things, situation, walls, parting)
         return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
 

@@ -21,7 +21,7 @@ from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
-from planner.deciding.feeling import parting_walls_count
+from planner.deciding.feeling import feeling_scope
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -134,7 +134,7 @@ class Decider:
             if decision is not None:
                 if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
                     return replace(decision, verdict=TaskVerdict.LIMIT)
-                return qualify(decision, situation, parting_walls_count(stage, situation))
+                return qualify(decision, situation, feeling_scope(stage, situation))
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"
@@ -158,7 +158,7 @@ class Decider:
         """
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
-            return conflict
+            return self._clearer.open_walls(conflict, stage.carried, stage, situation, self._tools)
         for goal in stage.carried:
             decision = self._transporter.towards(goal, stage, situation, reconciled, self._tools)
             if decision is None:

@@ -3,17 +3,24 @@
 planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses where to halt next.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
+import shapely
 
 from geometry.kernels.arrays import Bools
+from geometry.raster.components import components
+from geometry.raster.rasterize import squares
 from kb.reasoning.solver import solve
 from kb.world.model import Node
+from kb.world.rooms import Door
 from planner.deciding.pursuit import Pursuer
 from planner.decision import Decision
+from planner.goals.placement import NEGLIGIBLE_LENGTH
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
-from planner.sights.walls import FeelingPlace, WallKind, feeling_places, walls_in_question
+from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
 from planner.situation import Situation
 from planner.stages import TRACK_GOALS, Stage
 from planner.subgoal_kind import SubgoalKind
@@ -22,18 +29,47 @@ MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a
 FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it is felt"
 
 
-def parting_walls_count(stage: Stage, situation: Situation) -> bool:
-    """Return whether a thing in a wall between two parts of the floor that is reached could help a stage.
+def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
+    """Return which walls matter for a stage that cannot be attained otherwise.
 
-    It could where an object must find its way, where the robot must go round something, and where a door is forbidden.
+    Walls between two parts of the floor that is reached matter where an object must find its way, where the robot must
+    go round something, and where a door is forbidden. Where the robot shall be at an object to which no way leads, only
+    walls matter that may lead there.
 
     Parameters
     ----------
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
+    forbidden = situation.forbidden("utak")
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
-    return bool(stage.carried) or track or bool(situation.forbidden("utak"))
+    parting = bool(stage.carried) or track or bool(forbidden)
+    allowed = _floor_this_side(forbidden, situation) if forbidden else None
+    return FeelingScope(parting, None if stage.carried or track else _wanted(stage, situation), allowed)
+
+
+def _wanted(stage: Stage, situation: Situation) -> Bools | None:
+    """Return the squares of an object at which the robot shall be, and to which no way leads; None for no such."""
+    for goal in stage.own:
+        node = situation.model.object(situation.binding.get(str(goal.args[1]), "")) if len(goal.args) > 1 else None
+        if node is not None and goal.name in ("at", "beside"):
+            mask = situation.model.mask(node.patch)
+            if not (dilate(mask, 1) & situation.cost_maps.floor).any():
+                return mask
+    return None
+
+
+def _floor_this_side(doors: Sequence[Door], situation: Situation) -> Bools:
+    """Return the floor that the robot reaches without going through some doors, (rows, columns) bool."""
+    floor = situation.cost_maps.floor
+    rows, columns = floor.shape
+    free = floor.copy()
+    for door in doors:
+        free &= ~squares(shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH), columns, rows)
+    column, row = situation.cost_maps.here
+    labels = components(free).labels
+    mask: Bools = free & (labels == labels[row, column])
+    return mask
 
 
 def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
@@ -46,8 +82,7 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    parting = parting_walls_count(stage, situation)
-    walls = walls_in_question(situation.model, situation.cost_maps.floor, parting)
+    walls = walls_in_question(situation.model, situation.cost_maps.floor, feeling_scope(stage, situation))
     mask: Bools = np.any(list(walls.values()), axis=0)
     return mask
 
@@ -64,7 +99,7 @@ def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision
     situation : what is believed: world model, rooms, doors, corners and track.
     pursuer : walks after the subgoal.
     """
-    halt = choose_halt(feeling_places(situation.cost_maps, parting_walls_count(stage, situation)), situation.cost_maps)
+    halt = choose_halt(feeling_places(situation.cost_maps, feeling_scope(stage, situation)), situation.cost_maps)
     return _walk(halt, stage, situation, pursuer)
 
 
@@ -85,9 +120,7 @@ def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -
         return None
     near = dilate(situation.model.mask(node.patch), 2).ravel()
     places = [
-        place
-        for place in feeling_places(situation.cost_maps, parting=True)
-        if WallKind.THING in place.squares and near[place.square]
+        place for place in feeling_places(situation.cost_maps) if WallKind.THING in place.squares and near[place.square]
     ]
     return _walk(choose_halt(places, situation.cost_maps), stage, situation, pursuer)
 
@@ -108,9 +141,9 @@ def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | No
     """
     if not places:
         return None
-    squares = np.array([place.square for place in places])
-    ways = cost_maps.far(squares)
-    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(squares, cost_maps.floor.shape)).ravel()
+    halts = np.array([place.square for place in places])
+    ways = cost_maps.far(halts)
+    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(halts, cost_maps.floor.shape)).ravel()
     offered: set[int] = set()
     order = np.argsort(ways, kind="stable").tolist()
     for kind in WallKind:

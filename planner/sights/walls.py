@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Square
-from geometry.raster.components import with_edge_neighbours
+from geometry.raster.components import components, with_edge_neighbours
 from kb.perception.interpretation import LONGEST_OBJECT
 from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import WorldModel
@@ -70,9 +70,30 @@ class FeelingPlace(NamedTuple):
     squares: Counter[WallKind]
 
 
-def unfelt_walls(model: WorldModel) -> Bools:
-    """Return the squares beside known floor, or beside a thing that can be moved, where a wall was seen and never felt.
+class FeelingScope(NamedTuple):
+    """The walls that matter for a task.
 
+    Attributes
+    ----------
+    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may give
+        an object, or a robot that must avoid a door, another way.
+    wanted : (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is
+        not known where. Then walls count alone behind which that place lies, with no reached floor all around.
+    allowed : (rows, columns) bool, the floor on which the robot may go; None for all that it reaches.
+    """
+
+    parting: bool = True
+    wanted: Bools | None = None
+    allowed: Bools | None = None
+
+
+ALL_WALLS = FeelingScope()
+
+
+def unfelt_walls(model: WorldModel) -> Bools:
+    """Return the squares where a wall was seen and never felt, beside floor to which the robot comes.
+
+    Floor counts to which it comes if all things that can be moved are moved away, and so does the floor under these.
     (rows, columns) bool on the arrays of the view; squares of objects do not count.
 
     Parameters
@@ -84,34 +105,25 @@ def unfelt_walls(model: WorldModel) -> Bools:
     return mask
 
 
-def _ground(model: WorldModel) -> Bools:
-    """Return the floor, seen or under objects that may be moved away."""
-    ground: Bools = model.space.copy()
-    for node in model.objects:
-        if node.confidence >= MIN_THING_CONFIDENCE and node.movable > 0:
-            ground |= model.mask(node.patch)
-    return ground
-
-
-def walls_in_question(model: WorldModel, reached: Bools, parting: bool) -> dict[WallKind, Bools]:
+def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = ALL_WALLS) -> dict[WallKind, Bools]:
     """Return the unfelt walls that may be a thing whose removal leads on, by kind; each square has one kind.
 
     Parameters
     ----------
     model : what is believed.
     reached : the floor that the robot reaches.
-    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may
-        give an object, or a robot that must avoid a door, another way.
+    scope : which walls matter.
     """
-    unfelt, space, seen = unfelt_walls(model), model.space, model.view.seen
+    ground, space, seen = _ground(model), model.space, model.view.seen
+    unfelt = unfelt_walls(model) & _leading(model, reached, scope)
     kinds = {kind: np.zeros_like(unfelt) for kind in WallKind}
     sticking = np.any(model.protruding, axis=0) if model.protruding else np.zeros_like(unfelt)
     things = _things(model, embedded=True)
     niches = _niches(space)
     for step in EDGE_STEPS:
-        front = unfelt & shift_mask(_ground(model), *step)
+        front = unfelt & shift_mask(ground, *step)
         behind = _behind(front, space, reached, seen, step)
-        back = tuple(-part for part in step)
+        back = (-step[0], -step[1])
         rim = _cast(niches[back] | sticking, back, MAX_THIN_WALL) & (behind[WallKind.THIN] | behind[WallKind.THICK])
         found = {
             **behind,
@@ -125,12 +137,12 @@ def walls_in_question(model: WorldModel, reached: Bools, parting: bool) -> dict[
     for kind in WallKind:
         kinds[kind] &= ~taken
         taken |= kinds[kind]
-    if not parting:
+    if not scope.parting:
         kinds[WallKind.PARTING][:] = False
     return kinds
 
 
-def feeling_places(cost_maps: CostMaps, parting: bool) -> list[FeelingPlace]:
+def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list[FeelingPlace]:
     """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none.
 
     Squares from which the robot looked already are left out: what can be felt there was felt.
@@ -138,10 +150,10 @@ def feeling_places(cost_maps: CostMaps, parting: bool) -> list[FeelingPlace]:
     Parameters
     ----------
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    parting : whether walls between two parts of the floor that is reached count.
+    scope : which walls matter.
     """
     model, floor = cost_maps.model, cost_maps.floor
-    kinds = walls_in_question(model, floor, parting)
+    kinds = walls_in_question(model, floor, scope)
     number = np.zeros(floor.shape, np.int64)
     names = list(WallKind)
     for rank, kind in enumerate(names, 1):
@@ -149,9 +161,10 @@ def feeling_places(cost_maps: CostMaps, parting: bool) -> list[FeelingPlace]:
     offsets = tuple(model.frame.directions())
     places: dict[int, FeelingPlace] = {}
     stand = floor & ~cost_maps.looked_from
+    if scope.allowed is not None:
+        stand &= scope.allowed
     for stretch in _stretches(number > 0):
-        ranks = [int(number[square]) for square in stretch]
-        kind = names[min(ranks) - 1]
+        kind = names[min(int(number[square]) for square in stretch) - 1]
         about = {(row - dy, column - dx) for row, column in stretch for dx, dy in offsets}
         for row, column in about:
             if 0 <= row < floor.shape[0] and 0 <= column < floor.shape[1] and stand[row, column]:
@@ -159,6 +172,33 @@ def feeling_places(cost_maps: CostMaps, parting: bool) -> list[FeelingPlace]:
                 place = places.setdefault(index, FeelingPlace(index, Counter(), Counter()))
                 (place.squares if len(stretch) == 1 else place.doorways)[kind] += 1
     return [places[index] for index in sorted(places)]
+
+
+def _ground(model: WorldModel) -> Bools:
+    """Return the floor to which the robot comes if all things that can be moved are moved away, theirs included."""
+    ground: Bools = model.space.copy()
+    for node in model.objects:
+        if node.confidence >= MIN_THING_CONFIDENCE and node.movable > 0:
+            ground |= model.mask(node.patch)
+    row, column = model.view.locate(*model.place)
+    ground[row, column] = True
+    labels = components(ground).labels
+    mask: Bools = labels == labels[row, column]
+    return mask
+
+
+def _leading(model: WorldModel, reached: Bools, scope: FeelingScope) -> Bools:
+    """Return the squares through which a way may lead on: no reached floor parts them from what they may lead to.
+
+    That is the place that is wanted; or any floor that is not reached, and what was never seen.
+    """
+    parts = components(~reached)
+    target = scope.wanted if scope.wanted is not None else (model.space & ~reached) | ~model.view.seen
+    leads = np.zeros(parts.number + 1, np.bool_)
+    leads[parts.labels[target]] = True
+    leads[0] = False
+    mask: Bools = leads[parts.labels] if not scope.parting or scope.wanted is not None else np.ones_like(reached)
+    return mask
 
 
 def _things(model: WorldModel, embedded: bool = False) -> Bools:
