@@ -342,7 +342,7 @@ class ObstacleClearer:
         return decision
 
     def _feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the next command to clear what was found in a wall, or to feel walls; None when nothing is left to feel.
+        """Return the next command to clear what was found in a wall, or to feel on; None when nothing is left.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
@@ -393,7 +393,7 @@ class ObstacleClearer:
         return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
 
     def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
-        """Return the next command to move aside the first obstacle that can be, and remember which it is; None for none.
+        """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.

@@ -1,7 +1,7 @@
 """Embedded things: objects that stand in a wall, and how they lie there if they fill it to the floor behind.
 
-Of a thing that fills a doorway only the face is seen. To plan with it, it is supposed to go on straight behind its face,
-through what seems to be wall, by some squares: the least with which its removal would open a way.
+Of a thing that fills a doorway only the face is seen. To plan with it, it is supposed to go on straight behind its
+face, through what seems to be wall, to the floor that is seen there.
 """
 
 from collections.abc import Callable, Iterator
@@ -40,7 +40,8 @@ def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools],
     """Yield how an object lies if it goes on in a wall, for each side on which its removal would open a way then.
 
     For each side it goes on first up to the floor that is seen behind it, then just so far that a way would open, if
-    these differ. Nothing is yielded for an object that was moved, for it was seen to end, or whose outline is not known.
+    these differ. Nothing is yielded for an object that was moved, for it was seen to end, nor while its outline is not
+    known.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """Walls that were seen and never felt, and the floor from which they are felt.
 
-A movable thing that fills a doorway looks like wall; only its colour tells. Geometry says here which squares of wall may
-belong to such a thing, and how much of them is felt from where; planner/asp/feel.lp chooses where the robot feels next.
+A movable thing that fills a doorway looks like wall; only its colour tells. Geometry says here which squares of wall
+may belong to such a thing, and how much of them is felt from where; planner/asp/feel.lp chooses where the robot feels
+next.
 
 Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
 """
@@ -75,8 +76,8 @@ class FeelingScope(NamedTuple):
 
     Attributes
     ----------
-    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may give
-        an object, or a robot that must avoid a door, another way.
+    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may
+        give an object, or a robot that must avoid a door, another way.
     wanted : (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is
         not known where. Then walls count alone behind which that place lies, with no reached floor all around.
     allowed : (rows, columns) bool, the floor on which the robot may go; None for all that it reaches.

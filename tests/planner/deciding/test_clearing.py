@@ -13,6 +13,7 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import covered_areas
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.reader import facts_from_text
+from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH
 from kb.mapping.patch import Patch
 from kb.world.model import Node
 from planner.deciding.clearing import Obstacle, ObstacleClearer, obstacles
@@ -91,7 +92,7 @@ def test_an_object_before_the_only_door_is_an_obstacle() -> None:
 
 @pytest.mark.parametrize("rows", [ELSEWHERE, AGAINST])
 def test_an_object_elsewhere_is_no_obstacle(rows: list[str]) -> None:
-    thick = [row[:13] + "bb" + row[13:] for row in rows]  # the wall: no object may reach so far into it
+    thick = [row[:13] + "b" * MAX_HIDDEN_DEPTH + row[13:] for row in rows]  # no object may reach so far into the wall
     assert not found_in(known(thick))
 
 
