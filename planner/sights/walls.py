@@ -26,6 +26,7 @@ DOORWAY_WIDTH = 3  # squares in a row that are felt at once; a thing as wide as 
 MAX_THIN_WALL = 5  # squares: a wall up to so thick is thin; a convention
 MAX_THICK_WALL = 12  # squares of wall through which floor behind it makes a doorway likely; a convention
 MAX_NICHE_WIDTH = 8  # squares: the floor of a niche is at most so wide; a convention
+NICHE_SHARE = 2  # times as wide is the room before a niche, at least: as a room is beside a door
 MAX_NICHE_DEPTH = 3  # squares: a niche widens to a room within so many; a convention
 MIN_THING_CONFIDENCE = 20  # percent: what is less likely an object is felt as wall (as in planner.goals.placement)
 
@@ -118,7 +119,9 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
     ground, space, seen = _ground(model), model.space, model.view.seen
     unfelt = unfelt_walls(model) & _leading(model, reached, scope)
     kinds = {kind: np.zeros_like(unfelt) for kind in WallKind}
-    sticking = np.any(model.protruding, axis=0) if model.protruding else np.zeros_like(unfelt)
+    near = with_edge_neighbours(reached)
+    beyond = [part for part in model.protruding if not (part & near).any()]  # what sticks out into floor not reached
+    sticking = np.any(beyond, axis=0) if beyond else np.zeros_like(unfelt)
     things = _things(model, embedded=True)
     niches = _niches(space)
     for step in EDGE_STEPS:
@@ -193,12 +196,16 @@ def _leading(model: WorldModel, reached: Bools, scope: FeelingScope) -> Bools:
 
     That is the place that is wanted; or any floor that is not reached, and what was never seen.
     """
-    parts = components(~reached)
-    target = scope.wanted if scope.wanted is not None else (model.space & ~reached) | ~model.view.seen
+    if scope.parting and scope.wanted is None:
+        return np.ones_like(reached)
+    parts = components(np.pad(~reached, 1, constant_values=True))  # what lies beyond the arrays was never seen
+    target = np.pad((model.space & ~reached) | ~model.view.seen, 1, constant_values=True)
+    if scope.wanted is not None:
+        target = np.pad(scope.wanted, 1)
     leads = np.zeros(parts.number + 1, np.bool_)
     leads[parts.labels[target]] = True
     leads[0] = False
-    mask: Bools = leads[parts.labels] if not scope.parting or scope.wanted is not None else np.ones_like(reached)
+    mask: Bools = leads[parts.labels][1:-1, 1:-1]
     return mask
 
 
@@ -218,10 +225,11 @@ def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Squar
     """
     kinds = {kind: np.zeros_like(front) for kind in WallKind}
     left, back = front.copy(), (-step[0], -step[1])
-    new, unseen = space & ~reached, ~seen
+    new, solid = space & ~reached, seen & ~space
     ground = reached & space
     for depth in range(1, LONGEST_OBJECT + 1):
-        ground, new, unseen = (shift_mask(mask, *back) for mask in (ground, new, unseen))
+        ground, new, solid = (shift_mask(mask, *back) for mask in (ground, new, solid))
+        unseen = ~(ground | new | solid)  # what lies beyond the arrays was never seen
         kinds[WallKind.PARTING] |= left & ground
         thickness = WallKind.THIN if depth <= MAX_THIN_WALL else WallKind.THICK
         kinds[thickness if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & new
@@ -255,7 +263,7 @@ def _niches(space: Bools) -> dict[Square, Bools]:
         niche, here = np.zeros_like(space), width
         for _ in range(MAX_NICHE_DEPTH):
             here = _shift_numbers(here, step)
-            niche |= narrow & (here > width)
+            niche |= narrow & (here >= NICHE_SHARE * width)
         found[step] = shift_mask(niche, *step) & ~space
     return found
 

@@ -1,6 +1,9 @@
 """Situations, rooms and robots for the tests of the planner."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
 
 from kb.body import Body
 from kb.task.task import Task
@@ -15,6 +18,7 @@ from planner.deciding.pursuit import Pursuer
 from planner.deciding.tools import Tools
 from planner.deciding.verification import Verifier
 from planner.screen.projection import CostMaps
+from planner.sights.walls import unfelt_walls
 from planner.situation import Situation
 from simulator.run.session import RobotMaker
 from simulator.run.warming import warm
@@ -35,6 +39,13 @@ BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
 def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task: Task = NO_TASK) -> Situation:
     """Return the situation of a world model, with its rooms and corners. bound : what the task's parameters mean."""
     return Situation(model, CostMaps(model), bound or {}, rooms_of(model), corners(model), task)
+
+
+def all_felt(model: WorldModel) -> WorldModel:
+    """Return a world model in which every wall that can be felt was felt to be wall."""
+    rows, columns = np.nonzero(unfelt_walls(model))
+    squares = zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True)
+    return replace(model, felt={**model.felt, **dict.fromkeys(squares, "b")})
 
 
 def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:

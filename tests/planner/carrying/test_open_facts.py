@@ -65,11 +65,9 @@ def test_an_object_that_was_never_moved_may_be_several() -> None:
 
 
 def test_an_object_with_reached_floor_all_around_leads_a_walking_robot_nowhere() -> None:
-    free = [row.replace("gg.", ".gg") if "gg" in row else row for row in WITH_A_THING]
-    for rows, fact in ((WITH_A_THING, ""), (free, "is more than one thing")):
-        model = felt(known_model(rows))
-        assert fact in nearest_open_fact(situation_of(model), (0.0, 0.0), FeelingScope(parting=False))
-        assert (fact == "") == (nearest_open_fact(situation_of(model), (0.0, 0.0), FeelingScope(parting=False)) == "")
+    situation = situation_of(felt(known_model(WITH_A_THING)))
+    assert "more than one thing" in nearest_open_fact(situation, (0.0, 0.0))
+    assert nearest_open_fact(situation, (0.0, 0.0), FeelingScope(parting=False)) == ""
 
 
 @pytest.mark.parametrize("verdict", [None, TaskVerdict.DONE, TaskVerdict.LIMIT, TaskVerdict.POSSIBLE_IF])
