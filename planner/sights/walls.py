@@ -28,7 +28,7 @@ MAX_THICK_WALL = 12  # squares of wall through which floor behind it makes a doo
 MAX_NICHE_WIDTH = 8  # squares: the floor of a niche is at most so wide; a convention
 NICHE_SHARE = 2  # times as wide is the room before a niche, at least: as a room is beside a door
 MAX_NICHE_DEPTH = 3  # squares: a niche widens to a room within so many; a convention
-MIN_THING_CONFIDENCE = 20  # percent: what is less likely an object is felt as wall (as in planner.goals.placement)
+MIN_LIKELY_OBJECT = 20  # percent: what is less likely an object is felt as wall (as in planner.goals.placement)
 
 
 class WallKind(StrEnum):
@@ -182,7 +182,7 @@ def _ground(model: WorldModel) -> Bools:
     """Return the floor to which the robot comes if all things that can be moved are moved away, theirs included."""
     ground: Bools = model.space.copy()
     for node in model.objects:
-        if node.confidence >= MIN_THING_CONFIDENCE and node.movable > 0:
+        if node.confidence >= MIN_LIKELY_OBJECT and node.movable > 0:
             ground |= model.mask(node.patch)
     row, column = model.view.locate(*model.place)
     ground[row, column] = True
@@ -213,7 +213,7 @@ def _things(model: WorldModel, embedded: bool = False) -> Bools:
     """Return the squares of objects that are likely enough; with `embedded` only of those that were never moved."""
     mask: Bools = np.zeros(model.labels.shape, np.bool_)
     for node in model.objects:
-        if node.confidence >= MIN_THING_CONFIDENCE and not (embedded and (node.moved or node.colour is None)):
+        if node.confidence >= MIN_LIKELY_OBJECT and not (embedded and (node.moved or node.colour is None)):
             mask |= model.mask(node.patch)
     return mask
 

@@ -6,6 +6,7 @@ door or a niche, floor shows where wall seemed to be, and so how far the object 
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import shapely
 
@@ -13,20 +14,21 @@ from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import FREE, OCCUPIED
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.mapping.patch import patch_of_polygon, patch_of_squares
-from kb.objects.held_object import HeldObject, is_grid_aligned
+from kb.objects.held_object import HeldObject, Square, is_grid_aligned
 
 MAX_HIDDEN_DEPTH = 8  # squares by which an object may go on in what seems to be wall; a bound on time
+BESIDE_END = range(-3, 4)  # squares about the end of an object: one field of 4 x 4 may show them together (derived)
 SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 
 def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
-    """Yield explanations that a push went as commanded and the object is larger than it seemed, the least larger first.
+    """Yield explanations that a push went as commanded and the object is larger than it seemed.
 
     At most one for each side. An object that fills a gap in a wall mostly goes on to the end of the wall: of the
     lengths that the observation agrees with, the greatest one over squares that were settled as occupied counts, if
-    there is one; else the least.
+    there is one; else the least; or a greater one where something stands now that only this accounts for.
 
     Only for an object that never moved before, with its sides on grid lines; nothing for a turn.
 
@@ -44,18 +46,61 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     """
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
-    agreeing = [list(_agreeing_lengths(surprise, held, motion, side)) for side in SIDE_DIRECTIONS]
-    for found in sorted((found for found in agreeing if found), key=lambda found: found[0][0].distance):
-        least, settled = found[0][0], [explanation for explanation, occupied in found if occupied]
-        yield (settled[-1] if settled else least)._replace(distance=least.distance)
+    for side in SIDE_DIRECTIONS:
+        agreeing = list(_agreeing_lengths(surprise, held, motion, side))
+        if agreeing:
+            yield _best_length(agreeing, surprise)._replace(distance=agreeing[0].explanation.distance)
+
+
+class _Length(NamedTuple):
+    """A length by which an object may go on to one side, with which the observation agrees.
+
+    Attributes
+    ----------
+    explanation : that it does.
+    occupied : whether all that was hidden had been settled as occupied.
+    floor : the map with floor in place of what was hidden.
+    held_objects : all held objects after the motion, the larger one last.
+    """
+
+    explanation: Explanation
+    occupied: bool
+    floor: OccupancyMap
+    held_objects: list[HeldObject]
+
+
+def _best_length(agreeing: list[_Length], surprise: Surprise) -> Explanation:
+    """Return the best of some lengths of an object to one side, given the least first.
+
+    It is the greatest over squares that had been settled as occupied, or else the least; but a greater one where
+    something stands at the end that only the greater one accounts for.
+    """
+    settled = [length for length in agreeing if length.occupied]
+    best = settled[-1] if settled else agreeing[0]
+    for length in agreeing[agreeing.index(best) + 1 :]:
+        lying, further = (patch_of_polygon(one.held_objects[-1].polygon).squares() for one in (best, length))
+        beside = {(x + i, y + j) for x, y in further - lying for i in BESIDE_END for j in BESIDE_END}
+        short, long = (_clashes_beside(one, beside, surprise) for one in (best, length))
+        if short and not long:
+            best = length
+    return best.explanation
+
+
+def _clashes_beside(length: _Length, squares: set[Square], surprise: Surprise) -> bool:
+    """Return whether the observation contradicts a length if nothing else stands on some squares that are open yet."""
+    floor = length.floor.copy()
+    open_ = {square for square in squares if floor.state[floor.index(*square)] == OPEN}
+    if open_:
+        patch = patch_of_squares(open_)
+        floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
+    place = length.explanation.place
+    return count_clashes(surprise.frame, floor, length.held_objects, place, surprise.ranges, only_whether=True) > 0
 
 
 def _agreeing_lengths(
     surprise: Surprise, held: HeldObject, motion: Translate, side: tuple[int, int]
-) -> Iterator[tuple[Explanation, bool]]:
-    """Yield each explanation by which the object goes on to one side, if the observation agrees, the least first.
-
-    With it comes whether all that was hidden had been settled as occupied.
+) -> Iterator[_Length]:
+    """Yield the lengths by which the object may go on to one side, if the observation agrees, the least first.
 
     surprise : the observation after the push. held : the object before it, map frame. motion : as commanded, map frame.
     side : one of SIDE_DIRECTIONS.
@@ -73,10 +118,8 @@ def _agreeing_lengths(
         floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
         held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
         if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
-            yield (
-                Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole),
-                states == {OCCUPIED},
-            )
+            found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
+            yield _Length(found, states == {OCCUPIED}, floor, held_objects)
 
 
 def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:
