@@ -2,7 +2,7 @@
 
     python -m benchmarks.plugs --count 10 [--kind flush,two] [--task next] [--jobs J] [-o results.jsonl] [--keep FOLDER]
 
-Every world of benchmarks.worlds.doorplugs is run with and without pulling. A world counts as possible when it was
+Every world of benchmarks.worlds.filled.doorplugs is run with and without pulling. A world counts as possible when it was
 achieved, or when a search that knows the true world finds a plan (benchmarks.claims.refute). The table goes to stdout,
 progress to stderr; the exit code is 0 when no claim was false and the judge found nothing.
 """
@@ -22,7 +22,7 @@ from pathlib import Path
 from benchmarks.claims import child
 from benchmarks.claims.refute import searched
 from benchmarks.claims.run import Limits, judged, run_child, warm_up
-from benchmarks.worlds.doorplugs import PLUG_KINDS, PLUG_TASKS, plugged_world
+from benchmarks.worlds.filled.doorplugs import PLUG_KINDS, PLUG_TASKS, plugged_world
 from benchmarks.worlds.odd.tasks import NO
 from benchmarks.worlds.scenes import write
 

@@ -16,7 +16,8 @@ from kb.language.reader import facts_from_text
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH
 from kb.mapping.patch import Patch
 from kb.world.model import Node
-from planner.deciding.clearing import TRIAL_PUSH, Obstacle, ObstacleClearer, obstacles
+from planner.deciding.clearing import ObstacleClearer
+from planner.deciding.obstacles import TRIAL_PUSH, Obstacle, obstacles
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from planner.situation import Situation

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.worlds.doorplugs import plugged_world
+from benchmarks.worlds.filled.doorplugs import plugged_world
 from benchmarks.worlds.scenes import write
 from kb.body import Move
 from kb.language.reader import facts_from_text

@@ -1,6 +1,6 @@
 """Doorways that movable things fill from jamb to jamb, and closed rooms without a door, everything on whole squares.
 
-python -m benchmarks.worlds.doorplugs --kind flush,two --task next --seed 0 --count 3 -o FOLDER
+python -m benchmarks.worlds.filled.doorplugs --kind flush,two --task next --seed 0 --count 3 -o FOLDER
 """
 
 import argparse
@@ -116,7 +116,7 @@ def _across(plan: House, wall: int, low: float, high: float) -> Polygon:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write scenario folders and print their names."""
     parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.worlds.doorplugs", description="Write scenarios with filled doorways."
+        prog="python -m benchmarks.worlds.filled.doorplugs", description="Write scenarios with filled doorways."
     )
     parser.add_argument("--kind", default=",".join(PLUG_KINDS), help="kinds with commas between (all)")
     parser.add_argument("--task", default=",".join(PLUG_TASKS), help="tasks with commas between (all)")
