@@ -2,7 +2,7 @@
 
     python -m benchmarks.plugs --count 10 [--kind flush,two] [--task next] [--jobs J] [-o results.jsonl] [--keep FOLDER]
 
-Every world of benchmarks.worlds.filled.doorplugs is run with and without pulling. A world counts as possible when it was
+Worlds of benchmarks.worlds.filled.doorplugs are run with and without pulling. A world counts as possible when it was
 achieved, or when a search that knows the true world finds a plan (benchmarks.claims.refute). The table goes to stdout,
 progress to stderr; the exit code is 0 when no claim was false and the judge found nothing.
 """
