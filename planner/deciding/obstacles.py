@@ -13,7 +13,7 @@ from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
 from geometry.raster.components import components, with_edge_neighbours
-from geometry.raster.geodesic import GEODESIC_UNREACHED
+from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
 from kb.world.model import Node, WorldModel
 from planner.goals.embedded import Supposition, supposed_in_walls
 from planner.goals.placement import NOOK_RANGE, floor_leads_away, mask_to_polygon, pull_out_pose
@@ -21,6 +21,7 @@ from planner.navigation.routes import PlannedRoute, find_routes
 from planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
 from planner.situation import Situation
 
+MIN_WAY_BEYOND = 6  # squares: an object that is moved just so far within a doorway still blocks it; a convention
 TRIAL_PUSH = 1.0  # squares by which a thing is pushed into a wall to see whether it goes; a convention
 
 
@@ -52,9 +53,10 @@ def obstacles(
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free.
 
-    The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route. For an
-    object that may go on in a wall it is that first, for the object as it lies if it does. Then it is At: a translation
-    (x, y) in squares from where it lies, out of the wall, and after that further into it.
+    The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route; first
+    off one that goes on a while behind the object, then off the shortest one. For an object that may go on in a wall it
+    is the latter, for the object as it lies if it does. Then it is At: a translation (x, y) in squares from where it
+    lies, out of the wall, and after that further into it.
 
     Parameters
     ----------
@@ -75,12 +77,15 @@ def obstacles(
         together = np.any(under, axis=0)
         found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation, walls)]
     for thing, way in sorted(found, key=lambda pair: pair[1].length):
-        yield Obstacle(thing, _off_route(thing, way, situation), situation)
+        for route in (*_routes_opened(model.mask(thing.patch), situation, walls, MIN_WAY_BEYOND), way):
+            yield Obstacle(thing, _off_route(thing, route, situation), situation)
     if not found:
         yield from hidden_in_walls(things, situation, parting)
 
 
-def _routes_opened(under: Bools, situation: Situation, walls: Bools | None = None) -> list[PlannedRoute]:
+def _routes_opened(
+    under: Bools, situation: Situation, walls: Bools | None = None, further: int = 0
+) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
 
     At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
@@ -88,11 +93,12 @@ def _routes_opened(under: Bools, situation: Situation, walls: Bools | None = Non
     A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
     level, 0 the surest.
 
-    It leads to the nearest such floor, over the shortest way by the grid of squares.
+    It leads to the nearest such floor, or `further` squares on, over the shortest way by the grid of squares.
 
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
     situation : what is believed: world model, rooms, doors, corners and track.
     walls : (rows, columns) bool on the arrays of the view: a nook beside one of these squares counts; None for none.
+    further : how many squares further than the nearest such floor the route leads, if there is floor so far.
     """
     without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
     beyond = (
@@ -103,7 +109,9 @@ def _routes_opened(under: Bools, situation: Situation, walls: Bools | None = Non
     worth = walls is not None and (with_edge_neighbours(beyond) & walls).any()
     if not worth and not floor_leads_away(beyond, under):
         return []
-    return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(beyond), "grid")
+    far = np.where(beyond, without.distances[UNSEEN_LEVEL], 0)
+    least = int(far[beyond].min()) + further * FIFTHS_PER_SQUARE
+    return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(far >= min(least, int(far.max()))), "grid")
 
 
 def _off_route(thing: Node, way: PlannedRoute, situation: Situation) -> Inside:

@@ -82,7 +82,7 @@ def found_in(situation: Situation) -> list[Obstacle]:
 
 def test_an_object_before_the_only_door_is_an_obstacle() -> None:
     situation = known(BEFORE)
-    (node,), (found,) = situation.model.objects, found_in(situation)
+    (node,), (found, *_) = situation.model.objects, found_in(situation)
     assert found.node == node
     assert isinstance(found.aside, Inside)
     shape = to_view_frame(node.polygon, situation)
