@@ -16,6 +16,7 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "aims": ("choose", "this subgoal was chosen"),
     "routes": ("choose", "this route was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
+    "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),
 }
 STEP_WORDS = ("first", "then")  # goals that are steps of a sequence

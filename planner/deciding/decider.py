@@ -22,6 +22,7 @@ from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
+from planner.deciding.feeling import feeling_scope
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -148,8 +149,9 @@ class Decider:
             if decision is not None:
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
-                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
-                return replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
+                if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
+                    return replace(decision, verdict=TaskVerdict.LIMIT)
+                return qualify(decision, situation, feeling_scope(stage, situation))
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"
@@ -173,7 +175,7 @@ class Decider:
         """
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
-            return conflict
+            return self._clearer.open_walls(conflict, stage.carried, stage, situation, self._tools)
         situation = self._errands.update(stage, situation, self._transporter, self._tools)
         if self._errands.is_shut_out:
             why = f"{stage} cannot be attained: {self._errands.blamed}"
@@ -186,8 +188,8 @@ class Decider:
             if decision is None:
                 continue
             decision = self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
-            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever else is moved or hidden in walls
-                return decision
+            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever is moved that was seen
+                return self._clearer.open_walls(decision, (goal,), stage, situation, self._tools)
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
         decision = self._go(stage, situation, reconciled, track) if stage.own else None
         if decision is None:

@@ -1,7 +1,7 @@
 """Task plans in worlds that are known: how near to the best, and how long they take.
 
-    python -m benchmarks.planning optimum [--count 30] [--seed S]
-    python -m benchmarks.planning rooms [--count 12] [--seed S]
+    python -m benchmarks.orders.planning optimum [--count 30] [--seed S]
+    python -m benchmarks.orders.planning rooms [--count 12] [--seed S]
 
 `optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block others.
 The plan is compared with the cheapest sequence of errands that a search over all states finds which has the same places
