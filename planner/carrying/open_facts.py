@@ -82,7 +82,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     situation : what is believed (world model, rooms, doors, corners, track).
     near : (x, y) in squares, view frame.
     scope : which walls matter for the task. Where no wall between two parts of the floor does, objects all around which
-        the floor is reached do not either.
+        the floor is reached do not either, unless the task speaks of objects.
     """
     model, reached = situation.model, situation.cost_maps.floor
     walls = walls_in_question(model, reached, scope).values()
@@ -93,7 +93,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
     unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
-    if not scope.parting:
+    if not scope.parting and not scope.things:
         masks = {node.name: model.mask(node.patch) for node in unmoved}
         unmoved = [node for node in unmoved if (dilate(masks[node.name], 1) & ~masks[node.name] & ~reached).any()]
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""

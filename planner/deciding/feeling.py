@@ -45,7 +45,9 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
     parting = bool(stage.carried) or track or bool(forbidden)
     allowed = _floor_this_side(forbidden, situation) if forbidden else None
-    return FeelingScope(parting, None if stage.carried or track else _wanted(stage, situation), allowed)
+    wanted = None if stage.carried or track else _wanted(stage, situation)
+    things = any(situation.task.is_object(str(term)) for goal in stage.goals for term in goal.args)
+    return FeelingScope(parting, wanted, allowed, things)
 
 
 def _wanted(stage: Stage, situation: Situation) -> Bools | None:

@@ -82,11 +82,13 @@ class FeelingScope(NamedTuple):
     wanted : (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is
         not known where. Then walls count alone behind which that place lies, with no reached floor all around.
     allowed : (rows, columns) bool, the floor on which the robot may go; None for all that it reaches.
+    things : whether the task speaks of objects: what seems to be one thing may be two, and one of them the one meant.
     """
 
     parting: bool = True
     wanted: Bools | None = None
     allowed: Bools | None = None
+    things: bool = True
 
 
 ALL_WALLS = FeelingScope()
