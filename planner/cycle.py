@@ -340,9 +340,17 @@ class Robot:
         places = Places(self.decider.rooms, self.decider.corners)
         task = self.decider.task
         objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
-        believed = belief(self.model, places, accommodated, self.decider.bound, objects)
+        planned = self._planned_facts()
+        believed = belief(self.model, places, accommodated, self.decider.bound, objects, planned)
         believed |= self._journal.entry(decisions, self.knowledge.memory)
         return StepReport(command, impression, believed, why)
+
+    def _planned_facts(self) -> tuple[str, ...]:
+        """Return the task plan that is followed, as facts; or which goals none attains, and what was refuted."""
+        plan, attempt = self.decider.plan, self.decider.attempt
+        if plan is not None and self.decision.command is not None:
+            return plan.facts
+        return attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
 
     def _test(self) -> None:
         """Finish when the task is done, when it cannot be done, or when the limit of commands is reached (step 8).

@@ -13,6 +13,7 @@ class SubgoalKind(StrEnum):
     EXPLORE : the squares are a frontier: they border on squares that were never seen.
     PASS : the way to the squares leads over squares that are only assumed to be free.
     SETTLE : from the squares the robot sees a boundary of the floor that was seen coarsely.
+    FEEL : from the squares the robot feels walls that may be things.
     """
 
     ATTAIN = "attain"
@@ -20,3 +21,4 @@ class SubgoalKind(StrEnum):
     EXPLORE = "explore"
     PASS = "pass"
     SETTLE = "settle"
+    FEEL = "feel"

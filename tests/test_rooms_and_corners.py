@@ -103,7 +103,7 @@ def test_done_is_never_claimed_before_a_slanted_door(seed: int, tmp_path: Path) 
 
 def test_an_opening_that_is_no_door_is_named(tmp_path: Path) -> None:
     _, result = episode(tmp_path, WIDE_OPENING, "", IN_THE_NEXT_ROOM)
-    assert result["verdict"] == "possible_if"  # its walls were never touched
+    assert result["verdict"] == "impossible"  # all its walls were felt
     assert "the opening 5.0 squares wide at POINT (12.5 -3.0) is none" in result["reason"]
     assert "for the floor behind it is nowhere wider than 9.7, less than twice as wide" in result["reason"]
 

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from kb.body import Command, Impression
+from kb.language.diagnostics import BadInputError
+from kb.world.stated_plan import StatedPlan, stated_plan
 from simulator.episode.episode import Episode as EpisodeRecord
 from simulator.episode.episode import EpisodeLog
 from simulator.episode.record import action_entry, header
@@ -19,14 +21,14 @@ from simulator.terminal.action_in_words import describe
 from utak.beliefs import World
 from utak.episode import Episode, Step
 from utak.errors import RunNotRepeatedError
-from utak.markup import framed
+from utak.markup import framed, table
 from utak.mind import Mind, mind_maker
 from utak.scenario import Scenario
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan after a step.
+    """The plan after a step. It prints itself, and shows itself in notebooks as a table.
 
     Attributes
     ----------
@@ -38,18 +40,43 @@ class Plan:
         The symbolic plan, as facts without full stops; () where the mind states none.
     route : tuple of (east, north)
         The way that was chosen for it, in squares, robot frame; () where none was weighed.
+    task : kb.world.stated_plan.StatedPlan or None
+        The task plan that the steps are of: `goals`, `steps`, `refutations`, `cost`, `least`, `proved`, `gap`. Where
+        no plan was found, `found` is False, and the goals tell which are not attained; None where nothing is known.
     """
 
     command: Command | None
     why: str
     steps: tuple[str, ...] = ()
     route: tuple[tuple[float, float], ...] = ()
+    task: StatedPlan | None = None
 
     def __str__(self) -> str:
-        """Return the next command with its reason, and the steps below."""
-        return "\n".join(
-            [f"{describe(action_entry(self.command)) if self.command else 'end'}: {self.why}", *self.steps]
-        )
+        """Return the next command with its reason, and the task plan below."""
+        below = self.steps if self.task is None else tuple(self.task.lines())
+        return "\n".join([f"{self._next}: {self.why}", *below])
+
+    def __repr__(self) -> str:
+        """Return the plan as `print` shows it, so that it can be read at a prompt."""
+        return str(self)
+
+    @property
+    def _next(self) -> str:
+        """The next command in words."""
+        return describe(action_entry(self.command)) if self.command else "end"
+
+    def _repr_html_(self) -> str:
+        """Return the plan for notebooks: the next command, and a table of the steps of the task plan."""
+        shown = f"<p>next: <b>{escape(self._next)}</b>: {escape(self.why)}</p>"
+        if self.task is None:
+            return shown + "".join(f"<div><code>{escape(step)}</code></div>" for step in self.steps)
+        rows = [
+            (one.number, one.step, one.words, ", ".join(one.doors), one.commands or "", one.certainty)
+            for one in self.task.steps
+        ]
+        shown += table(("", "step", "what", "doors", "commands", "geometry"), rows)
+        others = [line for line in self.task.lines() if line.startswith(("goal ", "cost:", "refuted:"))]
+        return shown + "".join(f"<div>{escape(line)}</div>" for line in others)
 
 
 class Run:
@@ -251,17 +278,19 @@ class Run:
 
     @property
     def plan(self) -> Plan:
-        """The plan now: the next command and why, and the way that was chosen for it."""
+        """The plan now: the next command and why, the way that was chosen for it, and the task plan."""
         belief = self._lines[-1].get("belief", {})
-        steps = tuple(fact.removesuffix(".") for fact in belief.get("facts", ()) if fact.startswith("plan("))
+        facts = tuple(belief.get("facts", ()))
+        steps = tuple(fact.removesuffix(".") for fact in facts if fact.startswith("plan("))
+        task = _task_plan(facts)
         chosen = next((route["points"] for route in belief.get("routes", ()) if route["chosen"]), ())
         route = tuple((float(east), float(north)) for east, north in chosen)
         if self._result is not None:
-            return Plan(None, str(self._result["reason"]), steps)
+            return Plan(None, str(self._result["reason"]), steps, (), task)
         if self._session is None:  # a step was interrupted
             self._session = self._repeated()
         robot: Any = self._session.robot
-        return Plan(robot.decision.command, robot.decision.why, steps, route)
+        return Plan(robot.decision.command, robot.decision.why, steps, route, task)
 
     @property
     def finished(self) -> bool:
@@ -317,6 +346,14 @@ class Run:
     def _repeated(self) -> Session:
         """Return a new session at the last complete step of this run."""
         return _repeat(self._begin, self._lines[self._first_own :])
+
+
+def _task_plan(facts: Sequence[str]) -> StatedPlan | None:
+    """Return the task plan that facts state; None for none, and for facts of a mind's own that are no task plan."""
+    try:
+        return stated_plan(facts)
+    except BadInputError:
+        return None
 
 
 def _begin(scenario: Scenario, settings: Settings, make: RobotMaker) -> Session:

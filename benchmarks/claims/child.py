@@ -25,6 +25,7 @@ def main() -> None:
     parser.add_argument("--max-steps", type=int, default=200)
     parser.add_argument("--seconds", type=int, default=0, help="of the processor; 0: no limit")
     parser.add_argument("--megabytes", type=int, default=0, help="of address space; 0: no limit")
+    parser.add_argument("--no-pull", action="store_true", help="objects may only be pushed")
     given = parser.parse_args()
     if given.seconds:
         resource.setrlimit(resource.RLIMIT_CPU, (given.seconds, given.seconds + 5))
@@ -32,13 +33,14 @@ def main() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (given.megabytes << 20,) * 2)
     from simulator.run.robots import make_robot  # imported within the limits
 
-    run(given.folder, given.noise, given.noise_seed, given.max_steps, make_robot)
+    run(given.folder, given.noise, given.noise_seed, given.max_steps, make_robot, not given.no_pull)
 
 
-def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "RobotMaker") -> None:
+def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "RobotMaker", pull: bool = True) -> None:
     """Run a robot in the scenario of a folder and write the three files.
 
     make : makes the robot, as `simulator.run.robots.make_robot` does.
+    pull : whether a held object may be pulled.
     """
     from benchmarks.harness.stopwatch import TimedBody, TimedRobot
     from kb.body import Body
@@ -55,7 +57,7 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "Robo
         robots.append(TimedRobot(make(timed, told, settings), timed))
         return robots[0]
 
-    settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps)
+    settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps, pull=pull)
     with EpisodeLog(folder / EPISODE_FILE) as log, (folder / CYCLES_FILE).open("w") as cycles:
 
         def noted(session: Session) -> None:

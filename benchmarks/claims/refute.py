@@ -38,21 +38,14 @@ class Claims(NamedTuple):
 def searched(folder: Path, seconds: int, pull: bool = True) -> Countersearch:
     """Search for a plan in the scenario of a folder with the true world known, for at most `seconds`.
 
-    pull : whether the plan may pull things.
+    pull : whether a held object may be pulled.
     """
     judge = judge_path()
     program = judge and judge.with_name("countersearch.py")
     if program is None or not program.is_file():
         return Countersearch("absent")
-    call = [
-        sys.executable,
-        str(program),
-        str(folder),
-        "--seconds",
-        str(seconds),
-        "--plan",
-        *(() if pull else ("--no-pull",)),
-    ]
+    call = [sys.executable, str(program), str(folder), "--seconds", str(seconds), "--plan"]
+    call += ["--no-pull"] * (not pull)
     try:
         done = subprocess.run(call, capture_output=True, text=True, timeout=10 * seconds + 60)
     except subprocess.TimeoutExpired:

@@ -30,7 +30,10 @@ OUT_OF_TIME = (-24, -9)  # SIGXCPU, SIGKILL
 
 @dataclass(frozen=True)
 class Limits:
-    """The conditions of all runs: noise, its seed, and limits of commands, processor time, memory and search."""
+    """The conditions of all runs: noise, its seed, limits of commands, processor time, memory and search.
+
+    pull : whether a held object may be pulled.
+    """
 
     noise: float = 0.0
     noise_seed: int = 0
@@ -38,6 +41,7 @@ class Limits:
     seconds: int = 120
     megabytes: int = 6000
     search: int = 30
+    pull: bool = True
 
 
 def run_child(place: Path, limits: Limits) -> str:
@@ -49,7 +53,7 @@ def run_child(place: Path, limits: Limits) -> str:
         "--seconds": limits.seconds,
         "--megabytes": limits.megabytes,
     }
-    given = [part for name, value in options.items() for part in (name, str(value))]
+    given = [part for name, value in options.items() for part in (name, str(value))] + ["--no-pull"] * (not limits.pull)
     call = isolated_command("benchmarks.claims.child", str(place.resolve()), *given)
     with (place / ERRORS).open("w") as errors:
         try:
@@ -84,7 +88,7 @@ def run_world(
     if told and trespassed(place / child.EPISODE_FILE, known.avoid):
         unmet.append("the robot was where the goal forbids it to be")
         achieved = False
-    search = searched(place, limits.search) if verdict == "impossible" else Countersearch("")
+    search = searched(place, limits.search, limits.pull) if verdict == "impossible" else Countersearch("")
     claims = refuted(verdict, believed, achieved, unmet, known.possible, search)
     row = ClaimRow(
         kind=asked.kind,
@@ -100,7 +104,7 @@ def run_world(
         achieved=achieved,
         commands=steps,
         cycles=cycles[1:],
-        judged=_judged(place) if told else None,
+        judged=judged(place) if told else None,
         countersearch=search.answer,
         false_done=claims.false_done,
         false_impossible=claims.false_impossible,
@@ -152,7 +156,7 @@ def _last_line(place: Path) -> str:
     return lines[-1] if lines else ""
 
 
-def _judged(place: Path) -> list[str] | None:
+def judged(place: Path) -> list[str] | None:
     """Run the judge in a process of its own and return its findings; None without a judge."""
     judge = judge_path()
     if judge is None:

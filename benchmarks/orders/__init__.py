@@ -10,4 +10,5 @@ row          the result of one run
 run          one run of the robot, judged
 table        the table of results, and why runs failed
 __main__     the program
+planning    task plans in worlds that are known: how near to the best, and how long they take
 """

@@ -13,4 +13,5 @@ loose       worlds with objects off the grid
 makers      all of these by kind, task and seed
 six_rooms   worlds of six rooms
 odd         odd worlds (a package)
+filled      worlds whose doorways are filled (a package)
 """

@@ -8,6 +8,7 @@ sightings  which cells of which impressions show a square
 witness    reasons that are cells: why a square, an outline or a colour is believed
 proving    proof trees of encodings as reasons
 inputs     reasons for what encodings were given
+plans      reasons for the facts of the task plan
 beliefs    reasons for the facts of the world model
 absences   why facts are not believed: what is missing or in the way
 goals      reasons for commands and verdicts

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.inputs import Given, input_reason
+from kb.evidence.plans import planned_choice
 from kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
 from kb.evidence.reason import Reason, ReasonKind
 from kb.explanation.query_absence import explain_query_absence
@@ -103,6 +104,8 @@ class AbsenceExplainer:
             yield from self._opening(step)
         elif name == "corner" and len(arguments) == 3:
             yield from self._corner(arguments, step)
+        elif name == "plan" and len(arguments) == 2:
+            yield from planned_choice(self._facts.record, arguments[0], arguments[1], step)
 
     def _calls(self, encoding: str, atom: str, step: int, needs: str) -> Iterator[tuple[SolverCall, str]]:
         """Yield the newest answer of an encoding at a step whose facts have one that begins with `needs`."""

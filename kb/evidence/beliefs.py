@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from kb.evidence.inputs import Given, input_reason, squares_reason
+from kb.evidence.plans import TASK_PLAN_NAMES, plan_fact_reason
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
@@ -73,6 +74,8 @@ class FactExplainer:
         name, arguments = atom_parts(fact)
         if name == "parameter":
             return Reason(fact, words_of("belief", fact), ReasonKind.TASK, "the task")
+        if name in TASK_PLAN_NAMES:
+            return plan_fact_reason(self, fact, step)
         below = self._below(fact, name, arguments, step)
         return Reason(fact, words_of("belief", fact), ReasonKind.FACT, f"step {step}", tuple(below))
 

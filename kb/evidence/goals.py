@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from kb.evidence.beliefs import ROBOT_ALIAS, FactExplainer
+from kb.evidence.plans import plan_step_reasons
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.language.atoms import atom_parts
@@ -16,6 +17,7 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "aims": ("choose", "this subgoal was chosen"),
     "routes": ("choose", "this route was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
+    "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),
 }
 PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
@@ -60,26 +62,28 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
     Returns
     -------
     Reason
-        It rests on the goals with the facts that they are about, on what parameters mean, and on the choices of the
-        planner's encodings, each with the alternatives that were not chosen or were refuted.
+        It rests on the step of the task plan that it serves, on the goals with the facts that they are about, on what
+        parameters mean, and on the choices of the planner's encodings, each with the alternatives that were not chosen
+        or were refuted.
     """
     now = beliefs.record.steps[step]
     if now.action is None:
         return Reason("the robot wakes", "every run begins so", ReasonKind.CONVENTION, "step 0")
     command = command_reason(now)
-    below = (*_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
+    planned = plan_step_reasons(beliefs, step - 1)
+    below = (*planned, *_goal_reasons(beliefs, task, step - 1), *_choices(beliefs, step - 1))
     return Reason(command.claim, now.why, ReasonKind.COMMAND, f"step {step}", below, command.data)
 
 
 def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
-    """Return the reason of the verdict, with the goals, the facts that they are about and the last choices.
+    """Return the reason of the verdict: what was planned, the goals with the facts they are about, the last choices.
 
     None while the run goes on.
     """
     if task.result is None:
         return None
     last = len(beliefs.record.steps) - 1
-    below = (*_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
+    below = (*plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
     claim = f"verdict({task.result['verdict']})"
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 

@@ -10,13 +10,14 @@ from kb.evidence.record import Record
 from kb.evidence.witness import command_reason, felt_reason, line_squares, node_squares, seen_reason
 from kb.language.atoms import atom_parts
 from kb.tracing.decisions import SolverCall
-from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, VERGE_NODE
+from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
 TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "not_through"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
+WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # task.lp is given these as facts
 
 
 class Given(NamedTuple):
@@ -81,6 +82,8 @@ def _below(
         return [command_reason(record.steps[step])]
     if encoding == "reconciliation":
         return _property_reasons(record, step, name, arguments, fact_reason)
+    if encoding == "task":
+        return _plan_reasons(record, given, name, arguments, fact_reason)
     return []
 
 
@@ -160,6 +163,34 @@ def _corner_reasons(record: Record, step: int, arguments: tuple[str, ...]) -> li
     floor = set(node_squares(record.steps[step], FLOOR_NODE))
     inside = [square for square in around if square in floor] or around
     return [seen_reason(record, step, inside, False, f"the floor at the corner ({east:g}, {north:g})")]
+
+
+def _plan_reasons(
+    record: Record,
+    given: Given,
+    name: str,
+    arguments: tuple[str, ...],
+    fact_reason: Callable[[str, int], Reason | None],
+) -> list[Reason]:
+    """Return the reasons of what task.lp is given: facts of the world model; [] for what geometry measured."""
+    facts: list[str] = []
+    if name in WORLD_INPUTS:
+        facts = [given.atom]
+    elif name == "thing":
+        facts = [fact for fact in record.steps[given.step].facts if fact.startswith(f"movable({arguments[0]},")]
+    elif name == "lies" and arguments[1] == "here":
+        facts = [f"in({ROOT_NODE if arguments[0] == 'utak' else arguments[0]},{arguments[2]})"]
+    found = [fact_reason(fact, given.step) for fact in facts]
+    if name == "goal" and not any(found):  # no plan attains all goals, so the facts name none
+        return [
+            Reason(about, "", ReasonKind.TASK, "the task") for about in given.call.about if _names(about, arguments)
+        ]
+    return [reason for reason in found if reason is not None]
+
+
+def _names(about: Any, arguments: tuple[str, ...]) -> bool:
+    """Return whether what the record says of a candidate begins with the name of a goal, such as `g1: ...`."""
+    return isinstance(about, str) and about.startswith(f"{arguments[0]}: ")
 
 
 def _property_reasons(

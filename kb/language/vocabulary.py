@@ -205,7 +205,44 @@ CONFIDENCE_ARGUMENT = integer_argument("a confidence", 0, 100)  # percent
 LENGTH_ARGUMENT = integer_argument("a length in hundredths of squares", -(2**31), 2**31 - 1)  # Utak's frame
 COUNT_ARGUMENT = integer_argument("a count", 0, 2**31 - 1)  # any 32-bit count
 KIND_ARGUMENT = word_argument("kind", ("utak", "floor", "verge", "object"))  # the kinds of nodes
+SEARCH_ENDS = ("proved", "found")  # whether the search for a plan ended with it, or at its bound on rounds
 NEVER_OBJECTS = frozenset({"org", "floor", "verge"})  # nodes without a shape class, colour and movability
+# A goal of the task plan, as a name: g1, g2, ... in the order of the task; users' rules may add others.
+GOAL_NAME_ARGUMENT = ArgumentType("name of a goal", NAME_ARGUMENT.check)
+# A goal of the task plan as the task states it.
+TASK_GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
+# A place of the task plan: `here`, a place where a goal holds (g1_...), or a spot that the planner chose.
+PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
+# The steps of the task plan (planner/asp/task.lp).
+STATED_STEPS: Vocabulary = {
+    "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
+    "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
+    "arrive": (PLANNED_PLACE_ARGUMENT,),
+}
+PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
+# The circumstances on which a refutation rests.
+CIRCUMSTANCES: Vocabulary = {
+    "at": (NAME_ARGUMENT, PLANNED_PLACE_ARGUMENT),
+    "stood": (NAME_ARGUMENT,),
+    "shut": (DOOR_ARGUMENT,),
+}
+CIRCUMSTANCE_ARGUMENT = fact_argument("a circumstance", CIRCUMSTANCES)
+# The predicates of the task plan (planner.tasking.task_plan); they are stated as long as there is a plan.
+PLAN_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
+    ("goal", 1): BeliefPredicate((GOAL_NAME_ARGUMENT,), Openness.NEVER),
+    ("means", 2): BeliefPredicate((GOAL_NAME_ARGUMENT, TASK_GOAL_ARGUMENT), Openness.NEVER),
+    ("unmet", 1): BeliefPredicate((GOAL_NAME_ARGUMENT,), Openness.NEVER),
+    ("plan", 2): BeliefPredicate((COUNT_ARGUMENT, PLAN_STEP_ARGUMENT), Openness.NEVER),
+    ("serves", 2): BeliefPredicate((COUNT_ARGUMENT, GOAL_NAME_ARGUMENT), Openness.NEVER),
+    ("passes", 2): BeliefPredicate((COUNT_ARGUMENT, DOOR_ARGUMENT), Openness.NEVER),
+    ("takes", 2): BeliefPredicate((COUNT_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
+    ("verified", 1): BeliefPredicate((COUNT_ARGUMENT,), Openness.NEVER),
+    ("price", 3): BeliefPredicate(
+        (COUNT_ARGUMENT, COUNT_ARGUMENT, word_argument("end of a search", SEARCH_ENDS)), Openness.NEVER
+    ),
+    ("refuted", 2): BeliefPredicate((PLAN_STEP_ARGUMENT, COUNT_ARGUMENT), Openness.NEVER),
+    ("given", 2): BeliefPredicate((COUNT_ARGUMENT, CIRCUMSTANCE_ARGUMENT), Openness.NEVER),
+}
 # The predicates of the world model (kb/asp/belief.lp), and object/1; by name and number of arguments.
 BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("node", 1): BeliefPredicate((THING_ARGUMENT,), Openness.UNSEEN),
@@ -263,6 +300,7 @@ BELIEF_PREDICATES: Mapping[tuple[str, int], BeliefPredicate] = {
     ("crosses", 2): BeliefPredicate((LINK_ARGUMENT, DOOR_ARGUMENT), Openness.UNSEEN),
     ("parameter", 1): BeliefPredicate((TASK_PARAMETER_ARGUMENT,), Openness.NEVER),
     ("bound", 2): BeliefPredicate((TASK_PARAMETER_ARGUMENT, OBJECT_ARGUMENT), Openness.UNBOUND),
+    **PLAN_PREDICATES,
 }
 
 

@@ -83,6 +83,57 @@ def separate_things(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[B
     return things
 
 
+def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], solid: Bools) -> list[Bools]:
+    """Return some things that stick out, and those that stand in a gap of a wall, as far as they were felt.
+
+    A thing in a gap of a wall has just the squares on which it was felt: those of one colour that share edges. How far
+    it goes on in the wall cannot be seen. Where they share an edge with a thing of that colour that sticks out, they
+    belong to it, with all that is solid in the rectangle about them.
+
+    Parameters
+    ----------
+    things : list of (rows, columns) bool
+        The things that stick out, as of `separate_things`.
+    felt : mapping of (row, column) to str
+        The colour of each square that was felt; VERGE_TOUCH_COLOUR where it was verge.
+    solid : (rows, columns) bool
+        Squares of what bounds the floor.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The things that stick out, in their order, then the others in the order of their colours and squares.
+    """
+    found = list(things)
+    for colour in sorted(set(felt.values()) - {VERGE_TOUCH_COLOUR}):
+        mask = np.zeros(solid.shape, np.bool_)
+        for place, other in felt.items():
+            mask[place] = other == colour and not any(thing[place] for thing in things)
+        parts = components(mask)
+        for n in range(1, parts.number + 1):
+            part: Bools = parts.labels == n
+            near = with_edge_neighbours(part)
+            like = [
+                number
+                for number, thing in enumerate(found)
+                if (thing & near).any() and any(thing[place] and other == colour for place, other in felt.items())
+            ]
+            if not like:
+                found.append(part)
+                continue
+            found[like[0]] = _within_rectangle(found[like[0]] | part, solid, felt)
+    return found
+
+
+def _within_rectangle(thing: Bools, solid: Bools, felt: Mapping[RowColumn, str]) -> Bools:
+    """Return a thing with all that is solid in its containing rectangle, unless verge was felt there: then itself."""
+    rows, columns = np.flatnonzero(thing.any(1)), np.flatnonzero(thing.any(0))
+    mask: Bools = np.zeros_like(thing)
+    mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = True
+    mask &= solid
+    return thing if any(mask[place] and colour == VERGE_TOUCH_COLOUR for place, colour in felt.items()) else mask
+
+
 def untouched_parts(parts: list[Bools], felt: Mapping[RowColumn, str]) -> list[Bools]:
     """Return what of some parts may be a thing, or more of one, and was not felt yet.
 

@@ -31,6 +31,7 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("short", 1): ("boldness",), ("aside", 1): ("boldness",), ("route", 4): ("routes",), ("through", 2): ("routes",),
     ("not_through", 1): ("routes",), ("option", 4): ("transport",), ("refuted", 3): ("transport",),
     ("undecided", 3): ("transport",), ("hopeless", 0): ("transport",), ("try", 3): ("transport",),
+    ("halt", 3): ("feel",), ("tells", 4): ("feel",), ("feel", 1): ("feel",),
     ("unlikely", 2): ("accommodation",), ("odd", 1): ("accommodation",), ("crooked", 2): ("accommodation",),
     ("stands", 0): ("accommodation",), ("met", 1): ("accommodation",), ("off_middle", 0): ("accommodation",),
     ("trust", 1): ("accommodation",), ("slips", 0): ("accommodation",), ("proven", 0): ("accommodation",),

@@ -7,7 +7,7 @@ separate process, by kb.reasoning.user_rules.
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import clingo
 
@@ -26,6 +26,9 @@ def encoding_path(name: str) -> Path:
     if found is None:
         raise FileNotFoundError(f"there is no encoding {name}")
     return found
+
+
+MAX_BOUNDED_SECONDS = 600.0  # of wall-clock time; against a search that hangs, never reached within the conflicts
 
 
 class EncodingError(Exception):
@@ -61,17 +64,53 @@ def solve(
     CannotOpenError : a file with users' rules cannot be read.
     """
     given = tuple(facts)
-    answer = _answer(tuple(files), given, seconds)
+    answer = _answer(tuple(files), given, seconds, None).atoms
     note_answer(files, given, answer, about)
     return None if answer is None else list(answer)
 
 
+class BoundedAnswer(NamedTuple):
+    """The best answer set that a bounded search found.
+
+    Attributes
+    ----------
+    atoms : its shown atoms, clingo symbols sorted by their text; None when none was found.
+    proved : whether the search ended: then no answer set is better, or there is none.
+    """
+
+    atoms: tuple[clingo.Symbol, ...] | None
+    proved: bool
+
+
+def solve_within(
+    files: Sequence[Path], facts: Iterable[str], conflicts: int, about: Sequence[Any] = ()
+) -> BoundedAnswer:
+    """Return the best answer set that is found within a number of conflicts, which is the same on every machine.
+
+    With users' rules the limits of kb.reasoning.user_rules count instead.
+
+    Parameters
+    ----------
+    files, facts, about : as for `solve`.
+    conflicts : the number of conflicts of clingo's search after which the best answer so far is returned.
+
+    Raises
+    ------
+    EncodingError, BadInputError, CannotOpenError : as for `solve`.
+    """
+    given = tuple(facts)
+    answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts)
+    note_answer(files, given, answer.atoms, about)
+    return answer
+
+
 @lru_cache(maxsize=256)
-def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> tuple[clingo.Symbol, ...] | None:
-    """Return the answer of `solve`, the shown atoms sorted by their text or None, as a tuple; cached.
+def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float, conflicts: int | None) -> BoundedAnswer:
+    """Return the answer of `solve` or `solve_within`; cached.
 
     files : paths of encodings and of files with users' rules. facts : atoms as text, without full stops. seconds : the
-        limit of wall-clock time of the search; not used with users' rules.
+        limit of wall-clock time of the search; not used with users' rules. conflicts : the limit of conflicts; None for
+        none.
     """
     users = [path for path in files if path.resolve().parent not in ENCODING_FOLDERS]
     if users:
@@ -80,7 +119,7 @@ def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> 
         files = tuple(path for path in files if path not in users)
         found = solve_with_user_rules(files, users, facts)
         if found is not None:
-            return tuple(sorted(found, key=str))
+            return BoundedAnswer(tuple(sorted(found, key=str)), True)
     messages: list[str] = []
     control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:
@@ -99,8 +138,11 @@ def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float) -> 
         nonlocal best
         best = list(model.symbols(shown=True))
 
+    if conflicts is not None:
+        settings: Any = control.configuration.solve
+        settings.solve_limit = f"{conflicts},umax"
     with control.solve(on_model=keep, async_=True) as handle:
         if not handle.wait(seconds):
             handle.cancel()
-        handle.get()
-    return None if best is None else tuple(sorted(best, key=str))
+        exhausted = bool(handle.get().exhausted)
+    return BoundedAnswer(None if best is None else tuple(sorted(best, key=str)), exhausted)

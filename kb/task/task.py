@@ -83,6 +83,10 @@ class Task:
     claims: tuple[Claim, ...]
     goals: tuple[Fact, ...]
 
+    def is_object(self, word: str) -> bool:
+        """Return whether a word is a parameter of the task that stands for an object."""
+        return word in self.parameters and self.parameters[word].kind == "object"
+
     @property
     def goal_parameters(self) -> frozenset[str]:
         """The names of the parameters that goals mention, also inside `first(G)`, `then(G)` and `prefer(G, N)`."""

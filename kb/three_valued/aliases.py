@@ -1,4 +1,7 @@
-"""The two names of the robot: queries call it `utak`, facts call it `org`. `utak` is also a kind of node in facts."""
+"""The two names of the robot: queries call it `utak`, facts call it `org`.
+
+In facts, `utak` is also a kind of node, and the robot's name in goals and in what the plan says of them.
+"""
 
 from collections.abc import Set
 from dataclasses import fields, is_dataclass, replace
@@ -6,32 +9,36 @@ from typing import Any
 
 import clingo
 
-from kb.language.vocabulary import BELIEF_PREDICATES, KIND_ARGUMENT
+from kb.language.vocabulary import BELIEF_PREDICATES, CIRCUMSTANCE_ARGUMENT, KIND_ARGUMENT, TASK_GOAL_ARGUMENT
 from kb.three_valued.clauses import Atom, Clause, Comparison, Constant, Variable, atoms_of
 
 UTAK_TERM, ORG_TERM = clingo.Function("utak"), clingo.Function("org")
+UTAK_TYPES = (
+    KIND_ARGUMENT,
+    TASK_GOAL_ARGUMENT,
+    CIRCUMSTANCE_ARGUMENT,
+)  # the types of arguments in which facts say `utak`
 
 
 def rename_utak_to_org(clause: Clause) -> Clause:
-    """Return a clause with the constant `org` in the place of `utak`, except where `utak` stands for a kind.
+    """Return a clause with the constant `org` in the place of `utak`, except where facts say `utak`, too.
 
-    It stands for a kind as such an argument of kind/3, and in comparisons with a variable that is one. Only the body is
-    changed, inside aggregates and conditions as well; the head stays. `utak` is the robot's name in queries, `org` that
-    in facts.
+    They do in arguments of UTAK_TYPES: kinds, goals and circumstances; and so do comparisons with a variable that
+    stands for one. Only the body is changed, inside aggregates and conditions as well; the head stays.
     """
     kinds = {
         part.name
         for atom in atoms_of(clause.body)
-        for part in (atom.parts[at] for at in _kind_arguments(atom))
+        for part in (atom.parts[at] for at in _utak_arguments(atom))
         if isinstance(part, Variable)
     }
     return replace(clause, body=_renamed(clause.body, kinds))
 
 
-def _kind_arguments(atom: Atom) -> list[int]:
-    """Return the indices, from 0, of the arguments of an atom that are kinds; [] for an unknown predicate."""
+def _utak_arguments(atom: Atom) -> list[int]:
+    """Return the indices, from 0, of the arguments in which facts say `utak`; [] for an unknown predicate."""
     slots = BELIEF_PREDICATES[atom.signature].arguments if atom.signature in BELIEF_PREDICATES else ()
-    return [at for at, slot in enumerate(slots) if slot is KIND_ARGUMENT]
+    return [at for at, slot in enumerate(slots) if slot in UTAK_TYPES]
 
 
 def _renamed(part: Any, kinds: Set[str]) -> Any:
@@ -39,7 +46,7 @@ def _renamed(part: Any, kinds: Set[str]) -> Any:
 
     The result is of the same type as `part`.
 
-    kinds : names of variables that stand for kinds; a comparison with one of them is kept as it is.
+    kinds : names of variables that stand for values of UTAK_TYPES; a comparison with one of them is kept as it is.
     """
     if isinstance(part, Constant):
         return replace(part, value=ORG_TERM) if part.value == UTAK_TERM else part
@@ -48,7 +55,7 @@ def _renamed(part: Any, kinds: Set[str]) -> Any:
     ):
         return part
     if isinstance(part, Atom):
-        kept = _kind_arguments(part)
+        kept = _utak_arguments(part)
         return replace(
             part, parts=tuple(term if at in kept else _renamed(term, kinds) for at, term in enumerate(part.parts))
         )

@@ -3,13 +3,14 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from kb.language.vocabulary import BELIEF_PREDICATES, BeliefPredicate, Openness, Signature
+from kb.language.vocabulary import BELIEF_PREDICATES, PLAN_PREDICATES, BeliefPredicate, Openness, Signature
 from kb.three_valued.uncertain_values import Unknown, Value, compare
 
 FactRow = tuple[Value, ...]  # the arguments of one fact
 OBJECT_SIGNATURE = ("object", 1)  # object(N) stands for kind(N, object, C)
 PARAMETER_SIGNATURE = ("parameter", 1)  # the parameters of the task
-TASK_SIGNATURES = frozenset({PARAMETER_SIGNATURE, ("bound", 2)})  # these are about parameters, not about things
+# These are about parameters and the plan, not about things.
+TASK_SIGNATURES = frozenset({PARAMETER_SIGNATURE, ("bound", 2), *PLAN_PREDICATES})
 
 
 class Beliefs:

@@ -11,7 +11,9 @@ corners       the corners of the known floor
 pathgraph     the pathgraph of the believed floor, as facts
 evidence      what the world model rests on: explained fields, regions, necks of doors
 facts         the world model as facts, and as the `belief` of an episode
+stated_plan   the task plan as the facts of a step state it, as a value and in words
 
 Public names: `WorldModel`, `Node` (model); `Rooms`, `Door`, `Opening`, `rooms_of` (rooms); `Corner`, `corners`
-(corners); `Places`, `belief`, `model_facts` (facts).
+(corners); `Places`, `belief`, `model_facts` (facts);
+`StatedPlan`, `stated_plan` (stated_plan).
 """

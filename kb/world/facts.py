@@ -49,6 +49,7 @@ def belief(
     accommodated: Accommodation,
     bound: Mapping[str, str],
     parameters: Iterable[str] = (),
+    planned: Iterable[str] = (),
 ) -> dict[str, Any]:
     """Return the `belief` of an episode's line, ready for JSON.
 
@@ -65,6 +66,8 @@ def belief(
         Name of a parameter of the task -> name of the node of the model that it means.
     parameters : iterable of str
         The names of all parameters of the task that stand for objects.
+    planned : iterable of str
+        The facts of the task plan, without full stops; none while there is no plan.
 
     Returns
     -------
@@ -73,12 +76,12 @@ def belief(
         robot frame is turned against the grid of squares, in degrees, counter-clockwise positive, -44 to 45. pose: the
         kind of the explanation, such as predicted, blocked or lost. cells: how many of the 160 fields were predicted,
         explained or noise; kinds without any are left out. bound: the bindings, as given. facts: the facts of the world
-        model and of the bindings as text, sorted, with full stops. Further keys say what all this rests on
+        model, of the bindings and of the plan as text, sorted, with full stops. Further keys say what all this rests on
         (`kb.world.evidence`).
     """
     cells = Counter(str(status) for status in accommodated.fields.status)
     east, north = model.frame.place_to_utak(*model.place)
-    facts = sorted(f"{fact}." for fact in (*model_facts(model, places), *binding_facts(bound, parameters)))
+    facts = sorted(f"{fact}." for fact in (*model_facts(model, places), *binding_facts(bound, parameters), *planned))
     return {
         "place": [round(east, 6) + 0.0, round(north, 6) + 0.0],
         "lattice": model.frame.angle,

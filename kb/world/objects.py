@@ -22,7 +22,7 @@ from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things, with_embedded_things
 from kb.perception.regions import Percept, Region, label_of
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
@@ -53,7 +53,9 @@ class MapRegions(NamedTuple):
 
 
 def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
-    """Return the regions, with things that were felt and stand against the verge as regions of their own.
+    """Return the regions, with things that were felt and stand against the verge, or in it, as regions of their own.
+
+    Of a thing that fills a gap in the verge only the squares that were felt are known to belong to it.
 
     Parameters
     ----------
@@ -80,7 +82,8 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-    for thing in separate_things(protrusions(free_squares(view), occupied, view.seen), colours):
+    sticking_out = separate_things(protrusions(free_squares(view), occupied, view.seen), colours)
+    for thing in with_embedded_things(sticking_out, colours, occupied):
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(_separated_region(thing, label, view))

@@ -12,14 +12,16 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import with_edge_neighbours
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import POSSIBLE_OBJECT
 from planner.screen.moves import orientation_is_settled
+from planner.screen.projection import dilate
+from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
+from planner.situation import Situation
 
 
-def qualify(decision: Decision, model: WorldModel) -> Decision:
+def qualify(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
     """Return a decision with `possible_if` in place of `impossible` where an open fact would overturn that.
 
     The fact is added to the reason.
@@ -31,7 +33,8 @@ def qualify(decision: Decision, model: WorldModel) -> Decision:
     ----------
     decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
         says that there can be none.
-    model : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
+    scope : which walls matter for the task.
 
     Returns
     -------
@@ -40,7 +43,8 @@ def qualify(decision: Decision, model: WorldModel) -> Decision:
     """
     if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
         return decision
-    fact = decision.unless or nearest_open_fact(model, decision.near or model.place_on_view)
+    near = decision.near or situation.model.place_on_view
+    fact = decision.unless or nearest_open_fact(situation, near, scope)
     if not fact:
         return decision
     why = f"{decision.why}; it may be possible if {fact}"
@@ -67,7 +71,7 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
     return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
 
 
-def nearest_open_fact(model: WorldModel, near: XY) -> str:
+def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_WALLS) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
 
     A wall that was never felt comes first, then floor that goes on unseen, then an object that was never moved. A
@@ -75,34 +79,24 @@ def nearest_open_fact(model: WorldModel, near: XY) -> str:
 
     Parameters
     ----------
-    model : what is believed.
+    situation : what is believed (world model, rooms, doors, corners, track).
     near : (x, y) in squares, view frame.
+    scope : which walls matter for the task. Where no wall between two parts of the floor does, objects all around which
+        the floor is reached do not either, unless the task speaks of objects.
     """
-    wall = _nearest_square(unfelt_walls(model), near)
+    model, reached = situation.model, situation.cost_maps.floor
+    walls = walls_in_question(model, reached, scope).values()
+    wall = _nearest_square(np.any(list(walls), axis=0), near)
     if wall is not None:
         return f"the wall at {model.point_in_words(wall)}, which was never felt, is a thing that can be moved"
-    unseen = _nearest_square(with_edge_neighbours(model.space) & ~model.view.seen, near)
+    unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
     unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
+    if not scope.parting and not scope.things:
+        masks = {node.name: model.mask(node.patch) for node in unmoved}
+        unmoved = [node for node in unmoved if (dilate(masks[node.name], 1) & ~masks[node.name] & ~reached).any()]
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
-
-
-def unfelt_walls(model: WorldModel) -> Bools:
-    """Return the squares beside known floor on which a wall was seen and never felt.
-
-    (rows, columns) bool on the arrays of the view; squares of objects do not count.
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
-    """
-    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
-    things: Bools = np.zeros_like(felt)
-    for node in model.objects:
-        things |= model.mask(node.patch)
-    mask: Bools = with_edge_neighbours(model.space) & model.view.seen & ~model.space & ~felt & ~things
-    return mask
 
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:

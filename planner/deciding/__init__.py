@@ -4,6 +4,8 @@ decider       stages of the task, one after the other
 transport     a goal for an object: find it, look at it, carry it, or give up
 errands       the next step of the task plan, carried out
 clearing      navigation among movable obstacles: what blocks the robot is moved aside
+obstacles     the objects that block the way, as they lie or as they may go on in a wall
+feeling       before the robot gives up, it feels walls that may be things
 pursuit       subgoals of the robot itself: the best one, the route there, the next move
 keeping       whether constraints on the way were kept, by the tracks of the robot and of the things
 search        subgoals while something is missing

@@ -3,148 +3,25 @@
 It is asked only when nothing else is left to do, for an object that was moved no longer is where it was meant to be.
 """
 
-from collections.abc import Iterator, Sequence
-from itertools import product
-from typing import NamedTuple
+from collections.abc import Iterable, Sequence
 
-import numpy as np
-
-from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import At, Inside
-from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.language.terms import Fact
-from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
-from kb.world.model import Node, WorldModel
+from kb.world.model import Node
 from planner.advice import Act
+from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
+from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
-from planner.goals.placement import (
-    CERTAIN_OBJECT,
-    POSSIBLE_OBJECT,
-    floor_leads_away,
-    mask_to_polygon,
-    possible_extension,
-    pull_out_pose,
-)
-from planner.navigation.routes import PlannedRoute, find_routes
+from planner.goals.embedded import Supposition, suppose
+from planner.goals.placement import CERTAIN_OBJECT, POSSIBLE_OBJECT
 from planner.navigation.subgoals import Subgoal
-from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 from planner.sights.frontiers import touch_viewpoint
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
-
-
-class Obstacle(NamedTuple):
-    """An object that blocks the robot's way to some part of the floor.
-
-    Attributes
-    ----------
-    node : the object.
-    aside : where it shall lie so that the way is free, or so that all of it is seen; in squares, view frame.
-    """
-
-    node: Node
-    aside: End
-
-
-def obstacles(things: Sequence[Node], situation: Situation) -> Iterator[Obstacle]:
-    """Yield those of some objects that block the way to floor, known or unseen, that is reached without them.
-
-    The one with the shortest way first. Each is asked about alone. If none blocks alone, the first of several that
-    stand behind each other is yielded; else objects that stand in a door and may go on in what seems to be wall.
-    Nothing is yielded when no object blocks.
-
-    An Obstacle holds the object, and an end: where it shall lie so that the way is free.
-
-    The end is Inside: polygons, in squares, view frame, of its own squares and surely free ones off the route. For an
-    object that goes on in a wall it is At: a translation (x, y) in squares from where it lies, out of the wall.
-
-    Parameters
-    ----------
-    things : the objects in question.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    """
-    model = situation.model
-    under = [model.mask(thing.patch) for thing in things]
-    found = [(thing, way) for thing, mask in zip(things, under, strict=True) for way in _routes_opened(mask, situation)]
-    if not found and things:
-        together = np.any(under, axis=0)
-        found = [(_first_on(way, things, model), way) for way in _routes_opened(together, situation)]
-    for thing, way in sorted(found, key=lambda pair: pair[1].length):
-        columns, rows = np.array(way.squares).T
-        room = situation.cost_maps.free(0) | model.mask(thing.patch)
-        room[rows, columns] = False
-        yield Obstacle(thing, Inside(mask_to_polygon(room)))
-    for depth, thing in product(range(1, 1 + MAX_HIDDEN_DEPTH), things if not found else []):
-        yield from _hidden_in_doors(thing, depth, situation)
-
-
-def _routes_opened(under: Bools, situation: Situation) -> list[PlannedRoute]:
-    """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
-
-    At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
-
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
-    It leads to the nearest such floor, over the shortest way by the grid of squares.
-
-    under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    """
-    cost_maps = situation.cost_maps
-    without = CostMaps(situation.model, under, cost_maps.kept_off)
-    beyond = (
-        (without.distances[UNSEEN_LEVEL] != GEODESIC_UNREACHED)
-        & (cost_maps.distances[UNSEEN_LEVEL] == GEODESIC_UNREACHED)
-        & ~under
-    )
-    if not floor_leads_away(beyond, under):
-        return []
-    return find_routes(without, UNSEEN_LEVEL, np.flatnonzero(beyond), "grid")
-
-
-def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> Node:
-    """Return the first of some objects that a route over their squares comes to.
-
-    Raises StopIteration when the route crosses none of them.
-
-    Parameters
-    ----------
-    way : the route, from the robot on, on the arrays of the view.
-    things : the objects.
-    model : what is believed.
-    """
-    masks = [(thing, model.mask(thing.patch)) for thing in things]
-    return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
-
-
-def _hidden_in_doors(thing: Node, depth: int, situation: Situation) -> Iterator[Obstacle]:
-    """Yield an object that blocks the robot if it goes on by `depth` squares in what seems to be wall.
-
-    It is drawn out by one square more than that, or as far as there is room: so all of it is seen. One Obstacle for
-    each side on which that is so, its end relative to where the object lies; nothing for an object that does not block
-    so.
-
-    An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
-
-    Parameters
-    ----------
-    thing : the object.
-    depth : in squares, 1 or more.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    """
-    model, mask = situation.model, situation.model.mask(thing.patch)
-    for side in SIDE_DIRECTIONS:
-        behind = possible_extension(thing, side, depth, model)
-        blocks = behind.any() and _routes_opened(mask | behind, situation)
-        pose = pull_out_pose(thing, side, depth, situation) if blocks else None
-        if pose is not None:
-            yield Obstacle(thing, At(pose))
 
 
 class ObstacleClearer:
@@ -156,12 +33,15 @@ class ObstacleClearer:
     def __init__(self) -> None:
         """Make a clearer that is moving nothing."""
         self._moving = ""
+        self._supposed: Supposition | None = None  # how the object that is being moved is supposed to lie in a wall
         self._stays: frozenset[str] = frozenset()
+        self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
     def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the next command for the obstacle that is being moved; None when there is none that blocks still.
 
-        Also None when its command would close a loop: then it is no longer being moved.
+        Also None when its command would close a loop: then it is no longer being moved. Feeling that was begun is gone
+        on with first, until something is found or nothing is left to feel.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
@@ -173,11 +53,19 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
         node, held = situation.model.object(self._moving), situation.model.held
+        if self._feeling and held is None:
+            instead = self._feel_on(stage, situation, tools)
+            if instead is not None:
+                return instead
         if node is not None and held is None:
             instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools, node.name)
             if instead is not None:
                 return instead
-        act = tools.executor.continue_plan(node, situation) if node is not None and held == node.name else None
+        act = None
+        if node is not None and held == node.name:
+            last = self._supposed
+            again = None if last is None else suppose(node, last.side, last.depth, situation)
+            act = tools.executor.continue_plan(node, situation if again is None else again.situation)
         if act is None or tools.pursuer.closes_loop(situation.model, act.command):
             self._moving = ""
             return None
@@ -205,13 +93,89 @@ class ObstacleClearer:
         if not decision.verdict:
             return decision
         self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
-        instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools)
+        movable = self._movable(self._stays, situation)
+        instead = self._move_first(movable, stage, situation, tools)
         if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
             return instead or decision
+        decision = self._feel(decision, movable, stage, situation, tools)
+        if not decision.verdict:
+            return decision
         things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
-        blocking = next((node.name for node, _ in obstacles(things, situation)), "")
+        blocking = next((one.node.name for one in obstacles(things, situation)), "")
         why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
         return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
+
+    def open_walls(
+        self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision:
+        """Return a decision; in place of `impossible`, the next command to feel walls, or to clear what fills them.
+
+        It is for a verdict that is proved whatever objects are moved aside, as far as these were seen: only what may go
+        on in walls is moved, and what stands before walls that were never felt.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        decision : what was decided towards the goals; one that no open fact can overturn is returned unchanged.
+        goals : the goals that the decision is about; what they speak of stays where it is.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
+            return decision
+        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
+        movable = self._movable(self._stays, situation)
+        hidden = hidden_in_walls(movable, situation, feeling_scope(stage, situation).parting)
+        instead = self._move_first_of(hidden, stage, tools)
+        return instead or self._feel(decision, movable, stage, situation, tools)
+
+    def _feel(
+        self, decision: Decision, movable: Sequence[Node], stage: Stage, situation: Situation, tools: Tools
+    ) -> Decision:
+        """Return a decision; in place of `impossible`, the next command to feel walls, or to move what hides them.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        decision : what was decided.
+        movable : the objects that may be moved.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        if decision.verdict == TaskVerdict.IMPOSSIBLE and decision.unless is not None:
+            felt = feel_walls(stage, situation, tools.pursuer)
+            if felt is not None:
+                self._feeling = True
+                return felt
+            hidden = before_walls(movable, situation, walls_to_feel(stage, situation))
+            return self._move_first_of(hidden, stage, tools) or decision
+        return decision
+
+    def _feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next command to clear what was found in a wall, or to feel on; None when nothing is left.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        hidden = hidden_in_walls(
+            self._movable(self._stays, situation), situation, feeling_scope(stage, situation).parting
+        )
+        found = self._move_first_of(hidden, stage, tools)
+        felt = None if found is not None else feel_walls(stage, situation, tools.pursuer)
+        self._feeling = felt is not None
+        return found or felt
 
     def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none.
@@ -240,10 +204,26 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         name : only the object of that name is moved; "" for any of `things`.
         """
-        for node, aside in obstacles(things, situation):
-            instead = _move_aside(node, aside, stage, situation, tools) if name in ("", node.name) else None
+        walls, parting = walls_to_feel(stage, situation), feeling_scope(stage, situation).parting
+        found = obstacles(things, situation, walls, parting)
+        return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
+
+    def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
+        """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
+
+        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
+        verdict and its reason.
+
+        Parameters
+        ----------
+        found : the obstacles, in the order in which they are tried.
+        stage : of the task: the goals that shall hold now.
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        for one in found:
+            instead = _move_aside(one.node, one.aside, stage, one.situation, tools)
             if instead is not None:
-                self._moving = node.name
+                self._moving, self._supposed = one.node.name, one.supposed
                 return instead
         return None
 
@@ -262,6 +242,9 @@ def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tool
     situation : what is believed (world model, rooms, doors, corners, track).
     tools : executor, pursuer and verifier, with which the command is worked out.
     """
+    rim = feel_rim(node, stage, situation, tools.pursuer)
+    if rim is not None:
+        return rim
     if node.confidence < CERTAIN_OBJECT:
         touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
         look = tools.pursuer.pursue_look(touch, stage, situation)

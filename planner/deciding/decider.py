@@ -25,6 +25,7 @@ from planner.carrying.plan_executor import PlanExecutor
 from planner.constraints import ROBOT_NAME
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
+from planner.deciding.feeling import feeling_scope
 from planner.deciding.keeping import ConstraintKeeper
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
@@ -111,6 +112,11 @@ class Decider:
         """The task plan under way, from its present errand on; None while there is none."""
         return self._errands.plan
 
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
+        return self._errands.attempt
+
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
 
@@ -160,22 +166,22 @@ class Decider:
         situation = replace(situation, lenient=self._lenient)
         broken = self._keeper.broken_at_start(situation)
         if broken is not None:
-            return qualify(broken, model)
+            return qualify(broken, situation)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._clearer.continue_clearing(stage, situation, self._tools)
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
-                if (
-                    isinstance(decision.command, Grasp) and self._errands.blamed_so_far
-                ):  # nothing is taken against rules
+                if isinstance(decision.command, Grasp) and self._errands.blamed_so_far:  # not against rules
                     why = f"{stage} cannot be attained as far as is known"
                     decision = Decision(None, why, TaskVerdict.LIMIT)
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
-                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
-                decision = replace(decision, verdict=TaskVerdict.LIMIT) if unproved else qualify(decision, model)
+                if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
+                    decision = replace(decision, verdict=TaskVerdict.LIMIT)
+                else:
+                    decision = qualify(decision, situation, feeling_scope(stage, situation))
                 return self._keeper.guarded(decision, situation)
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
@@ -262,7 +268,7 @@ class Decider:
         """
         conflict = self._transporter.conflict_verdict(stage, situation)
         if conflict is not None:
-            return conflict
+            return self._clearer.open_walls(conflict, stage.carried, stage, situation, self._tools)
         situation = self._errands.update(stage, situation, self._transporter, self._tools)
         if self._errands.is_shut_out:
             why = f"{stage} cannot be attained: {self._errands.blamed}"
@@ -275,8 +281,8 @@ class Decider:
             if decision is None:
                 continue
             decision = self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
-            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever else is moved or hidden in walls
-                return decision
+            if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever is moved that was seen
+                return self._clearer.open_walls(decision, (goal,), stage, situation, self._tools)
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
         decision = self._go_along_plan(stage, situation, reconciled, track) if stage.own else None
         if decision is None:

@@ -44,6 +44,11 @@ class ErrandRunner:
         """The plan under way, from its present errand on; None for none."""
         return self._intention.plan
 
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
+        return self._intention.attempt
+
     def next(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, transporter: Transporter, tools: Tools
     ) -> Decision | None:

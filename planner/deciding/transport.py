@@ -23,11 +23,11 @@ from planner.deciding.tools import Tools
 from planner.deciding.verification import look_before_grasp, look_for_more
 from planner.decision import Decision, TaskVerdict
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
-from planner.goals.joint import conflicting_goals
+from planner.goals.joint import OPPOSITE_CORNERS, conflicting_goals
 from planner.goals.object_goals import goal_placement
 from planner.goals.origins import Origins
 from planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
-from planner.goals.robot_goals import unknown_destination
+from planner.goals.robot_goals import corner_side, unknown_destination
 from planner.navigation.subgoals import Subgoal
 from planner.per_model import PerModel
 from planner.screen.moves import orientation_is_uncertain
@@ -192,8 +192,10 @@ class Transporter:
             found = conflicting_goals(lands, to_view_frame(node.polygon, situation))
             if found is not None:
                 one, other = (goals[number] for number in found)
+                # However much more floor becomes known, opposite corners only move further apart.
+                opposite = {corner_side(one), corner_side(other)} in map(set, OPPOSITE_CORNERS)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
-                return Decision(None, why, TaskVerdict.IMPOSSIBLE)
+                return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
         return None
 
     def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:

@@ -4,6 +4,7 @@ Modules, in reading order:
 
 robot_goals   Destination: the squares on which a goal holds for the robot
 placement     Placement: where a goal holds for an object
+embedded      Supposition: how an object lies if it goes on in a wall
 object_goals  the placement that a goal for an object asks for
 corner_goal   the placement in a corner
 near_goal     the placements beside another object, at the start, and at a pose

@@ -88,7 +88,7 @@ class PlacedGoal:
     Attributes
     ----------
     name : g1, g2, ... in the order of the task; w1, w2, ... for wishes.
-    words : the goal as the task states it.
+    words : the goal as the task states it; those of the robot joined by "and".
     subject : the object that it is about, or ROBOT.
     holds : whether it holds now.
     weight : about how many commands it may cost, for a wish; None for a goal that must hold.
@@ -99,6 +99,11 @@ class PlacedGoal:
     subject: str
     holds: bool
     weight: int | None = None
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """The goals that the task states, each as a fact without full stop; more than one only for the robot itself."""
+        return tuple(self.words.split(" and "))
 
 
 @dataclass(frozen=True)

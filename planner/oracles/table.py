@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 
 class CostClass(StrEnum):
-    """When an oracle is asked.
+    """The times at which oracles are asked.
 
     Attributes
     ----------

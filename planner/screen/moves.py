@@ -113,6 +113,7 @@ _WALKING_LENGTHS: Mapping[str, int] = {
     SubgoalKind.EXPLORE: 12,
     SubgoalKind.PASS: 8,
     SubgoalKind.SETTLE: 12,
+    SubgoalKind.FEEL: 48,
 }
 WALKING_PACE = Pace(_WALKING_LENGTHS, 9, bold=False)  # of a robot that only walks (lengths tuned on random worlds)
 CARRYING_PACE = Pace(

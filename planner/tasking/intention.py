@@ -100,10 +100,12 @@ class Intention:
         """
         self._where, self._pull = where, pull
         self._kept: _Kept | None = None
+        self._attempt: TaskPlan | None = None  # the last plan that does not attain all goals, while there is no other
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
+        self._stage: Stage | None = None  # for which `_tried` counts
         self.rules = RuleEffects()
 
     @property
@@ -112,6 +114,11 @@ class Intention:
         if self._kept is None:
             return None
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
+
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
+        return self._attempt if self._kept is None else None
 
     def update(
         self,
@@ -136,8 +143,10 @@ class Intention:
         """
         stage = self._without_dropped(stage)
         self._problem = problem_of(stage, situation, place, origin, self._where)
+        if stage != self._stage:
+            self._stage, self._tried = stage, []
         if self._problem is None:
-            self._kept = None
+            self._kept = self._attempt = None
         else:
             self._kept = self._kept_still(stage, self._problem, situation)
             if self._kept is None:
@@ -267,6 +276,7 @@ class Intention:
         """Return a new plan with what it rests on; None when there is none that attains all goals."""
         ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # then there may be goals that the task does not have
         if all(goal.holds for goal in problem.goals) and not ruled:
+            self._attempt = None
             return None
         lying = _lying(situation)
         believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
@@ -280,6 +290,7 @@ class Intention:
                 break
         self.rules = effects_of_rules(made, situation)
         self._hopeless = believed if made.plan.unmet else None
+        self._attempt = made.plan if made.plan.unmet else None
         if made.plan.unmet:
             return None
         view = situation.model.view

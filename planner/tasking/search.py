@@ -14,7 +14,7 @@ import numpy as np
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Translate
-from kb.reasoning.solver import solve
+from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach
 from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
@@ -30,6 +30,7 @@ TASK_ENCODING = PLANNER_ASP / "task.lp"
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
+MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
 MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
 LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encoding
@@ -93,6 +94,7 @@ class PlanSearch:
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
         self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
         self._facts = problem_facts(problem, (), situation)
+        self._cut = False  # whether a search of clingo was cut off by its limit
         self._offers.note_in_way(things_in_way(self._facts))
 
     def run(self) -> MadePlan:
@@ -122,7 +124,7 @@ class PlanSearch:
             if verified is None:
                 continue
             better += 1
-            proved = best is not None and verified == best.errands
+            proved = best is not None and verified == best.errands  # no proposal is cheaper by what geometry answered
             cost = sum(errand.commands for errand in verified)
             price = cost + sum(proposal.missed.values())
             if best is None or price < best_price or proved:
@@ -133,16 +135,18 @@ class PlanSearch:
                 (), tuple(goal.name for goal in self._problem.goals if goal.weight is None and not goal.holds)
             )
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
-            solve([TASK_ENCODING, *self._situation.rules], facts, about=self._about())
+            solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS, self._about())
         refutations = self._answers.refutations
-        plan = replace(best, least=min(least, best.cost), proved=proved, refutations=refutations, rounds=number)
+        plan = replace(best, least=min(least, best.cost), proved=proved and not self._cut, rounds=number)
+        plan = replace(plan, refutations=refutations, goals=self._problem.goals)
         return self._with_geometry(plan, facts)
 
     def _propose(self, horizon: int) -> Proposal:
         """Return the plan of the encoding with at most `horizon` errands."""
         facts = (f"horizon({horizon})", *self._facts, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
-            atoms = solve([TASK_ENCODING, *self._situation.rules], facts) or []
+            answer = solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS)
+        atoms, self._cut = answer.atoms or (), self._cut or not answer.proved
         unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
         doors: dict[int, list[str]] = {}
         found: dict[int, Errand] = {}

@@ -1,9 +1,14 @@
 """The task plan: errands in order, with what geometry said of each; a value that can be printed, logged and asked."""
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
 from planner.oracles.carry import Certainty
+from planner.oracles.problem import ROBOT, PlacedGoal
+
+GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place where a goal holds
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,11 @@ class Errand:
     commands: int = 0
     avoid: tuple[XY, ...] = ()
 
+    @property
+    def goal(self) -> str:
+        """The name of the goal that holds at its place; "" for none."""
+        return goal_at(self.place)
+
     def __str__(self) -> str:
         """Return the step as the encoding writes it, such as carry(o1,g1_r2)."""
         return f"arrive({self.place})" if self.action == "arrive" else f"{self.action}({self.subject},{self.place})"
@@ -53,6 +63,19 @@ class RefutedStep:
     given: tuple[tuple[str, str], ...] = ()
     stood: str | None = None
     shut: tuple[str, ...] = ()
+
+    @property
+    def step(self) -> str:
+        """The refuted step as the encoding writes it, such as carry(o1,g1_r2)."""
+        action = "arrive" if self.subject == ROBOT else "carry" if goal_at(self.place) else "clear"
+        return str(Errand(action, self.subject, self.place))
+
+    @property
+    def circumstances(self) -> tuple[str, ...]:
+        """On what it rests, as the facts say it: at(N,P) for the subject and other objects, stood(N), shut(D)."""
+        found = [f"at({name},{place})" for name, place in sorted({(self.subject, self.origin), *self.given})]
+        found += [] if self.stood is None else [f"stood({self.stood})"]
+        return (*found, *(f"shut({door})" for door in self.shut))
 
     def __str__(self) -> str:
         """Return the refutation in words, without full stop."""
@@ -81,6 +104,7 @@ class TaskPlan:
     refutations : the steps that geometry refuted on the way to it.
     rounds : how many plans were made.
     missed : the wishes that do not hold at its end.
+    goals : the goals of the stage, in the order of the task, as they were when it was made.
     """
 
     errands: tuple[Errand, ...]
@@ -91,6 +115,7 @@ class TaskPlan:
     refutations: tuple[RefutedStep, ...] = ()
     rounds: int = 0
     missed: tuple[str, ...] = ()
+    goals: tuple[PlacedGoal, ...] = ()
 
     @property
     def verified(self) -> bool:
@@ -99,7 +124,46 @@ class TaskPlan:
 
     @property
     def facts(self) -> tuple[str, ...]:
-        """The plan as facts without full stops: plan(I, Step), verified(I) and refuted(Step, Given)."""
-        found = [f"plan({number},{errand})" for number, errand in enumerate(self.errands)]
-        found += [f"verified({n})" for n, errand in enumerate(self.errands) if errand.certainty == Certainty.SURE]
-        return tuple(found)
+        """The plan as facts without full stops, as kb/asp/belief.lp declares them."""
+        return (*self._goal_facts(), *self._step_facts(), *self._search_facts())
+
+    @property
+    def failure_facts(self) -> tuple[str, ...]:
+        """The goals, those that are unmet, and what was refuted, as facts: of a plan that is not followed."""
+        return (*self._goal_facts(), *self._refutation_facts())
+
+    def _goal_facts(self) -> Iterator[str]:
+        """Yield the names of the goals, and what the task states for each."""
+        for goal in self.goals:
+            yield f"goal({goal.name})"
+            yield from (f"means({goal.name},{condition})" for condition in goal.conditions)
+        yield from (f"unmet({name})" for name in self.unmet)
+
+    def _step_facts(self) -> Iterator[str]:
+        """Yield the steps by their number, and what is known of each."""
+        for number, errand in enumerate(self.errands):
+            yield f"plan({number},{errand})"
+            if errand.goal:
+                yield f"serves({number},{errand.goal})"
+            yield from (f"passes({number},{door})" for door in errand.doors)
+            if errand.certainty is not None:
+                yield f"takes({number},{errand.commands})"
+            if errand.certainty == Certainty.SURE:
+                yield f"verified({number})"
+
+    def _search_facts(self) -> Iterator[str]:
+        """Yield what the plan costs, how the search ended, and what was refuted on its way."""
+        yield f"price({self.cost},{self.least},{'proved' if self.proved else 'found'})"
+        yield from self._refutation_facts()
+
+    def _refutation_facts(self) -> Iterator[str]:
+        """Yield what was refuted, by number, and the circumstances of each refutation."""
+        for number, refutation in enumerate(self.refutations):
+            yield f"refuted({refutation.step},{number})"
+            yield from (f"given({number},{circumstance})" for circumstance in refutation.circumstances)
+
+
+def goal_at(place: str) -> str:
+    """Return the name of the goal that holds at a place of the plan; "" for none."""
+    found = GOAL_PLACE.match(place)
+    return found[1] if found else ""

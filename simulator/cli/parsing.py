@@ -3,11 +3,27 @@
 import argparse
 from typing import Any
 
-from simulator.cli.commands import explain, query, repl, replay, routes, run, schema, sweep, test, warm
+from simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
 from simulator.cli.commands.files import check, import_scenario, new, show
 
 # In the order of the help text.
-COMMANDS = (run, test, sweep, check, show, new, import_scenario, query, repl, explain, replay, routes, schema, warm)
+COMMANDS = (
+    run,
+    test,
+    sweep,
+    check,
+    show,
+    new,
+    import_scenario,
+    query,
+    plan,
+    repl,
+    explain,
+    replay,
+    routes,
+    schema,
+    warm,
+)
 # The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "

@@ -33,6 +33,49 @@ QUERY_OUTPUT = Keys(
         "more": Noted("whether rows were left out", FLAG),
     }
 )
+# `utak plan --json`.
+PLAN_OUTPUT = Keys(
+    {
+        "step": STEP_NUMBER,
+        "plan": OrNull(
+            Keys(
+                {
+                    "found": Noted("whether there is a plan; else goals and refuted say why not", FLAG),
+                    "goals": ListOf(
+                        Keys(
+                            {
+                                "name": TEXT,
+                                "means": Noted("what the task states, as facts", ListOf(TEXT)),
+                                "attained": Noted("whether the plan attains it", FLAG),
+                            }
+                        )
+                    ),
+                    "steps": Noted(
+                        "the steps that are left, in order; 0 is the present one",
+                        ListOf(
+                            Keys(
+                                {
+                                    "number": Whole(0, 2**31 - 1),
+                                    "step": TEXT,
+                                    "words": TEXT,
+                                    "serves": Noted("names of goals", ListOf(TEXT)),
+                                    "doors": ListOf(TEXT),
+                                    "commands": OrNull(Whole(0, 2**31 - 1)),
+                                    "certainty": OneOf(("verified", "hoped", "not asked")),
+                                }
+                            )
+                        ),
+                    ),
+                    "cost": Noted("commands of the whole plan, with steps that are done", OrNull(Whole(0, 2**31 - 1))),
+                    "least": Noted("commands: a lower bound by the search's estimates", OrNull(Whole(0, 2**31 - 1))),
+                    "gap": Noted("cost less lower bound", OrNull(Whole(-(2**31), 2**31 - 1))),
+                    "proved": Noted("whether the search ended with it", FLAG),
+                    "refuted": ListOf(Keys({"step": TEXT, "given": ListOf(TEXT), "words": TEXT})),
+                }
+            )
+        ),
+    }
+)
 # `utak routes --json`.
 ROUTES_OUTPUT = Keys(
     {
@@ -92,6 +135,7 @@ NAMED_FORMS: dict[str, Form] = {
     "end": Noted("the last line of an episode", END),
     "run": Noted("what `utak run --json` prints", RUN_OUTPUT),
     "query": Noted("what `utak query --json` prints", QUERY_OUTPUT),
+    "plan": Noted("what `utak plan --json` prints", PLAN_OUTPUT),
     "routes": Noted("what `utak routes --json` prints", ROUTES_OUTPUT),
     "test": Noted("what `utak test --json` prints", TEST_OUTPUT),
 }

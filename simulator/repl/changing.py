@@ -3,6 +3,7 @@
 import shlex
 from pathlib import Path
 
+from kb.world.stated_plan import stated_plan
 from simulator.episode.episode import STANDARD_OUTPUT, EpisodeLog
 from simulator.repl.dialogue import Dialogue
 from simulator.repl.travelling import differences
@@ -81,14 +82,22 @@ def told_reach(reaches: tuple[str, ...]) -> str:
 
 
 def plan(dialogue: Dialogue, rest: str) -> None:
-    """Print what is wanted, what is done next and why."""
+    """Print what is wanted, the task plan with its cost and what was refuted, what is done next and why."""
     story = dialogue.story
     facts = story.facts
     goals = " ".join(f"{fact}." for fact in story.conditions.task.goals)
     lines = [f"wanted: {goals}"]
     bound = [fact for fact in facts if fact.startswith("bound(")]
     lines += [f"meant: {' '.join(bound)}"] if bound else []
-    lines += [f"planned: {fact}" for fact in facts if fact.startswith("plan(")]
+    planned = stated_plan(facts)
+    lines += (
+        [
+            "planned:" if planned.found else "not planned:",
+            *(f"  {escape_controls(one, False)}" for one in planned.lines()),
+        ]
+        if planned
+        else []
+    )
     if story.result is not None:
         lines.append(f"the run has ended: {story.result['verdict']}: {escape_controls(str(story.result['reason']))}")
     elif (coming := story.next_action) is None:

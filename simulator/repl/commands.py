@@ -83,7 +83,15 @@ PROMPT_COMMANDS: Mapping[str, PromptCommand] = {
     "back": PromptCommand("back [N]", "go back by one step, or by N", travelling.back),
     "run": PromptCommand("run", "go on to the end", travelling.run),
     "goto": PromptCommand("goto T", "go to step T, back or on", travelling.goto),
-    "plan": PromptCommand("plan", "what is wanted, what the robot does next, and why", changing.plan),
+    "plan": PromptCommand(
+        "plan",
+        "what is wanted and planned, what the robot does next, and why",
+        changing.plan,
+        "Of each step of the plan: what it does, the doors on its way, about how many commands it takes, and whether\n"
+        "its way is verified over sure floor or only hoped to be free; > marks the present step. Then the cost of the\n"
+        "whole plan with its lower bound, and what geometry refuted, and when. The facts say the same:\n"
+        "    ?- plan(I, S), takes(I, K), not verified(I).",
+    ),
     "goal": PromptCommand(
         "goal FACT.",
         "replace the goals and decide anew from here; alone: list them",

@@ -5,14 +5,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from kb.language.arguments import ArgumentType
+from kb.language.atoms import atom_parts
 from kb.language.vocabulary import (
     BELIEF_PREDICATES,
+    CIRCUMSTANCES,
     CONSTRAINT_GOALS,
     CORNER_NAMES,
     GOAL_CONDITIONS,
     GOAL_VOCABULARY,
+    SEARCH_ENDS,
     SHAPE_CLASSES,
     START_VOCABULARY,
+    STATED_STEPS,
     Signature,
 )
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
@@ -31,6 +35,10 @@ WORDS_OF_TYPE: Mapping[str, tuple[str, ...]] = {
     "a goal": tuple(f"{name}(" for name in GOAL_CONDITIONS if name not in CONSTRAINT_GOALS),
     "what is claimed": ("shape(", "colour("),
     "place": ("corner",),
+    "a goal of the task": tuple(f"{name}(" for name in GOAL_CONDITIONS),
+    "a step of a plan": tuple(f"{name}(" for name in STATED_STEPS),
+    "a circumstance": tuple(f"{name}(" for name in CIRCUMSTANCES),
+    "end of a search": SEARCH_ENDS,
 }
 WORD_COMMANDS = ("facts", "diff")  # commands that take a word of the facts
 
@@ -165,8 +173,7 @@ def _words(slot: ArgumentType, facts: Sequence[str], parameters: Sequence[str]) 
     if slot.name == "room":
         yield from ("next",) if not facts else ()
     for fact in facts:
-        name, _, inner = fact.removesuffix(".").partition("(")
-        parts = inner.removesuffix(")").split(",")
+        name, parts = atom_parts(fact)
         declared = BELIEF_PREDICATES.get((name, len(parts)))
         if declared is not None:
             for other, part in zip(declared.arguments, parts, strict=True):

@@ -1,7 +1,9 @@
-"""An episode as text: of each step the action, the reason, the true table and the facts that changed."""
+"""An episode as text: of each step the action, the reason, the true table, the plan and the facts that changed."""
 
 from collections.abc import Iterator
 
+from kb.language.diagnostics import BadInputError
+from kb.world.stated_plan import stated_plan
 from simulator.episode.episode import Episode
 from simulator.replay.changes import changes
 from simulator.run.recorded_story import RecordedStory
@@ -29,17 +31,31 @@ def transcript(name: str, episode: Episode) -> Iterator[str]:
     """
     story = RecordedStory(name, episode)
     before: list[str] | None = None
+    planned: list[str] = []
     while True:
         line, facts = story.line, [_clean(fact) for fact in story.line["belief"]["facts"]]
         head = f"step {line['step']}: {describe(line['action'])}: {_clean(line['why'])}"
-        yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *_changes(before, facts), "", ""])
-        before = facts
+        plan = _plan(facts)
+        told = [f"plan as before: {plan[0]}"] if plan and plan == planned else plan  # or that there is none, as before
+        yield "\n".join([head, escape_controls(story.picture()).rstrip("\n"), *told, *_changes(before, facts), "", ""])
+        before, planned = facts, plan
         if not story.advance():
             break
     if episode.result is None:
         yield "the episode was cut short here\n"
     else:
         yield f"{episode.result['verdict']} after {episode.result['steps']} steps: {_clean(episode.result['reason'])}\n"
+
+
+def _plan(facts: list[str]) -> list[str]:
+    """Return the lines that tell the task plan of a step, its present step first; [] where it has none."""
+    try:
+        plan = stated_plan(facts)
+    except BadInputError as bad:
+        return [f"the facts of the plan are damaged: {_clean(bad.problems[0].what)}"]
+    lines = [] if plan is None else [_clean(line) for line in plan.lines()]
+    steps = [line for line in lines if line.startswith((">", " "))]
+    return [*steps, *(line for line in lines if line not in steps)]
 
 
 def _changes(before: list[str] | None, facts: list[str]) -> Iterator[str]:

@@ -20,6 +20,7 @@ from planner.deciding.pursuit import Pursuer
 from planner.deciding.tools import Tools
 from planner.deciding.verification import Verifier
 from planner.screen.projection import CostMaps
+from planner.sights.walls import unfelt_walls
 from planner.situation import Situation
 from simulator.run.session import RobotMaker
 from simulator.run.warming import warm
@@ -55,6 +56,13 @@ def known_situation(rows: list[str], moved: bool = False, movable: int = 50, hel
         box = shapely.box(patch.west, patch.south, patch.west + mask.shape[1], patch.south + mask.shape[0])
         nodes.append(Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, movable=movable))
     return situation_of(replace(model, objects=tuple(nodes), held=held))
+
+
+def all_felt(model: WorldModel) -> WorldModel:
+    """Return a world model in which every wall that can be felt was felt to be wall."""
+    rows, columns = np.nonzero(unfelt_walls(model))
+    squares = zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True)
+    return replace(model, felt={**model.felt, **dict.fromkeys(squares, "b")})
 
 
 def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:

@@ -22,6 +22,7 @@ from planner.screen.projection import CostMaps
 from planner.stages import constraints, stages
 from tests.kb.drawings import known_model
 from tests.kb.eyes import colours_of, impression, utak_in, world_of
+from tests.planner.situations import all_felt
 
 NOWHERE = SourceSpan(0, 0, 0)
 
@@ -166,7 +167,7 @@ def test_around_the_corner_is_out_of_sight() -> None:
     seen = [not body.occupied(*(int(v) for v in start + part * (end - start))) for part in np.linspace(0, 1, 500)]
     assert not all(seen)
     plain, _ = run(EMPTY, Task({}, (), (goal("around", "utak", term("corner")),)))
-    assert plain.verdict.verdict == "possible_if"  # its walls were never felt
+    assert plain.verdict.verdict == "impossible"  # its walls were all felt
 
 
 def test_the_robot_goes_to_the_square() -> None:
@@ -355,14 +356,15 @@ def test_a_robot_that_is_carried_off_does_its_task_all_the_same() -> None:
 
 @pytest.mark.parametrize(
     ("anew", "shaken", "verdict"),
-    [(False, False, "possible_if"), (True, False, "possible_if"), (False, True, "limit"), (True, True, "limit")],
+    [(False, False, "impossible"), (True, False, "impossible"), (False, True, "limit"), (True, True, "limit")],
 )
 def test_nothing_is_proved_of_the_unseen_while_impressions_contradict_each_other(
     anew: bool, shaken: bool, verdict: str
 ) -> None:
-    model = known_model(EMPTY)
+    assert "it is felt" in Decider(SQUARE).decide(known_model(EMPTY), [(0.5, 0.5)]).why
+    model = all_felt(known_model(EMPTY))
     found = Decider(SQUARE).decide(model, [model.place])
-    assert (found.command, found.verdict) == (None, "possible_if")
+    assert (found.command, found.verdict) == (None, "impossible")
     after = Decider(SQUARE).decide(replace(model, anew=anew, shaken=shaken), [model.place])
     assert (after.command, after.verdict) == (None, verdict)
     assert found.why.startswith(after.why.partition(";")[0])

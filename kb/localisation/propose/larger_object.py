@@ -6,6 +6,7 @@ door or a niche, floor shows where wall seemed to be, and so how far the object 
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import shapely
 
@@ -13,16 +14,21 @@ from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import FREE
+from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
 from kb.mapping.patch import patch_of_polygon, patch_of_squares
-from kb.objects.held_object import HeldObject, is_grid_aligned
+from kb.objects.held_object import HeldObject, Square, is_grid_aligned
 
-MAX_HIDDEN_DEPTH = 3  # squares by which an object may go on in what seems to be wall; tuned on random worlds
+MAX_HIDDEN_DEPTH = 8  # squares by which an object may go on in what seems to be wall; a bound on time
+BESIDE_END = range(-3, 4)  # squares about the end of an object: one field of 4 x 4 may show them together (derived)
 SIDE_DIRECTIONS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 
 
 def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
-    """Yield explanations that a push went as commanded and the object is larger than it seemed, the least larger first.
+    """Yield explanations that a push went as commanded and the object is larger than it seemed.
+
+    At most one for each side. An object that fills a gap in a wall mostly goes on to the end of the wall: of the
+    lengths that the observation agrees with, the greatest one over squares that were settled as occupied counts, if
+    there is one; else the least; or a greater one where something stands now that only this accounts for.
 
     Only for an object that never moved before, with its sides on grid lines; nothing for a turn.
 
@@ -36,24 +42,84 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     ------
     Explanation
         Of kind larger, at the commanded place (x, y) in squares, map frame. Without residual; `larger` is the object
-        before the push; `distance` is how far it goes on beyond what was seen, 1 to 3 squares.
+        before the push; `distance` is how far it goes on at least beyond what was seen, 1 to MAX_HIDDEN_DEPTH squares.
     """
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
         return
+    for side in SIDE_DIRECTIONS:
+        agreeing = list(_agreeing_lengths(surprise, held, motion, side))
+        if agreeing:
+            yield _best_length(agreeing, surprise)._replace(distance=agreeing[0].explanation.distance)
+
+
+class _Length(NamedTuple):
+    """A length by which an object may go on to one side, with which the observation agrees.
+
+    Attributes
+    ----------
+    explanation : that it does.
+    occupied : whether all that was hidden had been settled as occupied.
+    floor : the map with floor in place of what was hidden.
+    held_objects : all held objects after the motion, the larger one last.
+    """
+
+    explanation: Explanation
+    occupied: bool
+    floor: OccupancyMap
+    held_objects: list[HeldObject]
+
+
+def _best_length(agreeing: list[_Length], surprise: Surprise) -> Explanation:
+    """Return the best of some lengths of an object to one side, given the least first.
+
+    It is the greatest over squares that had been settled as occupied, or else the least; but a greater one where
+    something stands at the end that only the greater one accounts for.
+    """
+    settled = [length for length in agreeing if length.occupied]
+    best = settled[-1] if settled else agreeing[0]
+    for length in agreeing[agreeing.index(best) + 1 :]:
+        lying, further = (patch_of_polygon(one.held_objects[-1].polygon).squares() for one in (best, length))
+        beside = {(x + i, y + j) for x, y in further - lying for i in BESIDE_END for j in BESIDE_END}
+        short, long = (_clashes_beside(one, beside, surprise) for one in (best, length))
+        if short and not long:
+            best = length
+    return best.explanation
+
+
+def _clashes_beside(length: _Length, squares: set[Square], surprise: Surprise) -> bool:
+    """Return whether the observation contradicts a length if nothing else stands on some squares that are open yet."""
+    floor = length.floor.copy()
+    open_ = {square for square in squares if floor.state[floor.index(*square)] == OPEN}
+    if open_:
+        patch = patch_of_squares(open_)
+        floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
+    place = length.explanation.place
+    return count_clashes(surprise.frame, floor, length.held_objects, place, surprise.ranges, only_whether=True) > 0
+
+
+def _agreeing_lengths(
+    surprise: Surprise, held: HeldObject, motion: Translate, side: tuple[int, int]
+) -> Iterator[_Length]:
+    """Yield the lengths by which the object may go on to one side, if the observation agrees, the least first.
+
+    surprise : the observation after the push. held : the object before it, map frame. motion : as commanded, map frame.
+    side : one of SIDE_DIRECTIONS.
+    """
     occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
-        for side in SIDE_DIRECTIONS:
-            whole = _extended(held, side, depth)
-            hidden = patch_of_polygon(whole.polygon).squares() - seen
-            if any(occupancy.state[occupancy.index(*square)] == FREE for square in hidden):
-                continue
-            outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")
-            patch, floor = patch_of_squares(hidden), occupancy.copy()
-            floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
-            held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
-            if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
-                yield Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
+        whole = _extended(held, side, depth)
+        hidden = patch_of_polygon(whole.polygon).squares() - seen
+        states = {int(occupancy.state[occupancy.index(*square)]) for square in hidden}
+        if FREE in states:
+            return
+        outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")
+        patch, floor = patch_of_squares(hidden), occupancy.copy()
+        floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
+        held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
+        if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
+            found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
+            yield _Length(found, states == {OCCUPIED}, floor, held_objects)
 
 
 def _extended(held: HeldObject, side: tuple[int, int], depth: int) -> HeldObject:

@@ -4,6 +4,7 @@ run     run the robot on a scenario
 test    run scenarios as tests
 sweep   run scenarios with many seeds and noises
 query   ask what Utak believes
+plan    show what the robot means to do
 repl    step through a run and ask
 explain tell why: facts, commands, verdicts, cells
 replay  show a recorded episode

@@ -22,7 +22,9 @@ def add(parts: Any) -> None:
     part = parts.add_parser("query", help="ask what Utak believes")
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("query", metavar="QUERY", help='such as "object(X), shape(X, square, C)"')
-    part.add_argument("--at", type=_step, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)")
+    part.add_argument(
+        "--at", type=step_number, metavar="STEP", help="the step to ask at (default: the last; 0: on waking)"
+    )
     part.add_argument("--json", action="store_true", help="print the answer as one JSON object")
     part.add_argument("--limit", type=_limit, metavar="N", help="print so many rows at most (default 10000)")
     part.add_argument("--dump-asp", metavar="DIR", help=f"{DUMP_HELP}: those of an episode up to the step")
@@ -43,7 +45,7 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     refuse_links(options, options.story)
     story = open_story(options.story, settings_of(options))
-    _go_to(story, options.story, options.at)
+    go_to(story, options.story, options.at)
     step = story.line["step"]
     if options.dump_asp is not None:
         from simulator.episode.episode import read_episode
@@ -70,7 +72,7 @@ def _limit(text: str) -> int:
     return parse_whole(text, 1, MAX_LIMIT_ROWS)
 
 
-def _go_to(story: "Story", name: str, step: int | None) -> None:
+def go_to(story: "Story", name: str, step: int | None) -> None:
     """Advance to a step, or to the end for None; raise BadInputError when there is no such step."""
     from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 
@@ -81,6 +83,6 @@ def _go_to(story: "Story", name: str, step: int | None) -> None:
         raise BadInputError([Problem(name, SourceSpan(1, 1, 1), what)])
 
 
-def _step(text: str) -> int:
+def step_number(text: str) -> int:
     """Return the step for `--at`."""
     return parse_whole(text, 0, 1_000_000)

@@ -47,13 +47,23 @@ function planPanel(at) {
   const bound = new Map(Object.entries(line.belief.bound || {}).concat(said("bound", 2)));
   parts.push(html("p", {}, "wanted: ", ...task.goals.flatMap((goal, i) => [i ? ", " : "", html("code", {}, shown(goal))])));
   parts.push(html("p", {}, bound.size ? "meant: " + [...bound].map(([name, node]) => `${shown(name)} is ${shown(node)}`).join(", ") : "nothing is bound yet"));
+  const of = (word, key) => said(word, 2).filter(([number]) => number === key).map(([, value]) => shown(value));
+  const goals = said("goal", 1).map(([goal]) => `${shown(goal)} is ${of("means", goal).join(" and ")}`);
+  if (goals.length) parts.push(html("p", {}, "goals of the plan: " + goals.join("; ")));
   const verified = new Set(said("verified", 1).map(([number]) => number));
   const steps = said("plan", 2).sort((a, b) => a[0] - b[0]);
   if (steps.length) {
-    parts.push(html("ol", { class: "plan" }, ...steps.map(([number, step]) => html("li", {}, html("code", {}, shown(step)), verified.has(number) ? " ✓ verified" : ""))));
-  } else parts.push(html("p", { class: "quiet" }, "The facts of this step have no plan."));
+    parts.push(html("ol", { class: "plan", start: 0 }, ...steps.map(([number, step], i) => {
+      const [takes] = of("takes", number), told = [of("serves", number).map((goal) => `for ${goal}`).join(" and "), of("passes", number).map((door) => `through ${door}`).join(" and ")];
+      told.push(takes === undefined ? "" : `about ${takes} command${takes === "1" ? "" : "s"}`, verified.has(number) ? "✓ verified" : takes === undefined ? "not asked" : "hoped");
+      return html("li", i ? {} : { "aria-current": "step" }, i ? "" : html("b", {}, "▶ "), html("code", {}, shown(step)), " ", told.filter(Boolean).join(", "));
+    })));
+  } else parts.push(html("p", { class: "quiet" }, said("price", 3).length ? "No step of the plan is left." : "The facts of this step have no plan."));
+  const unmet = said("unmet", 1).map(([goal]) => shown(goal));
+  if (unmet.length) parts.push(html("p", {}, "no plan that was found attains " + unmet.join(", ")));
+  for (const [cost, least, end] of said("price", 3)) parts.push(html("p", {}, `cost ${shown(cost)} commands in all, at least ${shown(least)}; ${end === "proved" ? "the search ended with it" : "best found, not proved"}`));
   const refuted = said("refuted", 2);
-  if (refuted.length) parts.push(html("p", {}, "refuted:"), html("ul", {}, ...refuted.map(([step, given]) => html("li", {}, html("code", {}, shown(step)), " given ", html("code", {}, shown(given))))));
+  if (refuted.length) parts.push(html("p", {}, "refuted:"), html("ul", {}, ...refuted.map(([step, given]) => html("li", {}, html("code", {}, shown(step)), " given ", html("code", {}, of("given", given).join(", ") || shown(given))))));
   for (const word of ["verdict", "because"]) for (const [value] of said(word, 1)) parts.push(html("p", {}, `${word}: `, html("code", {}, shown(value))));
   const routes = Array.isArray(line.belief.routes) ? line.belief.routes : [];
   if (routes.length) {

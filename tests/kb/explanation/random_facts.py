@@ -37,6 +37,9 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "full_squares": (("o1", "o2"), (9, 12)),
     },
     "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,)},
+    "feel": {
+        "halt": (NUMBERS, (20, 90), (1, 2)), "tells": (NUMBERS, ("thing", "plain"), ("doorway", "square"), (1, 3)),
+    },
     "boldness": {
         "plan": (NUMBERS, (3, 4, 8)), "hopes": (NUMBERS,), "askew": (NUMBERS,), "short": (NUMBERS,),
         "aside": (NUMBERS,),
@@ -64,6 +67,7 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "rooms": {"door": (NUMBERS, (90,)), "opening": (NUMBERS,)},
     "shapes": {"shape": (("o1",), (*CLASSES, "polygon"), (2, 30, 62, 74, 98, 99))},
     "aims": {"choose": (NUMBERS,)},
+    "feel": {"feel": (NUMBERS,)},
     "boldness": {"take": (NUMBERS,)},
     "routes": {"choose": (NUMBERS,)},
     "transport": {"try": (PLACES, LEVELS, WAYS)},

@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from geometry.raster.components import components
-from kb.perception.protrusions import MAX_THING_LENGTH, protrusions, separate_things, untouched_parts
+from kb.perception.protrusions import (
+    MAX_THING_LENGTH,
+    protrusions,
+    separate_things,
+    untouched_parts,
+    with_embedded_things,
+)
 
 Mask = NDArray[np.bool_]
 WIDE, HIGH = 24, 20
@@ -138,3 +144,23 @@ def test_a_thing_in_a_corner_is_separated_from_the_thin_wall_that_it_touches() -
     occupied[9:11, 12:16] = False
     parts = sticking_out(occupied)
     assert among(parts, np.pad(thing, ((9, 0), (0, 0))))
+
+
+def test_what_was_felt_in_a_straight_wall_is_a_thing_of_the_felt_squares() -> None:
+    felt = {(5, 1): "b", (6, 1): "g", (7, 1): "g", (8, 1): "k", (10, 1): "g"}
+    found = with_embedded_things([], felt, room())
+    assert [sorted(map(tuple, np.argwhere(thing).tolist())) for thing in found] == [
+        [(6, 1), (7, 1)],
+        [(10, 1)],
+        [(8, 1)],
+    ]
+
+
+def test_what_was_felt_beside_a_thing_of_its_colour_belongs_to_it() -> None:
+    occupied, thing = with_thing(6, 2, full(4, 3))
+    felt = {(6, 4): "g", (6, 1): "g", (9, 1): "g", (5, 1): "b"}
+    (whole,) = with_embedded_things([thing], felt, occupied)
+    assert sorted({tuple(s) for s in np.argwhere(whole & ~thing).tolist()}) == [(row, 1) for row in range(6, 10)]
+    (part,) = with_embedded_things([thing], {**felt, (7, 1): "b"}, occupied)  # verge was felt between
+    assert sorted({tuple(s) for s in np.argwhere(part & ~thing).tolist()}) == [(6, 1), (9, 1)]
+    assert len(with_embedded_things([thing], {(6, 4): "k", (6, 1): "g"}, occupied)) == 2  # of another colour

@@ -150,7 +150,7 @@ def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> N
     unseen = Reconciliation({}, ("x",), (), ())
     decision = transporter.towards(goal, Stage((goal,)), situation_of(model), unseen, tools_with())
     assert decision is not None
-    found = qualify(decision, model)
+    found = qualify(decision, situation_of(model))
     assert (found.command, found.verdict) == (None, "possible_if")
     assert "nothing seen so far is x" in found.why and "never felt" in found.why
 

@@ -9,9 +9,10 @@ from simulator.repl.completion import completions
 
 COMMANDS = ["?-", ";", "assume", "back", "diff", "facts", "goal", "goto", "help", "quit", "run", "since", "step", "why"]
 FACTS = ["kind(o1,object,90).", "kind(o12,object,30).", "in(org,r1).", "in(o1,r2).", "door(d1).", "bound(x,o1)."]
+FACTS += ["plan(0,carry(o1,g1_r2)).", "serves(0,g1).", "price(5,5,proved)."]
 OFFERED = {
     "st": {"step"},
-    "g": {"goal", "goto"},
+    "g": {"given(", "goal", "goal(", "goto"},
     "sha": {"shape("},
     "?- sha": {"shape("},
     "?- shape(o1": {"o12"},
@@ -23,6 +24,11 @@ OFFERED = {
     "?- bound(": {"x", "y"},
     "?- bound(x, ": {"floor", "o1", "o12", "org", "utak", "verge"} - {"floor", "utak", "verge"},
     "?- door(": {"d1"},
+    "?- plan(0, c": {"carry(", "carry(o1,g1_r2)", "clear("},
+    "?- serves(I, ": {"g1"},
+    "?- price(K, L, p": {"proved"},
+    "?- means(G, in": {"in("},
+    "pl": {"plan("},
     "object(X),\n  shape(X, di": {"disc"},
     "goal at(": {"x", "y", "utak"},
     "goal at(utak, c": {"corner("},

@@ -58,6 +58,27 @@ def step(browser: Browser) -> int:
     return int(browser.run("document.getElementById('step').textContent.split(' ')[0]"))
 
 
+def test_the_panel_shows_the_plan_with_its_present_step_marked(
+    browser: Browser, page: Path, carried: tuple[Path, Episode]
+) -> None:
+    browser.open(page)
+    shown = 0
+    for line in carried[1].steps:
+        planned = [fact for fact in line["belief"]["facts"] if fact.startswith("plan(")]
+        browser.run(f"utak.player.show({line['step']})")
+        text = browser.run("document.getElementById('plan-panel').innerText")
+        marked = browser.run(
+            "[...document.querySelectorAll('#plan-panel [aria-current=step]')].map((one) => one.innerText)"
+        )
+        assert len(marked) == (1 if planned else 0)
+        for fact in planned:
+            number, _, planned_step = fact.removesuffix(").").removeprefix("plan(").partition(",")
+            assert planned_step in (marked[0] if number == "0" else text)
+            shown += 1
+    assert shown > 0
+    assert browser.complaints() == []
+
+
 def assert_shows(browser: Browser, episode: Episode, steps: list[int]) -> None:
     """Check that a page has the lines of some steps, and shows each of them without errors."""
     detail = tuple(browser.run("utak.episode.detail"))

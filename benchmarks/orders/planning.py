@@ -1,7 +1,7 @@
 """Task plans in worlds that are known: how near to the best, and how long they take.
 
-    python -m benchmarks.planning optimum [--count 30] [--seed S]
-    python -m benchmarks.planning rooms [--count 12] [--seed S]
+    python -m benchmarks.orders.planning optimum [--count 30] [--seed S]
+    python -m benchmarks.orders.planning rooms [--count 12] [--seed S]
 
 `optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block others.
 The plan is compared with the cheapest sequence of errands that a search over all states finds which has the same places
@@ -29,7 +29,7 @@ from planner.tasking.search import MadePlan, make_plan
 ROOM_WIDTH, ROOM_HEIGHT = 11, 10  # squares of each of the six rooms (a convention)
 DOOR_WIDTH = 5  # squares (a convention)
 MAX_ERRANDS = 5  # of the exhaustive search: beyond them no plan of these small worlds is cheaper
-Grid = list[list[str]]
+Drawing = list[list[str]]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -99,7 +99,7 @@ def small_world(rng: np.random.Generator) -> tuple[list[str], dict[str, End]]:
     width, height, deep = int(rng.integers(14, 19)), int(rng.integers(11, 15)), int(rng.integers(8, 12))
     side = int(rng.integers(3, 5))
     low = int(rng.integers(1, height - side - 1))
-    grid: Grid = [["b"] * (width + deep + 2) for _ in range(height + 2)]
+    grid: Drawing = [["b"] * (width + deep + 2) for _ in range(height + 2)]
     _clear(grid, 1, 1, width, height)
     _clear(grid, width + 1, low, deep, side)
     names = "ghk"[: int(rng.integers(2, 4))]
@@ -145,7 +145,7 @@ def rooms(count: int, seed: int) -> int:
 def six_rooms(rng: np.random.Generator, goals: int) -> tuple[list[str], dict[str, End]]:
     """Return six rooms in two rows with seven doors, six things, and a pose in another room for some of them."""
     wide, high = ROOM_WIDTH + 2, ROOM_HEIGHT + 2
-    grid: Grid = [["b"] * (3 * wide + 2) for _ in range(2 * high + 2)]
+    grid: Drawing = [["b"] * (3 * wide + 2) for _ in range(2 * high + 2)]
     corners = [(2 + wide * column, 2 + high * row) for row in range(2) for column in range(3)]
     for x, y in corners:
         _clear(grid, x, y, ROOM_WIDTH, ROOM_HEIGHT)
@@ -169,19 +169,19 @@ def six_rooms(rng: np.random.Generator, goals: int) -> tuple[list[str], dict[str
     return ["".join(row) for row in reversed(grid)], ends
 
 
-def _clear(grid: Grid, x: int, y: int, width: int, height: int) -> None:
+def _clear(grid: Drawing, x: int, y: int, width: int, height: int) -> None:
     """Make floor of a rectangle of squares; (x, y) is its southwest one."""
     _fill(grid, x, y, width, height, ".")
 
 
-def _fill(grid: Grid, x: int, y: int, width: int, height: int, mark: str) -> None:
+def _fill(grid: Drawing, x: int, y: int, width: int, height: int, mark: str) -> None:
     """Write a mark on a rectangle of squares; (x, y) is its southwest one."""
     for row in range(y, y + height):
         for column in range(x, x + width):
             grid[row][column] = mark
 
 
-def _free_spots(grid: Grid, side: int, rng: np.random.Generator, width: int) -> Iterator[tuple[int, int]]:
+def _free_spots(grid: Drawing, side: int, rng: np.random.Generator, width: int) -> Iterator[tuple[int, int]]:
     """Yield random places (x, y) of squares with a side, a square of floor about them; they need not be apart later."""
     taken: list[tuple[int, int]] = []
     for _ in range(2000):

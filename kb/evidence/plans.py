@@ -1,0 +1,197 @@
+"""Reasons for the facts of the task plan: the decision of task.lp, what the task wants, and what geometry said."""
+
+from collections.abc import Iterator, Sequence
+from typing import Protocol
+
+from kb.evidence.proving import words_of
+from kb.evidence.reason import Reason, ReasonKind
+from kb.evidence.record import Record
+from kb.language.atoms import atom_parts
+from kb.language.vocabulary import PLAN_PREDICATES
+from kb.tracing.decisions import SolverCall
+from kb.world.stated_plan import stated_plan
+
+TASK_ENCODING_NAME = "task"  # the encoding of the task plan
+DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
+ROBOT_NAME = "utak"  # the robot among what a plan brings
+TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+
+
+class PlanExplainer(Protocol):
+    """Explains facts and answers of encodings, as `kb.evidence.beliefs.FactExplainer` does."""
+
+    record: Record
+
+    def reason(self, fact: str, step: int) -> Reason | None:
+        """Return the reason of a fact at a step; None when it is not believed then."""
+
+    def prove(self, call: SolverCall, atom: str, step: int) -> Reason:
+        """Return the reason of an atom of an answer that was given at a step."""
+
+
+def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
+    """Return the reason of a fact of the task plan at a step.
+
+    A step of the plan rests on the decision of task.lp, on the goals that it serves, and on the refutations that
+    concern what it brings. What the task states, and what geometry said, are leaves.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    fact : a fact of the plan that the step states, without a full stop.
+    step : the number of the step.
+    """
+    name, arguments = atom_parts(fact)
+    says = _in_words(beliefs, name, arguments, step) or words_of("belief", fact)
+    if name == "means":
+        return Reason(fact, says, ReasonKind.TASK, "the task")
+    below = tuple(_below(beliefs, name, arguments, step))
+    if below:
+        return Reason(fact, says, ReasonKind.FACT, f"step {step}", below)
+    return Reason(fact, says, ReasonKind.MEASURED, f"step {_made_at(beliefs.record, step)}")
+
+
+def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
+    """Yield the reason of the present step of the plan at a step of the run, or of goals that no plan attains.
+
+    Parameters
+    ----------
+    beliefs : explains the facts of the run.
+    step : the number of the step of the run.
+    """
+    for fact in beliefs.record.steps[step].facts:
+        if fact.startswith(("plan(0,", "unmet(")):
+            yield plan_fact_reason(beliefs, fact, step)
+
+
+def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> Iterator[Reason]:
+    """Yield what a fact of the plan rests on; nothing when geometry measured it."""
+    if name == "goal":
+        yield from _stated(beliefs, f"means({arguments[0]},", step)
+    elif name == "serves":
+        yield from _stated(beliefs, f"goal({arguments[1]})", step)
+        yield from _stated(beliefs, f"plan({arguments[0]},", step)
+    elif name == "plan":
+        yield from _decided(beliefs, int(arguments[0]), arguments[1], step)
+        yield from _goals_served(beliefs, arguments[0], step)
+        yield from _refutations_about(beliefs, arguments[1], step)
+        for fact in (f"takes({arguments[0]},", f"verified({arguments[0]})"):
+            yield from _stated(beliefs, fact, step)
+    elif name == "passes":
+        number = int(arguments[0])
+        yield from _decided(beliefs, number, f"{DOOR_STEP}({arguments[1]})", step)
+    elif name == "unmet":
+        found = _decision(beliefs.record, step)
+        if found is not None and f"unmet({arguments[0]})" in (found[1].answer or ()):
+            yield beliefs.prove(found[1], f"unmet({arguments[0]})", found[0])
+        for fact in beliefs.record.steps[step].facts:
+            if fact.startswith("refuted(") and _place(fact).startswith(f"{arguments[0]}_"):
+                yield from _stated(beliefs, fact, step)
+    elif name == "refuted":
+        yield from _stated(beliefs, f"given({arguments[1]},", step)
+    elif name == "price":
+        yield from _stated(beliefs, "takes(", step)
+
+
+def _stated(beliefs: PlanExplainer, start: str, step: int) -> Iterator[Reason]:
+    """Yield the reasons of the facts of a step that begin with a text."""
+    for fact in beliefs.record.steps[step].facts:
+        if fact.startswith(start) and (found := beliefs.reason(fact, step)) is not None:
+            yield found
+
+
+def _goals_served(beliefs: PlanExplainer, number: str, step: int) -> Iterator[Reason]:
+    """Yield the reasons of the goals that a step of the plan serves: those that hold at its place."""
+    start = f"serves({number},"
+    for fact in beliefs.record.steps[step].facts:
+        if fact.startswith(start):
+            yield from _stated(beliefs, f"goal({atom_parts(fact)[1][1]})", step)
+
+
+def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Iterator[Reason]:
+    """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it.
+
+    After each that a thing moved aside makes room for, the goals of the steps of the plan for which it does.
+    """
+    facts = beliefs.record.steps[step].facts
+    thing = _brought(planned)
+    rests_on = [atom_parts(fact)[1] for fact in facts if fact.startswith("given(")]
+    numbers = {number for number, given in rests_on if given.startswith(f"at({thing},")}
+    for fact in facts:
+        name, parts = atom_parts(fact)
+        if name != "refuted" or not (parts[1] in numbers or _brought(parts[0]) == thing):
+            continue
+        yield from _stated(beliefs, fact, step)
+        if planned.startswith("clear(") and _brought(parts[0]) != thing:
+            later = [atom_parts(one)[1] for one in facts if one.startswith("plan(")]
+            for number, what in later:
+                if _brought(what) == _brought(parts[0]):
+                    yield from _goals_served(beliefs, number, step)
+
+
+def _brought(planned: str) -> str:
+    """Return the name of what a step of the plan brings; that of the robot for its own way."""
+    action, arguments = atom_parts(planned)
+    return arguments[0] if action in ("carry", "clear") else ROBOT_NAME
+
+
+def _place(refuted: str) -> str:
+    """Return the place to which the step of a fact refuted(Step, Number) brings something."""
+    return atom_parts(atom_parts(refuted)[1][0])[1][-1]
+
+
+def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
+    """Return a step of the plan, or a refutation, in words; "" for other facts of the plan."""
+    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if name in ("plan", "refuted") else None
+    if plan is None:
+        return ""
+    if name == "plan":
+        return next((f"{one.words}; {one.certainty}" for one in plan.steps if str(one.number) == arguments[0]), "")
+    return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")
+
+
+def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> Iterator[Reason]:
+    """Yield why task.lp chose a step of the plan; nothing when the record does not tell.
+
+    number : the number of the plan's step, 0 for the present one. planned : the step, or go(D) for a door on its way.
+    """
+    found = _decision(beliefs.record, step)
+    for call, atom in planned_choice(beliefs.record, str(number), planned, step):
+        if found is not None and atom in (call.answer or ()):
+            yield beliefs.prove(call, atom, found[0])
+
+
+def planned_choice(record: Record, number: str, planned: str, step: int) -> Iterator[tuple[SolverCall, str]]:
+    """Yield the decision of the plan of a step, with the atom by which task.lp says that the plan has some step.
+
+    Nothing when the step of the run has no plan.
+
+    Parameters
+    ----------
+    record : the record of the run.
+    number : the number of the plan's step, 0 for the present one, as text.
+    planned : the plan's step, such as carry(o1,g1_r2), or go(D) for a door on its way.
+    step : the number of the step of the run.
+    """
+    found = _decision(record, step)
+    left = sum(1 for fact in record.steps[step].facts if fact.startswith("plan("))
+    if found is None or not left or not number.isdigit():
+        return
+    steps = [atom_parts(atom)[1][0] for atom in found[1].answer or () if atom.startswith("occurs(")]
+    done = sum(1 for one in steps if atom_parts(one)[0] != DOOR_STEP) - left
+    yield found[1], f"occurs({planned},{done + int(number)})"
+
+
+def _decision(record: Record, step: int) -> tuple[int, SolverCall] | None:
+    """Return the newest decision of task.lp up to a step, with its step; None when there is none."""
+    for number in range(step, -1, -1):
+        for call in reversed(record.decisions(number)):
+            if call.encoding == TASK_ENCODING_NAME and call.answer is not None:
+                return number, call
+    return None
+
+
+def _made_at(record: Record, step: int) -> int:
+    """Return the step at which the plan of a step was made, as far as the record tells; else that step."""
+    found = _decision(record, step)
+    return step if found is None else found[0]

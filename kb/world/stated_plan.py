@@ -1,0 +1,270 @@
+"""The task plan as the facts of a step state it, read back as a value: in words, and as JSON values."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from kb.language.diagnostics import BadInputError
+from kb.language.reader import parse_facts
+from kb.language.source_text import source_from_bytes
+from kb.language.terms import Fact
+from kb.language.vocabulary import PLAN_PREDICATES, check_facts
+
+PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+HERE_PLACE = "here"  # the place of everything where it was when the plan was made
+START_WORD = "start"  # in stood(start): the robot stands where it was when the plan was made
+
+
+class PlanGoal(NamedTuple):
+    """A goal for which the plan was made.
+
+    Attributes
+    ----------
+    name : g1, g2, ... in the order of the task.
+    means : what the task states for it, as facts without full stops; () for a goal that a user's rule added.
+    attained : whether the plan attains it.
+    """
+
+    name: str
+    means: tuple[str, ...]
+    attained: bool
+
+
+class PlanStep(NamedTuple):
+    """A step of the plan.
+
+    Attributes
+    ----------
+    number : its number; 0 is the present step.
+    step : as the encoding writes it, such as carry(o1,g1_r2).
+    serves : the names of the goals that hold at its place.
+    doors : the doors on its way.
+    commands : about how many commands it takes; None when geometry was not asked.
+    verified : whether its way is surely free; else it is only hoped to be.
+    """
+
+    number: int
+    step: str
+    serves: tuple[str, ...]
+    doors: tuple[str, ...]
+    commands: int | None
+    verified: bool
+
+    @property
+    def certainty(self) -> str:
+        """The answer of geometry in words: `verified`, `hoped` or `not asked`."""
+        return "verified" if self.verified else "not asked" if self.commands is None else "hoped"
+
+    @property
+    def words(self) -> str:
+        """The step in words."""
+        name, _, rest = self.step.partition("(")
+        subject, _, place = rest.removesuffix(")").partition(",")
+        goals = f"to where {' and '.join(self.serves)} holds" if self.serves else f"to {place or subject}"
+        if name == "arrive":
+            return f"the robot goes {goals}"
+        return f"{subject} is moved aside to {place}" if name == "clear" else f"{subject} is brought {goals}"
+
+
+class PlanRefutation(NamedTuple):
+    """A step that geometry refuted when the plan was made.
+
+    Attributes
+    ----------
+    number : the number of the refutation.
+    step : as the encoding writes it.
+    circumstances : on what the refutation rests: at(N,P), stood(N) and shut(D), as text.
+    """
+
+    number: int
+    step: str
+    circumstances: tuple[str, ...]
+
+    @property
+    def words(self) -> str:
+        """The refutation in words."""
+        told = " and ".join(filter(None, (_circumstance_in_words(one, self.step) for one in self.circumstances)))
+        return f"{self.step} is refuted" + (f" while {told}" if told else " whatever else is the case")
+
+
+@dataclass(frozen=True)
+class StatedPlan:
+    """The task plan of a step: what the robot means to do, from its present step on; or that there is none.
+
+    While no plan attains all goals there are no steps and no cost: the goals tell which are not attained, and the
+    refutations why.
+
+    Attributes
+    ----------
+    goals : the goals for which it was made, in the order of the task.
+    steps : the steps that are left, in order.
+    refutations : the steps that geometry refuted when it was made.
+    cost : about how many commands the whole plan takes, with the steps that are done; None where it is not stated.
+    least : a number of commands that no plan stays below, by the estimates of the search; None likewise.
+    proved : whether the search ended with it; else it is the best one that was found up to the bound on rounds.
+    """
+
+    goals: tuple[PlanGoal, ...]
+    steps: tuple[PlanStep, ...]
+    refutations: tuple[PlanRefutation, ...] = ()
+    cost: int | None = None
+    least: int | None = None
+    proved: bool = False
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a plan that the robot follows."""
+        return self.cost is not None or bool(self.steps)
+
+    @property
+    def gap(self) -> int | None:
+        """The cost less the lower bound, in commands; None where they are not stated."""
+        return None if self.cost is None or self.least is None else self.cost - self.least
+
+    @property
+    def unmet(self) -> tuple[str, ...]:
+        """The names of the goals that it does not attain."""
+        return tuple(goal.name for goal in self.goals if not goal.attained)
+
+    def lines(self) -> Iterator[str]:
+        """Yield the plan as lines of text: its goals, its steps, its cost, and what was refuted."""
+        for goal in self.goals:
+            means = f": {' and '.join(goal.means)}" if goal.means else ""
+            yield f"goal {goal.name}{means}{'' if goal.attained else '; not attained'}"
+        for step in self.steps:
+            through = f", through {' and '.join(step.doors)}" if step.doors else ""
+            takes = "" if step.commands is None else f"about {_commands(step.commands)}, "
+            yield f"{'>' if step.number == 0 else ' '} {step.number} {step.step}: {step.words}{through}; {takes}" + (
+                step.certainty
+            )
+        if not self.steps:
+            yield "no step is left" if self.found else "no plan that was found attains all goals"
+        if self.cost is not None:
+            end = "the search ended with it" if self.proved else "best found, not proved"
+            yield (
+                f"cost: about {_commands(self.cost)} for the whole plan; lower bound by the estimates of the search "
+                f"{self.least}, gap {self.gap}; {end}"
+            )
+        yield from (f"refuted: {refutation.words}" for refutation in self.refutations)
+
+    def __str__(self) -> str:
+        """Return the plan as text."""
+        return "\n".join(self.lines())
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the plan as JSON values, as `utak plan --json` prints it."""
+        return {
+            "found": self.found,
+            "goals": [{"name": g.name, "means": list(g.means), "attained": g.attained} for g in self.goals],
+            "steps": [
+                {
+                    "number": one.number,
+                    "step": one.step,
+                    "words": one.words,
+                    "serves": list(one.serves),
+                    "doors": list(one.doors),
+                    "commands": one.commands,
+                    "certainty": one.certainty,
+                }
+                for one in self.steps
+            ],
+            "cost": self.cost,
+            "least": self.least,
+            "gap": self.gap,
+            "proved": self.proved,
+            "refuted": [
+                {"step": one.step, "given": list(one.circumstances), "words": one.words} for one in self.refutations
+            ],
+        }
+
+
+def stated_plan(facts: Iterable[str], name: str = "facts") -> StatedPlan | None:
+    """Return the plan that the facts of a step state, or that no plan was found; None when they say nothing of it.
+
+    Parameters
+    ----------
+    facts : the world model of a step, as facts, with or without full stops.
+    name : what messages call them.
+
+    Raises
+    ------
+    BadInputError : facts of a plan are damaged.
+    """
+    text = [f"{fact.removesuffix('.')}." for fact in facts if fact.partition("(")[0] in PLAN_NAMES]
+    source = source_from_bytes(name, "\n".join(text).encode("utf-8", "replace"))
+    found = [fact for fact in parse_facts(source) if (fact.name, len(fact.args)) in PLAN_PREDICATES]
+    types = {predicate: declared.arguments for (predicate, _), declared in PLAN_PREDICATES.items()}
+    if problems := check_facts(source, found, types):
+        raise BadInputError(problems)
+    said: dict[str, list[tuple[str, ...]]] = {}
+    for fact in found:
+        said.setdefault(fact.name, []).append(_arguments(fact))
+    return _plan(said) if said.keys() & {"plan", "price", "unmet"} else None
+
+
+def _arguments(fact: Fact) -> tuple[str, ...]:
+    """Return the arguments of a fact as text."""
+    return tuple(map(str, fact.args))
+
+
+def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:
+    """Return the plan of facts that fit the vocabulary; said : the arguments of all facts, by predicate."""
+
+    def of(predicate: str, key: str) -> tuple[str, ...]:
+        """Return the second arguments of the facts of a predicate whose first one is a key, in order."""
+        return tuple(sorted((row[1] for row in said.get(predicate, ()) if row[0] == key), key=_by_number))
+
+    unmet = {name for (name,) in said.get("unmet", ())}
+    verified = {number for (number,) in said.get("verified", ())}
+    names = {name for (name,) in said.get("goal", ())} | unmet  # users' rules may add goals that are unmet
+    goals = [PlanGoal(name, of("means", name), name not in unmet) for name in sorted(names, key=_by_number)]
+    steps = [
+        PlanStep(
+            int(number),
+            step,
+            of("serves", number),
+            of("passes", number),
+            next(map(int, of("takes", number)), None),
+            number in verified,
+        )
+        for number, step in sorted(said.get("plan", ()), key=lambda row: int(row[0]))
+    ]
+    refutations = [
+        PlanRefutation(int(number), step, of("given", number))
+        for step, number in sorted(said.get("refuted", ()), key=lambda row: int(row[1]))
+    ]
+    cost, least, end = next(iter(said.get("price", ())), (None, None, "found"))
+    return StatedPlan(
+        tuple(goals),
+        tuple(steps),
+        tuple(refutations),
+        None if cost is None else int(cost),
+        None if least is None else int(least),
+        end == "proved",
+    )
+
+
+def _by_number(name: str) -> tuple[str, int, str]:
+    """Return a key that sorts names by their letters, then by the number at their end: g2 before g10."""
+    letters = name.rstrip("0123456789")
+    digits = name[len(letters) :]
+    return letters, int(digits) if digits else -1, name
+
+
+def _circumstance_in_words(circumstance: str, step: str) -> str:
+    """Return a circumstance in words; "" where it only says that what a step brings is where it was."""
+    (kind, _, rest) = circumstance.removesuffix(")").partition("(")
+    name, _, place = rest.partition(",")
+    if kind == "at":
+        if place == HERE_PLACE:
+            subject = "utak" if step.startswith("arrive(") else step.partition("(")[2].partition(",")[0]
+            return "" if name == subject else f"{name} is where it was"
+        return f"{name} is at {place}"
+    if kind == "stood":
+        return f"the robot stands where it {'was' if name == START_WORD else f'put {name}'}"
+    return f"door {name} is not passed"
+
+
+def _commands(number: int) -> str:
+    """Return a number of commands in words."""
+    return f"{number} command{'s' * (number != 1)}"

@@ -1,0 +1,177 @@
+"""Feeling: before the robot gives up, it feels the walls that may be things, the likeliest places first.
+
+planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses where to halt next.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from geometry.kernels.arrays import Bools
+from geometry.raster.components import components
+from geometry.raster.rasterize import squares
+from kb.language.vocabulary import TRACK_GOALS
+from kb.reasoning.solver import solve
+from kb.world.model import Node
+from kb.world.rooms import Door
+from planner.deciding.pursuit import Pursuer
+from planner.decision import Decision
+from planner.goals.placement import NEGLIGIBLE_LENGTH
+from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
+from planner.screen.moves import one_move_squares
+from planner.screen.projection import CostMaps, dilate, indices_to_mask
+from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
+from planner.situation import Situation
+from planner.stages import Stage
+from planner.subgoal_kind import SubgoalKind
+
+MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
+FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it is felt"
+
+
+def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
+    """Return which walls matter for a stage that cannot be attained otherwise.
+
+    Walls between two parts of the floor that is reached matter where an object must find its way, where the robot must
+    go round something, and where a door is forbidden. Where the robot shall be at an object to which no way leads, only
+    walls matter that may lead there.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    forbidden = situation.forbidden("utak")
+    track = any(goal.name in TRACK_GOALS for goal in stage.own)
+    parting = bool(stage.carried) or track or bool(forbidden)
+    allowed = _floor_this_side(forbidden, situation) if forbidden else None
+    wanted = None if stage.carried or track else _wanted(stage, situation)
+    things = any(situation.task.is_object(str(term)) for goal in stage.goals for term in goal.args)
+    return FeelingScope(parting, wanted, allowed, things)
+
+
+def _wanted(stage: Stage, situation: Situation) -> Bools | None:
+    """Return the squares of an object at which the robot shall be, and to which no way leads; None for no such."""
+    for goal in stage.own:
+        node = situation.model.object(situation.binding.get(str(goal.args[1]), "")) if len(goal.args) > 1 else None
+        if node is not None and goal.name in ("at", "beside"):
+            mask = situation.model.mask(node.patch)
+            if not (dilate(mask, 1) & situation.cost_maps.floor).any():
+                return mask
+    return None
+
+
+def _floor_this_side(doors: Sequence[Door], situation: Situation) -> Bools:
+    """Return the floor that the robot reaches without going through some doors, (rows, columns) bool."""
+    floor = situation.cost_maps.floor
+    rows, columns = floor.shape
+    free = floor.copy()
+    for door in doors:
+        free &= ~squares(shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH), columns, rows)
+    column, row = situation.cost_maps.here
+    labels = components(free).labels
+    mask: Bools = free & (labels == labels[row, column])
+    return mask
+
+
+def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
+    """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not.
+
+    (rows, columns) bool on the arrays of the view.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    walls = walls_in_question(situation.model, situation.cost_maps.floor, feeling_scope(stage, situation))
+    mask: Bools = np.any(list(walls.values()), axis=0)
+    return mask
+
+
+def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command to feel walls that may be things; None when none is left that can be reached.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    pursuer : walks after the subgoal.
+    """
+    halt = choose_halt(feeling_places(situation.cost_maps, feeling_scope(stage, situation)), situation.cost_maps)
+    return _walk(halt, stage, situation, pursuer)
+
+
+def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+
+    Parameters
+    ----------
+    node : the object.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    pursuer : walks after the subgoal.
+    """
+    if node.moved or node.colour is None:
+        return None
+    near = dilate(situation.model.mask(node.patch), 2).ravel()
+    places = [
+        place for place in feeling_places(situation.cost_maps) if WallKind.THING in place.squares and near[place.square]
+    ]
+    return _walk(choose_halt(places, situation.cost_maps), stage, situation, pursuer)
+
+
+def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | None:
+    """Choose the square at which walls are felt next, by planner/asp/feel.lp; None when nothing is left to feel.
+
+    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view),
+    the reason in words, its chance in percent, and a price in squares of way.
+
+    The facts for the encoding, each a string without a full stop, for each place, numbered from 0: `halt(number, walk,
+    moves)` with the way in tenths of squares, and `tells(number, kind, doorway or square, count)`.
+
+    Parameters
+    ----------
+    places : the squares to choose from; only the nearest of each kind of wall are offered to the encoding.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+    """
+    if not places:
+        return None
+    halts = np.array([place.square for place in places])
+    ways = cost_maps.far(halts)
+    straight = one_move_squares(cost_maps, SubgoalKind.FEEL, indices_to_mask(halts, cost_maps.floor.shape)).ravel()
+    offered: set[int] = set()
+    order = np.argsort(ways, kind="stable").tolist()
+    for kind in WallKind:
+        of_kind = [n for n in order if places[n].squares[kind] or places[n].doorways[kind]]
+        full = [n for n in of_kind if places[n].doorways[kind] == max(places[m].doorways[kind] for m in of_kind)]
+        offered.update(of_kind[:MAX_HALTS_OF_KIND], full[:MAX_HALTS_OF_KIND])
+    facts = []
+    for number in sorted(offered):
+        place = places[number]
+        moves = 1 if straight[place.square] else 2
+        facts.append(f"halt({number},{round(TENTHS_PER_SQUARE * float(ways[number]))},{moves})")
+        for size, told in (("doorway", place.doorways), ("square", place.squares)):
+            facts += [f"tells({number},{kind},{size},{told[kind]})" for kind in WallKind if told[kind]]
+    answer = solve([PLANNER_ASP / "feel.lp"], facts)
+    if not answer:
+        return None
+    chosen = places[answer[0].arguments[0].number]
+    return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
+
+
+def _walk(halt: Subgoal | None, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command towards a halt; None for no halt, or when no way leads there.
+
+    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
+    and its reason.
+    """
+    look = pursuer.pursue_look(halt, stage, situation)
+    return None if look is None or look.command is None else look

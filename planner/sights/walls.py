@@ -1,0 +1,301 @@
+"""Walls that were seen and never felt, and the floor from which they are felt.
+
+A movable thing that fills a doorway looks like wall; only its colour tells. Geometry says here which squares of wall
+may belong to such a thing, and how much of them is felt from where; planner/asp/feel.lp chooses where the robot feels
+next.
+
+Masks are (rows, columns) bool on the arrays of the view, row 0 in the south.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.kernels.arrays import Bools, Square
+from geometry.raster.components import components, with_edge_neighbours
+from kb.perception.interpretation import LONGEST_OBJECT
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR
+from kb.world.model import WorldModel
+from planner.screen.projection import CostMaps, dilate, shift_mask
+
+EDGE_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
+DOORWAY_WIDTH = 3  # squares in a row that are felt at once; a thing as wide as a usual doorway covers so many (derived)
+MAX_THIN_WALL = 5  # squares: a wall up to so thick is thin; a convention
+MAX_THICK_WALL = 12  # squares of wall through which floor behind it makes a doorway likely; a convention
+MAX_NICHE_WIDTH = 8  # squares: the floor of a niche is at most so wide; a convention
+NICHE_SHARE = 2  # times as wide is the room before a niche, at least: as a room is beside a door
+MAX_NICHE_DEPTH = 3  # squares: a niche widens to a room within so many; a convention
+MIN_LIKELY_OBJECT = 20  # percent: what is less likely an object is felt as wall (as in planner.goals.placement)
+
+
+class WallKind(StrEnum):
+    """The reason why a stretch of wall may be a thing that can be moved, the likeliest first: see planner/asp/feel.lp.
+
+    Attributes
+    ----------
+    THING : it is beside a thing that was felt in the wall, and may belong to it.
+    NICHE : it is the back of a niche, as a recessed thing leaves it.
+    RIM : behind it the wall has a niche or sticks out, as a thing leaves it on the far side.
+    THIN : floor that is not reached was seen behind it, at most MAX_THIN_WALL squares away.
+    THICK : likewise, at most MAX_THICK_WALL squares away.
+    UNSEEN : squares that were never seen lie behind it, at most MAX_THICK_WALL squares away.
+    PARTING : behind it lies floor that is reached already.
+    PLAIN : nothing but wall was seen behind it.
+    """
+
+    THING = "thing"
+    NICHE = "niche"
+    RIM = "rim"
+    THIN = "thin"
+    THICK = "thick"
+    UNSEEN = "unseen"
+    PARTING = "parting"
+    PLAIN = "plain"
+
+
+class FeelingPlace(NamedTuple):
+    """A square from which walls are felt, and what is felt there.
+
+    Attributes
+    ----------
+    square : its flat index (row * columns + column) on the arrays of the view.
+    doorways : how many stretches of DOORWAY_WIDTH unfelt squares, by kind, are told from it: none of them is one thing
+        if one of its squares is wall.
+    squares : how many unfelt squares, by kind, are felt from it.
+    """
+
+    square: int
+    doorways: Counter[WallKind]
+    squares: Counter[WallKind]
+
+
+class FeelingScope(NamedTuple):
+    """The walls that matter for a task.
+
+    Attributes
+    ----------
+    parting : whether walls between two parts of the floor that is reached count. They lead to no new floor, but may
+        give an object, or a robot that must avoid a door, another way.
+    wanted : (rows, columns) bool on the arrays of the view, the only place to which a way is wanted; None when it is
+        not known where. Then walls count alone behind which that place lies, with no reached floor all around.
+    allowed : (rows, columns) bool, the floor on which the robot may go; None for all that it reaches.
+    things : whether the task speaks of objects: what seems to be one thing may be two, and one of them the one meant.
+    """
+
+    parting: bool = True
+    wanted: Bools | None = None
+    allowed: Bools | None = None
+    things: bool = True
+
+
+ALL_WALLS = FeelingScope()
+
+
+def unfelt_walls(model: WorldModel) -> Bools:
+    """Return the squares where a wall was seen and never felt, beside floor to which the robot comes.
+
+    Floor counts to which it comes if all things that can be moved are moved away, and so does the floor under these.
+    (rows, columns) bool on the arrays of the view; squares of objects do not count.
+
+    Parameters
+    ----------
+    model : what is believed, with its frame and its map view.
+    """
+    felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
+    mask: Bools = with_edge_neighbours(_ground(model)) & model.view.seen & ~model.space & ~felt & ~_things(model)
+    return mask
+
+
+def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = ALL_WALLS) -> dict[WallKind, Bools]:
+    """Return the unfelt walls that may be a thing whose removal leads on, by kind; each square has one kind.
+
+    Parameters
+    ----------
+    model : what is believed.
+    reached : the floor that the robot reaches.
+    scope : which walls matter.
+    """
+    ground, space, seen = _ground(model), model.space, model.view.seen
+    unfelt = unfelt_walls(model) & _leading(model, reached, scope)
+    kinds = {kind: np.zeros_like(unfelt) for kind in WallKind}
+    near = with_edge_neighbours(reached)
+    beyond = [part for part in model.protruding if not (part & near).any()]  # what sticks out into floor not reached
+    sticking = np.any(beyond, axis=0) if beyond else np.zeros_like(unfelt)
+    things = _things(model, embedded=True)
+    niches = _niches(space)
+    for step in EDGE_STEPS:
+        front = unfelt & shift_mask(ground, *step)
+        behind = _behind(front, space, reached, seen, step)
+        back = (-step[0], -step[1])
+        rim = _cast(niches[back] | sticking, back, MAX_THIN_WALL) & (behind[WallKind.THIN] | behind[WallKind.THICK])
+        found = {
+            **behind,
+            WallKind.THING: front & dilate(things, 1) & ~behind[WallKind.PARTING],
+            WallKind.NICHE: front & niches[step] & ~behind[WallKind.PARTING],
+            WallKind.RIM: front & rim,
+        }
+        for kind, mask in found.items():
+            kinds[kind] |= mask
+    taken = np.zeros_like(unfelt)
+    for kind in WallKind:
+        kinds[kind] &= ~taken
+        taken |= kinds[kind]
+    if not scope.parting:
+        kinds[WallKind.PARTING][:] = False
+    return kinds
+
+
+def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list[FeelingPlace]:
+    """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none.
+
+    Squares from which the robot looked already are left out: what can be felt there was felt.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+    scope : which walls matter.
+    """
+    model, floor = cost_maps.model, cost_maps.floor
+    kinds = walls_in_question(model, floor, scope)
+    number = np.zeros(floor.shape, np.int64)
+    names = list(WallKind)
+    for rank, kind in enumerate(names, 1):
+        number[kinds[kind]] = rank
+    offsets = tuple(model.frame.directions())
+    places: dict[int, FeelingPlace] = {}
+    stand = floor & ~cost_maps.looked_from
+    if scope.allowed is not None:
+        stand &= scope.allowed
+    for stretch in _stretches(number > 0):
+        kind = names[min(int(number[square]) for square in stretch) - 1]
+        about = {(row - dy, column - dx) for row, column in stretch for dx, dy in offsets}
+        for row, column in about:
+            if 0 <= row < floor.shape[0] and 0 <= column < floor.shape[1] and stand[row, column]:
+                index = row * floor.shape[1] + column
+                place = places.setdefault(index, FeelingPlace(index, Counter(), Counter()))
+                (place.squares if len(stretch) == 1 else place.doorways)[kind] += 1
+    return [places[index] for index in sorted(places)]
+
+
+def _ground(model: WorldModel) -> Bools:
+    """Return the floor to which the robot comes if all things that can be moved are moved away, theirs included."""
+    ground: Bools = model.space.copy()
+    for node in model.objects:
+        if node.confidence >= MIN_LIKELY_OBJECT and node.movable > 0:
+            ground |= model.mask(node.patch)
+    row, column = model.view.locate(*model.place)
+    ground[row, column] = True
+    labels = components(ground).labels
+    mask: Bools = labels == labels[row, column]
+    return mask
+
+
+def _leading(model: WorldModel, reached: Bools, scope: FeelingScope) -> Bools:
+    """Return the squares through which a way may lead on: no reached floor parts them from what they may lead to.
+
+    That is the place that is wanted; or any floor that is not reached, and what was never seen.
+    """
+    if scope.parting and scope.wanted is None:
+        return np.ones_like(reached)
+    parts = components(np.pad(~reached, 1, constant_values=True))  # what lies beyond the arrays was never seen
+    target = np.pad((model.space & ~reached) | ~model.view.seen, 1, constant_values=True)
+    if scope.wanted is not None:
+        target = np.pad(scope.wanted, 1)
+    leads = np.zeros(parts.number + 1, np.bool_)
+    leads[parts.labels[target]] = True
+    leads[0] = False
+    mask: Bools = leads[parts.labels][1:-1, 1:-1]
+    return mask
+
+
+def _things(model: WorldModel, embedded: bool = False) -> Bools:
+    """Return the squares of objects that are likely enough; with `embedded` only of those that were never moved."""
+    mask: Bools = np.zeros(model.labels.shape, np.bool_)
+    for node in model.objects:
+        if node.confidence >= MIN_LIKELY_OBJECT and not (embedded and (node.moved or node.colour is None)):
+            mask |= model.mask(node.patch)
+    return mask
+
+
+def _behind(front: Bools, space: Bools, reached: Bools, seen: Bools, step: Square) -> dict[WallKind, Bools]:
+    """Return which of some squares of wall have what behind them: floor reached or not, unseen squares, or wall alone.
+
+    front : squares with floor before them. step : the direction (columns, rows) from the floor into the wall.
+    """
+    kinds = {kind: np.zeros_like(front) for kind in WallKind}
+    left, back = front.copy(), (-step[0], -step[1])
+    new, solid = space & ~reached, seen & ~space
+    ground = reached & space
+    for depth in range(1, LONGEST_OBJECT + 1):
+        ground, new, solid = (shift_mask(mask, *back) for mask in (ground, new, solid))
+        unseen = ~(ground | new | solid)  # what lies beyond the arrays was never seen
+        kinds[WallKind.PARTING] |= left & ground
+        thickness = WallKind.THIN if depth <= MAX_THIN_WALL else WallKind.THICK
+        kinds[thickness if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & new
+        kinds[WallKind.UNSEEN if depth <= MAX_THICK_WALL else WallKind.PLAIN] |= left & unseen
+        left &= ~(ground | new | unseen)
+        if not left.any():
+            break
+    kinds[WallKind.PLAIN] |= left
+    return kinds
+
+
+def _cast(mask: Bools, step: Square, far: int) -> Bools:
+    """Return the squares from which a square of a mask is met within `far` steps against `step`."""
+    found, last = mask.copy(), mask
+    for _ in range(far):
+        last = shift_mask(last, *step)
+        found |= last
+    return found
+
+
+def _niches(space: Bools) -> dict[Square, Bools]:
+    """Return for each direction (columns, rows) the squares of wall at the back of a niche of floor, seen that way.
+
+    The floor before them is at most MAX_NICHE_WIDTH wide, and wider at most MAX_NICHE_DEPTH squares before it.
+    """
+    across = _run_lengths(space), _run_lengths(space.T).T  # along rows, along columns
+    found = {}
+    for step in EDGE_STEPS:
+        width = across[0] if step[1] else across[1]
+        narrow = space & (width <= MAX_NICHE_WIDTH)
+        niche, here = np.zeros_like(space), width
+        for _ in range(MAX_NICHE_DEPTH):
+            here = _shift_numbers(here, step)
+            niche |= narrow & (here >= NICHE_SHARE * width)
+        found[step] = shift_mask(niche, *step) & ~space
+    return found
+
+
+def _run_lengths(mask: Bools) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]]":
+    """Return for each True square the number of True squares in a row with it along its row; 0 for others."""
+    change = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    rows, starts = np.nonzero(change == 1)
+    stops = np.nonzero(change == -1)[1]
+    lengths = np.zeros(mask.shape, np.int32)
+    for row, start, stop in zip(rows.tolist(), starts.tolist(), stops.tolist(), strict=True):
+        lengths[row, start:stop] = stop - start
+    return lengths
+
+
+def _shift_numbers(
+    values: "np.ndarray[tuple[int, ...], np.dtype[np.int32]]", step: Square
+) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]]":
+    """Return an array moved by (columns, rows), each 1, 0 or -1; 0 comes in from outside."""
+    high, wide = values.shape
+    padded = np.pad(values, 1)
+    return padded[1 - step[1] : 1 - step[1] + high, 1 - step[0] : 1 - step[0] + wide]
+
+
+def _stretches(mask: Bools) -> Iterator[list[tuple[int, int]]]:
+    """Yield each square of a mask alone, and each DOORWAY_WIDTH squares of it in a row; squares are (row, column)."""
+    for row, column in np.argwhere(mask).tolist():
+        yield [(row, column)]
+        for dy, dx in ((0, 1), (1, 0)):
+            stretch = [(row + n * dy, column + n * dx) for n in range(DOORWAY_WIDTH)]
+            end = stretch[-1]
+            if end[0] < mask.shape[0] and end[1] < mask.shape[1] and all(mask[square] for square in stretch):
+                yield stretch

@@ -1,0 +1,93 @@
+"""Before the robot gives up it feels walls, and clears what it finds in them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.worlds.filled.doorplugs import plugged_world
+from benchmarks.worlds.scenes import write
+from kb.body import Move
+from kb.language.reader import facts_from_text
+from planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
+from planner.deciding.pursuit import Pursuer
+from planner.sights.walls import feeling_places
+from planner.stages import Stage
+from simulator.run.session import Result, Session
+from simulator.scenario.scenario import read_scenario
+from simulator.scenario.settings import Settings
+from tests.kb.drawings import known_model
+from tests.planner.situations import all_felt, situation_of
+
+UTAK = Stage(facts_from_text("in(utak, room(next))."))
+CASES = Path("/work/shared/cases")
+ROOM = ["b" * 12, *["b" + "." * 10 + "b"] * 4, "b...U......b", *["b" + "." * 10 + "b"] * 4, "b" * 12]
+
+
+def ended(folder: Path, pull: bool = True) -> Result:
+    """Return the result of a run in a scenario of at most 120 commands."""
+    from simulator.episode.episode import EpisodeLog
+    from simulator.run.robots import make_robot
+
+    with EpisodeLog(folder / "episode.jsonl") as log:
+        return Session(read_scenario(folder), Settings(max_steps=120, pull=pull), make_robot, log).run()
+
+
+def test_walls_are_felt_until_none_is_left() -> None:
+    model = known_model(ROOM)
+    assert isinstance(getattr(feel_walls(UTAK, situation_of(model), Pursuer("skeleton")), "command", None), Move)
+    assert feel_walls(UTAK, situation_of(all_felt(model)), Pursuer("skeleton")) is None
+    assert choose_halt([], situation_of(model).cost_maps) is None
+
+
+def test_a_room_is_felt_with_few_halts() -> None:
+    """A robot that halts where it is told, and feels verge there, has felt the 38 squares of the walls soon."""
+    model, halts = known_model(ROOM), 0
+    while True:
+        situation = situation_of(model)
+        halt = choose_halt(feeling_places(situation.cost_maps, feeling_scope(UTAK, situation)), situation.cost_maps)
+        if halt is None:
+            break
+        row, column = divmod(int(halt.squares[0]), model.labels.shape[1])
+        here = (column + model.view.west, row + model.view.south)
+        about = {(here[0] + i, here[1] + j): "b" for i in (-1, 0, 1) for j in (-1, 0, 1)}
+        solid = {s: c for s, c in about.items() if not model.space[s[1] - model.view.south, s[0] - model.view.west]}
+        place = (here[0] + 0.5, here[1] + 0.5)
+        model = replace(
+            model, place=place, felt={**model.felt, **solid}, looked_from=model.looked_from | frozenset([here])
+        )
+        halts += 1
+    assert not np.any(np.array(halts > 16))
+
+
+@pytest.mark.parametrize(
+    ("kind", "task", "seed", "pull"),
+    [
+        ("flush", "next", 0, True),
+        ("recessed", "next", 1, False),
+        ("out", "next", 0, False),
+        ("two", "next", 0, True),
+        ("flush", "carry_next", 0, True),
+    ],
+)
+def test_what_fills_a_doorway_is_felt_and_cleared(kind: str, task: str, seed: int, pull: bool, tmp_path: Path) -> None:
+    result = ended(write(plugged_world(kind, task, seed), tmp_path / "scenario"), pull)
+    assert (result.verdict, result.achieved) == ("done", True), result.reason
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_room_without_a_door_is_impossible_to_leave_once_its_walls_were_felt(seed: int, tmp_path: Path) -> None:
+    result = ended(write(plugged_world("closed", "next", seed), tmp_path / "scenario"))
+    assert result.verdict == "impossible", result.reason
+    assert result.steps < 60
+
+
+@pytest.mark.parametrize("name", ["plugged-door-flush", "plugged-door-recessed"])
+@pytest.mark.parametrize("pull", [True, False])
+def test_known_doorways_that_a_thing_fills_are_passed(name: str, pull: bool, tmp_path: Path) -> None:
+    if not (CASES / name).is_dir():
+        pytest.skip("the cases are not here")
+    for path in (CASES / name).iterdir():
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    assert ended(tmp_path, pull).achieved
