@@ -60,7 +60,7 @@ def test_a_thing_never_touches_its_region_in_truth() -> None:
 @pytest.mark.parametrize(
     ("start", "goal", "named", "verdicts"),
     [
-        ("", f'in(utak, room(next)). avoid(utak, "{box(3, -4, 8, 4)}").', "leaves no way", ("possible_if",)),
+        ("", f'in(utak, room(next)). avoid(utak, "{box(3, -4, 8, 4)}").', "leaves no way", ("possible_if", "limit")),
         ("", f'in(utak, room(next)). avoid(utak, "{box(5.2, -9, 5.8, 9)}").', "leaves no way", ("limit",)),
         (
             "",
