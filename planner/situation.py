@@ -19,7 +19,7 @@ from planner.constraints import (
     CARRY_NOTHING_THROUGH,
     MAX_KEPT_SPREAD,
     OBJECT_DISTANCE,
-    ROBOT_NAME,
+    ROBOT_ACTOR,
     avoidances,
     in_view_frame,
     region_of,
@@ -162,10 +162,10 @@ class Situation:
         goals = constraints(self.task)
         meant = {str(goal.args[0]) for goal in goals if goal.name == "not_through"}
         meant = {self.binding.get(name, name) for name in meant}
-        nothing = actor != ROBOT_NAME and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
+        nothing = actor != ROBOT_ACTOR and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
         if actor not in meant and not nothing:
             return ()
-        if actor == ROBOT_NAME:
+        if actor == ROBOT_ACTOR:
             return self.avoided[:1] or self.rooms.doors
         return tuple(door for door in self.rooms.doors if door.likely)
 
@@ -205,7 +205,7 @@ class Situation:
     def within_shut_doors(self) -> "Situation":
         """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
         rows, columns = self.model.labels.shape
-        necks = [shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH) for door in self.shut(ROBOT_NAME)]
+        necks = [shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH) for door in self.shut(ROBOT_ACTOR)]
         kept_off = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
         if self.cost_maps.kept_off is not None:
             kept_off = kept_off | self.cost_maps.kept_off
@@ -263,7 +263,7 @@ def regions_kept_off(
         if binding.get(name, name) != actor:
             continue
         region = in_view_frame(region_of(fact), model.frame, model.view.west, model.view.south)
-        if not lenient and actor != ROBOT_NAME:
+        if not lenient and actor != ROBOT_ACTOR:
             far = float(region_of(fact).hausdorff_distance(shapely.Point(0.0, 0.0)))
             distance = OBJECT_DISTANCE + min(model.spread, MAX_KEPT_SPREAD) * far
             region = region.buffer(distance, join_style="mitre")

@@ -25,7 +25,7 @@ from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
-from planner.constraints import ROBOT_NAME
+from planner.constraints import ROBOT_ACTOR
 from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor, with_unseen_margin
 from planner.goals.placement import (
     CERTAIN_OBJECT,
@@ -346,7 +346,7 @@ def _may_use_other_ways(node: Node, situation: Situation) -> bool:
     """
     own = situation.forbidden(node.name)
     kept_off = not situation.lenient and any(
-        situation.region_kept_off(actor).any() for actor in (ROBOT_NAME, node.name)
+        situation.region_kept_off(actor).any() for actor in (ROBOT_ACTOR, node.name)
     )
     return bool(kept_off or len(own) > 1 or (not own and situation.forbidden("utak")))
 

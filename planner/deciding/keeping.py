@@ -20,7 +20,7 @@ from kb.world.model import Node, WorldModel
 from kb.world.rooms import went_through
 from planner.constraints import (
     CARRY_NOTHING_THROUGH,
-    ROBOT_NAME,
+    ROBOT_ACTOR,
     SAME_PLACE,
     avoidances,
     in_robot_frame,
@@ -74,7 +74,7 @@ class ConstraintKeeper:
         ----------
         model : what is believed.
         """
-        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT_NAME]
+        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT_ACTOR]
         if not about_things and not self._nothing_through:
             return
         for node in model.objects:
@@ -91,7 +91,7 @@ class ConstraintKeeper:
         model = situation.model
         for name, fact in avoidances(self.task):
             region = region_of(fact)
-            if name == ROBOT_NAME and region.intersects(shapely.Point(0.0, 0.0)):
+            if name == ROBOT_ACTOR and region.intersects(shapely.Point(0.0, 0.0)):
                 why = f"{fact} cannot hold: the robot wakes in that region"
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
             node = model.object(situation.binding.get(name, ""))
@@ -129,7 +129,7 @@ class ConstraintKeeper:
     def _doubts(self, situation: Situation) -> Iterator[str]:
         """Yield a reason for each constraint of which it cannot be told that it was kept."""
         for name, fact in avoidances(self.task):
-            doubt = _robot_doubt(fact, situation) if name == ROBOT_NAME else self._thing_doubt(fact, name, situation)
+            doubt = _robot_doubt(fact, situation) if name == ROBOT_ACTOR else self._thing_doubt(fact, name, situation)
             if doubt:
                 yield doubt
         if self._nothing_through:
@@ -214,7 +214,7 @@ def _way_of(command: Command | None, name: str, situation: Situation) -> Any:
     if not isinstance(command, Move | Push):
         return None
     x, y = model.frame.place_to_utak(*model.place)
-    if name == ROBOT_NAME:
+    if name == ROBOT_ACTOR:
         return _line([(x, y), (x + command.east, y + command.north)])
     held = model.object(model.held or "")
     if held is None or held.polygon is None or situation.binding.get(name) != held.name:

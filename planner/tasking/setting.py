@@ -21,7 +21,7 @@ from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskPr
 from planner.situation import Situation
 from planner.stages import Stage
 
-TASK_ENCODING_NAME = "task"  # the encoding of task plans, without `.lp`
+RULED_ENCODING = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
 DestinationFunction = Callable[[Fact, Situation], Destination]
@@ -58,7 +58,7 @@ def problem_of(
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
     open_goals: list[str] = []
-    ruled = rules_reach(TASK_ENCODING_NAME, situation.rules)
+    ruled = rules_reach(RULED_ENCODING, situation.rules)
     for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
         ends, is_open, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
