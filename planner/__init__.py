@@ -3,6 +3,7 @@
 cycle         the action cycle: wake, then act, perceive and decide until the task ends
 decision      a decision: the next command, or the verdict
 stages        the stages of a task
+constraints   regions that are kept off, and what a thing sweeps
 per_model     answers that depend on a world model, computed once for it
 situation     what a decision depends on: beliefs, cost maps, rooms, what parameters mean
 journal       what a step adds to the record of decisions and places

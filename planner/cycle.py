@@ -363,6 +363,10 @@ class Robot:
             self.verdict = Verdict(decision.verdict == TaskVerdict.DONE, decision.verdict, decision.why)
             self.finished = True
         elif self.steps >= self.options.max_steps:
+            if self.decider.is_done_without_wishes(self.model, self.knowledge.memory.track):
+                reason = f"all goals hold after {self.steps} commands, and wishes are left"
+                self.verdict, self.finished = Verdict(True, TaskVerdict.DONE, reason), True
+                return
             reason = f"not done after {self.steps} commands; the next one would be: {decision.why}"
             self.verdict = Verdict(False, TaskVerdict.LIMIT, reason)
             self.finished = True

@@ -6,16 +6,30 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from geometry.kernels.arrays import XY, Bools
+from geometry.raster.rasterize import squares
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
+from planner.constraints import (
+    CARRY_NOTHING_THROUGH,
+    MAX_KEPT_SPREAD,
+    OBJECT_DISTANCE,
+    ROBOT_NAME,
+    avoidances,
+    in_view_frame,
+    region_of,
+    region_squares,
+)
 from planner.screen.projection import CostMaps, dilate
 from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
+
+NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 
 
 @dataclass(frozen=True)
@@ -36,6 +50,9 @@ class Situation:
     rules : the user's rule files, read by every encoding.
     track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
     closed : the names of doors that users' rules close to every plan.
+    lenient : whether regions that the task forbids count only where a whole square lies within them, and for those
+        alone whom they are forbidden to. Then what is not possible is proved not to be, and what is possible may not
+        be.
     """
 
     model: WorldModel
@@ -47,6 +64,7 @@ class Situation:
     rules: tuple[Path, ...] = ()
     track: tuple[XY, ...] = ()
     closed: frozenset[str] = frozenset()
+    lenient: bool = False
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:
@@ -66,7 +84,7 @@ class Situation:
 
         patch : the squares that the object covers now, map frame; they count as free.
         """
-        return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch)))
+        return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch), self.cost_maps.kept_off))
 
     def next_rooms(self, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
         """Compute the squares of the rooms next to the room of a point, and what to look at before relying on them.
@@ -141,10 +159,13 @@ class Situation:
         tuple[Door, ...]
             View frame; empty when no constraint is about `actor`, or no such door is known.
         """
-        meant = {self.binding.get(str(goal.args[0]), str(goal.args[0])) for goal in constraints(self.task)}
-        if actor not in meant:
+        goals = constraints(self.task)
+        meant = {str(goal.args[0]) for goal in goals if goal.name == "not_through"}
+        meant = {self.binding.get(name, name) for name in meant}
+        nothing = actor != ROBOT_NAME and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
+        if actor not in meant and not nothing:
             return ()
-        if actor == "utak":
+        if actor == ROBOT_NAME:
             return self.avoided[:1] or self.rooms.doors
         return tuple(door for door in self.rooms.doors if door.likely)
 
@@ -160,6 +181,35 @@ class Situation:
         """
         forbidden = self.forbidden(actor)
         return (*forbidden, *(door for door in self.rooms.doors if door.name in self.closed and door not in forbidden))
+
+    def region_kept_off(self, actor: str, margin: int = 0) -> Bools:
+        """Compute the squares that the task forbids to the robot or to an object by avoid(T, "WKT").
+
+        Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
+        nothing tells exactly where these are.
+
+        Parameters
+        ----------
+        actor : str
+            "utak" for the robot, or the name of a node.
+        margin : int
+            Squares that are added to the arrays of the view on each side.
+
+        Returns
+        -------
+        Bools
+            (rows + 2 margin, columns + 2 margin) bool; all False when nothing is forbidden.
+        """
+        return regions_kept_off(self.task, self.binding, self.model, actor, margin, self.lenient)
+
+    def within_shut_doors(self) -> "Situation":
+        """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
+        rows, columns = self.model.labels.shape
+        necks = [shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH) for door in self.shut(ROBOT_NAME)]
+        kept_off = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
+        if self.cost_maps.kept_off is not None:
+            kept_off = kept_off | self.cost_maps.kept_off
+        return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
@@ -188,6 +238,37 @@ class Situation:
         """
         row, column = self.model.view.locate(*place)
         return rooms.beyond(int(rooms.labels[row, column]), least)
+
+
+def regions_kept_off(
+    task: Task, binding: Mapping[str, str], model: WorldModel, actor: str, margin: int = 0, lenient: bool = False
+) -> Bools:
+    """Compute the squares that a task forbids to the robot or to an object by avoid(T, "WKT").
+
+    (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False when
+    nothing is forbidden.
+
+    Parameters
+    ----------
+    task : the goals and constraints.
+    binding : the name of the node that each parameter of the task means.
+    model : what is believed, with its frame and its map view.
+    actor : "utak" for the robot, or the name of a node.
+    margin : squares that are added to the arrays of the view on each side.
+    lenient : whether only squares count that lie wholly within a region, and no distance is kept.
+    """
+    shape = model.labels.shape
+    mask: Bools = np.zeros((shape[0] + 2 * margin, shape[1] + 2 * margin), np.bool_)
+    for name, fact in avoidances(task):
+        if binding.get(name, name) != actor:
+            continue
+        region = in_view_frame(region_of(fact), model.frame, model.view.west, model.view.south)
+        if not lenient and actor != ROBOT_NAME:
+            far = float(region_of(fact).hausdorff_distance(shapely.Point(0.0, 0.0)))
+            distance = OBJECT_DISTANCE + min(model.spread, MAX_KEPT_SPREAD) * far
+            region = region.buffer(distance, join_style="mitre")
+        mask |= region_squares(region, shape, lenient, margin)
+    return mask
 
 
 def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:

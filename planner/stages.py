@@ -7,11 +7,10 @@ as one stage.
 
 from dataclasses import dataclass, replace
 
-from kb.language.terms import Fact, Symbol
-from kb.task.task import Task
+from kb.language.terms import Fact, Number, Symbol
+from kb.language.vocabulary import CONSTRAINT_GOALS, TRACK_GOALS
+from kb.task.task import WRAPPING_GOALS, Task
 
-TRACK_GOALS = ("circled",)  # goals that a track fulfils, not a place
-CONSTRAINT_GOALS = ("not_through",)  # what must hold all the time
 ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
 
 
@@ -23,10 +22,12 @@ class Stage:
     ----------
     goals : the goals, at least one; the first argument of each is "utak" for the robot, or the parameter of an object.
     followed : whether another stage comes after it.
+    wishes : goals that need not hold, each with the number of commands that it may cost; of the last stage alone.
     """
 
     goals: tuple[Fact, ...]
     followed: bool = False
+    wishes: tuple[tuple[Fact, int], ...] = ()
 
     @property
     def own(self) -> tuple[Fact, ...]:
@@ -64,17 +65,20 @@ def stages(task: Task) -> tuple[Stage, ...]:
     Returns
     -------
     tuple[Stage, ...]
-        Goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). Empty
-        for a task of constraints alone.
+        Goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). The
+        last stage has the wishes. Empty for a task of constraints alone.
     """
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
         if fact.name == "then":
             steps.append([])
-        if fact.name not in CONSTRAINT_GOALS:
+        if fact.name not in CONSTRAINT_GOALS and fact.name != "prefer":
             steps[-1].append(_inner(fact))
     found = [stage for goals in steps for stage in _ordered(goals)]
-    return tuple(replace(stage, followed=stage is not found[-1]) for stage in found)
+    wished = wishes(task)
+    return tuple(
+        replace(stage, followed=stage is not found[-1], wishes=wished if stage is found[-1] else ()) for stage in found
+    )
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:
@@ -87,14 +91,30 @@ def constraints(task: Task) -> tuple[Fact, ...]:
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
+def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:
+    """Return the wishes of a task, prefer(G, N): each goal G with the number N of commands that it may cost, in order.
+
+    Parameters
+    ----------
+    task : the goals and constraints, as the task file gives them.
+    """
+    found = []
+    for fact in task.goals:
+        if fact.name == "prefer":
+            weight = fact.args[1]
+            assert isinstance(weight, Number)
+            found.append((_inner(fact), weight.value))
+    return tuple(found)
+
+
 def _inner(fact: Fact) -> Fact:
-    """Return the goal within first(...) or then(...); any other fact itself.
+    """Return the goal within first(...), then(...) or prefer(...); any other fact itself.
 
     Parameters
     ----------
     fact : a goal of the task, perhaps wrapped.
     """
-    inner = fact.args[0] if fact.name in ("first", "then") else fact
+    inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
     assert isinstance(inner, Symbol)
     return inner
 

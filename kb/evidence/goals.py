@@ -9,6 +9,7 @@ from kb.evidence.plans import plan_step_reasons
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.language.atoms import atom_parts
+from kb.task.task import WRAPPING_GOALS
 from kb.tracing.decisions import SolverCall
 from kb.world.model import ROOT_NODE
 
@@ -19,7 +20,6 @@ CHOICES = {  # encoding of the planner -> the predicate of its choice, and what 
     "feel": ("feel", "this halt was chosen to feel walls"),
     "boldness": ("take", "this manipulation plan was taken"),
 }
-STEP_WORDS = ("first", "then")  # goals that are steps of a sequence
 PLACES = ("offset({0},", "rect({0},")  # the facts that say where a node is
 ROOMS = ("in({0},", "connects(", "width(")  # the facts that say in which room a node is, and how rooms hang together
 GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its first argument, {1} for that of its second
@@ -31,6 +31,8 @@ GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its firs
     "beside": ("rect({0},", "rect({1},"),
     "pose": PLACES,
     "not_through": ROOMS,
+    "avoid": PLACES,
+    "carry_nothing_through": ("connects(", "width("),
 }
 
 
@@ -96,7 +98,7 @@ def explain_goal(beliefs: FactExplainer, goal: str, step: int) -> Reason:
     step : the number of the step.
     """
     name, arguments = atom_parts(goal)
-    if name in STEP_WORDS:
+    if name in WRAPPING_GOALS:
         name, arguments = atom_parts(arguments[0])
     facts = [*_meant(beliefs, arguments, step), *_facts_about(beliefs, name, arguments, step)]
     below = tuple(reason for fact in facts if (reason := beliefs.reason(fact, step)) is not None)

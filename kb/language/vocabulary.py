@@ -137,12 +137,25 @@ GOAL_CONDITIONS: Vocabulary = {
     "beside": (NAME_ARGUMENT, NAME_ARGUMENT),
     "pose": (NAME_ARGUMENT, wkt_argument("a place", "POINT"), DEGREES_ARGUMENT),
     "not_through": (NAME_ARGUMENT, NAME_ARGUMENT),
+    "avoid": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    "carry_nothing_through": (NAME_ARGUMENT,),
 }
+CONSTRAINT_GOALS = (
+    "not_through",
+    "avoid",
+    "carry_nothing_through",
+)  # conditions that hold all the time, not at the end
+TRACK_GOALS = ("circled",)  # goals that a track fulfils, not a place
+MAX_WISH_COMMANDS = 1_000_000  # commands that a wish may cost; a convention
 # The predicates of goal.lp.
 GOAL_VOCABULARY: Vocabulary = {
     **GOAL_CONDITIONS,
     "first": (fact_argument("a goal", GOAL_CONDITIONS),),
     "then": (fact_argument("a goal", GOAL_CONDITIONS),),
+    "prefer": (
+        fact_argument("a goal", GOAL_CONDITIONS),
+        integer_argument("a number of commands", 0, MAX_WISH_COMMANDS),
+    ),
 }
 
 

@@ -137,6 +137,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("place", 2): (MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("aside", 2): (NODE_ARGUMENT, PLACE_ARGUMENT),
         ("goal", 1): (GOAL_ARGUMENT,),
+        ("wish", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
+        ("missed", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
         ("fulfils", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, GOAL_ARGUMENT),
         ("rank", 2): (MOVER_ARGUMENT, AMOUNT_ARGUMENT),
         ("estimate", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, AMOUNT_ARGUMENT),
@@ -145,6 +147,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("connects", 3): (PLAN_DOOR_ARGUMENT, PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("width", 2): (PLAN_DOOR_ARGUMENT, AMOUNT_ARGUMENT),
         ("bound", 2): (PARAMETER_ARGUMENT, NODE_ARGUMENT),
+        ("size", 2): (NODE_ARGUMENT, AMOUNT_ARGUMENT),
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("overlap", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
@@ -174,8 +177,9 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "lies", "connects",
+        "size",
         "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
-        "robot_in", "needed", "reached", "otherwise", "unmet", "asked", "closed",
+        "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

@@ -8,7 +8,15 @@ from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_
 from kb.language.reader import facts_from_text, parse_facts
 from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import GOAL_VOCABULARY, RESERVED_PARAMETER_NAMES, START_VOCABULARY, Vocabulary, check_facts
+from kb.language.vocabulary import (
+    CONSTRAINT_GOALS,
+    GOAL_VOCABULARY,
+    RESERVED_PARAMETER_NAMES,
+    START_VOCABULARY,
+    TRACK_GOALS,
+    Vocabulary,
+    check_facts,
+)
 
 CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
 PARAMETER_KINDS = ("object", "door", "room")  # the predicates that introduce parameters
@@ -24,7 +32,10 @@ GOAL_ARGUMENT_KINDS: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
     "beside": (("object", "utak"), ("object",)),
     "pose": (("object",), None, None),
     "not_through": (("object", "utak"), ("door",)),
+    "avoid": (("object", "utak"), None),
+    "carry_nothing_through": (("door",),),
 }
+WRAPPING_GOALS = ("first", "then", "prefer")  # words of goal.lp whose first argument is a goal
 
 
 @dataclass(frozen=True)
@@ -78,7 +89,7 @@ class Task:
 
     @property
     def goal_parameters(self) -> frozenset[str]:
-        """The names of the parameters that goals mention; goals inside `first(G)` and `then(G)` count."""
+        """The names of the parameters that goals mention, also inside `first(G)`, `then(G)` and `prefer(G, N)`."""
         words = {str(term) for goal in self.goals for term in _inner_goal(goal).args}
         return frozenset(words & set(self.parameters))
 
@@ -371,14 +382,19 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
             yield source.problem(fact.span, "first(...) must come before every other step", "write then(...)")
         if fact.name == "then" and not has_goal:
             yield source.problem(fact.span, "then(...) without anything before it", "begin with first(...)")
-        if goal.name == "not_through" and fact.name in ("first", "then"):
+        if goal.name in CONSTRAINT_GOALS and fact is not goal:
             yield source.problem(goal.span, f"{fact.name}(...) needs something to attain, not a constraint")
-        has_goal = has_goal or goal.name != "not_through"
+        if goal.name in TRACK_GOALS and fact.name == "prefer":
+            what = f"prefer(...) needs a goal that a place fulfils; {goal.name} is one of the whole way"
+            yield source.problem(goal.span, what, f"state {goal} as a goal, or leave it out")
+        has_goal = has_goal or (goal.name not in CONSTRAINT_GOALS and fact.name != "prefer")
         for term, kinds in zip(goal.args, GOAL_ARGUMENT_KINDS[goal.name], strict=True):
             if kinds is not None and isinstance(term, Symbol) and not term.args:
                 yield from _wrong_kind(source, goal, term, kinds, parameters)
         if len(goal.args) == 2 and goal.args[0] == goal.args[1]:
             yield source.problem(goal.span, f"{goal.name} relates {goal.args[0]} to itself")
+        if fact.name == "prefer" and goal in goals:
+            yield source.problem(fact.span, f"{goal} is a goal already, and no wish", "leave out one of the two")
     if not has_goal:
         yield source.problem(
             source.start(), "the goal is empty: nothing shall hold", "such as at(utak, corner(northeast))."
@@ -386,8 +402,8 @@ def _goal_problems(source: Source, goals: tuple[Fact, ...], parameters: Mapping[
 
 
 def _inner_goal(fact: Fact) -> Fact:
-    """Return the goal inside `first(G)` or `then(G)`; any other goal as it is."""
-    inner = fact.args[0] if fact.name in ("first", "then") else fact
+    """Return the goal inside `first(G)`, `then(G)` or `prefer(G, N)`; any other goal as it is."""
+    inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
     assert isinstance(inner, Symbol)
     return inner
 

@@ -25,11 +25,12 @@ from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
+from planner.constraints import ROBOT_NAME
 from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor, with_unseen_margin
 from planner.goals.placement import (
     CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
-    forbidden_necks,
+    forbidden_squares,
     mask_to_polygon,
     possible_extension,
     to_view_frame,
@@ -215,7 +216,7 @@ class ManipulationOracle:
             verdicts.append(f"{fact}({name},{level},{others})")
         self._found_nothing = True
         answer = certify(request.node, refuted, situation.model)
-        return replace(answer, proved=False) if _may_use_other_doors(request.node, situation) else answer
+        return replace(answer, proved=False) if _may_use_other_ways(request.node, situation) else answer
 
     def _bolder(
         self, request: Request, found: ManipulationPlan, situation: Situation, hoped: EndsFunction
@@ -273,7 +274,7 @@ class ManipulationOracle:
         """
         model, node = situation.model, request.node
         own, walk = with_unseen_margin(model.mask(node.patch)), with_unseen_margin(situation.cost_maps.free(0))
-        free = (optimistic_floor(situation) | own) & ~with_unseen_margin(forbidden_necks(node, situation))
+        free = (optimistic_floor(situation) | own) & ~forbidden_squares(node, situation, UNSEEN_MARGIN)
         if (free == walk | own).all():
             return
         shape, (x, y) = to_view_frame(node.polygon, situation), model.place_on_view
@@ -331,11 +332,12 @@ class ManipulationOracle:
         return self._answers[key]
 
 
-def _may_use_other_doors(node: Node, situation: Situation) -> bool:
-    """Return whether the doors forbidden here prove nothing.
+def _may_use_other_ways(node: Node, situation: Situation) -> bool:
+    """Return whether what is forbidden here proves nothing.
 
     Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
-    the object may pass where the robot may not. False when no door is forbidden.
+    the object may pass where the robot may not. So it is with regions that plans keep away from, to be sure. False when
+    nothing is forbidden.
 
     Parameters
     ----------
@@ -343,7 +345,10 @@ def _may_use_other_doors(node: Node, situation: Situation) -> bool:
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     own = situation.forbidden(node.name)
-    return bool(len(own) > 1 or (not own and situation.forbidden("utak")))
+    kept_off = not situation.lenient and any(
+        situation.region_kept_off(actor).any() for actor in (ROBOT_NAME, node.name)
+    )
+    return bool(kept_off or len(own) > 1 or (not own and situation.forbidden("utak")))
 
 
 def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
@@ -408,7 +413,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
     where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
     what may be an object, or its hidden part, in what seems to be wall. Necks of
-    forbidden doors (the narrow places between their walls) are never among them.
+    forbidden doors (the narrow places between their walls) and forbidden regions are never among them.
 
     Parameters
     ----------
@@ -437,7 +442,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
                 )
                 if other.movable > 0 or hidden.any():
                     free |= hidden | model.mask(other.patch)
-    return free & ~forbidden_necks(node, situation)
+    return free & ~forbidden_squares(node, situation)
 
 
 def _least_way(end: End, shape: Any) -> float:

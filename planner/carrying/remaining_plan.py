@@ -22,7 +22,7 @@ from kb.body import DIRECTIONS
 from kb.mapping.patch import Patch
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
-from planner.goals.placement import forbidden_necks, meets_any_end, to_view_frame
+from planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
 from planner.screen.projection import SquareIndices
 from planner.situation import Situation
 
@@ -299,7 +299,7 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
     """Return the squares over which a plan made before may still lead, (rows, columns) bool on the arrays of the view.
 
     These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
-    own, without the necks of forbidden doors.
+    own, without the necks of forbidden doors and without forbidden regions.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
-    return free & ~forbidden_necks(node, situation)
+    return free & ~forbidden_squares(node, situation)
 
 
 def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:

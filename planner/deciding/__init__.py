@@ -7,6 +7,7 @@ clearing      navigation among movable obstacles: what blocks the robot is moved
 obstacles     the objects that block the way, as they lie or as they may go on in a wall
 feeling       before the robot gives up, it feels walls that may be things
 pursuit       subgoals of the robot itself: the best one, the route there, the next move
+keeping       whether constraints on the way were kept, by the tracks of the robot and of the things
 search        subgoals while something is missing
 verification  goal verification and active perception: looks that make sure
 tools         the stateful parts that one decision uses

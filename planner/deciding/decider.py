@@ -4,25 +4,29 @@ planner.deciding.transport brings objects where they shall be; planner.deciding.
 """
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from geometry.kernels.arrays import XY
-from kb.body import Release
+from kb.body import Grasp, Release
 from kb.language.terms import Fact
+from kb.language.vocabulary import TRACK_GOALS
 from kb.task.binding import Reconciliation, reconcile
 from kb.task.task import Task
+from kb.tracing.decisions import record_decisions
 from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
+from planner.constraints import ROBOT_NAME
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
 from planner.deciding.feeling import feeling_scope
+from planner.deciding.keeping import ConstraintKeeper
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
@@ -30,18 +34,20 @@ from planner.deciding.transport import Transporter
 from planner.deciding.verification import Verifier, check_elsewhere, look_at_contradiction, robot_square
 from planner.decision import Decision, TaskVerdict
 from planner.goals.joint import opposite_corners_reason
-from planner.goals.robot_goals import destination, robot_stands_on, unreachable_reason
+from planner.goals.robot_goals import destination, robot_stands_on, unknown_destination, unreachable_reason
 from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.navigation.subgoals import Subgoal
 from planner.per_model import PerModel
 from planner.screen.moves import next_move
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.sights.viewpoints import TO_REACH
-from planner.situation import Situation
+from planner.situation import Situation, regions_kept_off
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS, TRACK_GOALS, Stage, stages
+from planner.stages import ORIGIN_GOALS, Stage, stages
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.task_plan import TaskPlan
+
+PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that something cannot be, as things are
 
 
 class Decider:
@@ -97,6 +103,8 @@ class Decider:
         self._destination = PerModel(destination)
         self._errands = ErrandRunner(self._destination, pull)
         self._into_corner = IntoCorner()
+        self._keeper = ConstraintKeeper(task)
+        self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
         self._turn = 0  # the sign of the turn that was begun about an object
 
     @property
@@ -132,7 +140,21 @@ class Decider:
         BadInputError
             The user's encodings are wrong.
         """
-        cost_maps = CostMaps(model)
+        self._keeper.note(model)
+        decision = self._decided(model, track)
+        if decision.command is not None or decision.verdict == TaskVerdict.DONE:
+            return decision
+        return self._blamed_on_constraints(decision, model, track)
+
+    def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return what to do after an impression, whatever constraints have to do with a verdict.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        kept_off = regions_kept_off(self.task, self.bound, model, "utak", lenient=self._lenient)
+        cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
@@ -141,22 +163,96 @@ class Decider:
             return Decision(Release(), why)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
+        situation = replace(situation, lenient=self._lenient)
+        broken = self._keeper.broken_at_start(situation)
+        if broken is not None:
+            return qualify(broken, situation)
         while self.attained < len(self.stages):
             stage = self.stages[self.attained]
             decision = self._clearer.continue_clearing(stage, situation, self._tools)
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
+                if (
+                    isinstance(decision.command, Grasp) and self._errands.blamed_so_far
+                ):  # nothing is taken against rules
+                    why = f"{stage} cannot be attained as far as is known"
+                    decision = Decision(None, why, TaskVerdict.LIMIT)
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
-                if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
-                    return replace(decision, verdict=TaskVerdict.LIMIT)
-                return qualify(decision, situation, feeling_scope(stage, situation))
+                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
+                if unproved:
+                    decision = replace(decision, verdict=TaskVerdict.LIMIT)
+                else:
+                    decision = qualify(decision, situation, feeling_scope(stage, situation))
+                return self._keeper.guarded(decision, situation)
             self.attained += 1
         if situation.forbidden("utak") and not situation.avoided:
             why = "what the task asks for holds, but the robot went through every door that is sure"
             return Decision(None, why, TaskVerdict.LIMIT)
-        return Decision(None, " and ".join(map(str, self.stages)) + " holds", TaskVerdict.DONE)
+        doubt = self._keeper.doubt_of_done(situation)
+        if doubt:
+            return Decision(None, f"what the task asks for holds, but {doubt}", TaskVerdict.LIMIT)
+        why = " and ".join(map(str, self.stages)) + " holds"
+        wished = [str(wish) for wish, _ in self.stages[-1].wishes] if self.stages else []
+        hold = self._errands.wishes_that_hold
+        why += "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
+        return Decision(None, why, TaskVerdict.DONE)
+
+    def is_done_without_wishes(self, model: WorldModel, track: Sequence[XY]) -> bool:
+        """Return whether all goals hold as they are, so that nothing but wishes is left.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        if not self.stages or not self.stages[-1].wishes:
+            return False
+        other = deepcopy(self)
+        other.stages = (*self.stages[:-1], replace(self.stages[-1], wishes=()))
+        with record_decisions():  # a question about the end, not a decision
+            return other.decide(model, track).verdict == TaskVerdict.DONE
+
+    def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return a verdict with the constraints that leave no way, where there would be one without them.
+
+        A verdict that stands without the constraints stands with them. Else it is proved only when it stands for
+        regions that are taken as small as they surely are, too; if it does not, it is `limit`.
+
+        Parameters
+        ----------
+        decision : a verdict, but for `done`.
+        model, track : as for `decide`.
+        """
+        ways = [goal for goal in self.task.goals if goal.name in ("avoid", "carry_nothing_through")]
+        if not ways or any(str(goal) in decision.why for goal in ways):
+            return decision
+        without = self._asked(model, track, ways)
+        if without.command is None and without.verdict != TaskVerdict.DONE:
+            return without
+        alone = [goal for goal in ways if self._asked(model, track, [goal]).command is not None]
+        why = f"{decision.why}; {' and '.join(map(str, alone or ways))} leave{'s' * (len(alone or ways) == 1)} no way"
+        proof = self._asked(model, track, [], lenient=True)
+        if decision.verdict in PROOFS and proof.verdict in PROOFS:
+            return replace(decision, why=why, verdict=proof.verdict)
+        return replace(decision, why=why, verdict=TaskVerdict.LIMIT)
+
+    def _asked(
+        self, model: WorldModel, track: Sequence[XY], without: Sequence[Fact], lenient: bool = False
+    ) -> Decision:
+        """Return what would be decided without some constraints, or with regions as small as they surely are.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        without : the constraints that are left out.
+        lenient : whether regions count only where whole squares lie in them.
+        """
+        other = deepcopy(self)
+        other.task = replace(self.task, goals=tuple(goal for goal in self.task.goals if goal not in without))
+        other._keeper.task, other._lenient = other.task, lenient
+        with record_decisions():  # a question about the verdict, not a decision
+            return other._decided(model, track)
 
     def _towards(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
@@ -191,10 +287,53 @@ class Decider:
             if decision.verdict == TaskVerdict.IMPOSSIBLE:  # proved, whatever is moved that was seen
                 return self._clearer.open_walls(decision, (goal,), stage, situation, self._tools)
             return self._clearer.clear_before_verdict(decision, (goal,), stage, situation, self._tools)
-        decision = self._go(stage, situation, reconciled, track) if stage.own else None
+        decision = self._go_along_plan(stage, situation, reconciled, track) if stage.own else None
         if decision is None:
-            return None
+            return self._go_for_wish(stage, situation, reconciled, track)
         return self._clearer.clear_before_verdict(decision, stage.own, stage, situation, self._tools)
+
+    def _go_along_plan(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
+    ) -> Decision | None:
+        """Return the next command of the robot itself through the doors of the task plan; by any way where these fail.
+
+        As `_go`: None when the robot is where it shall be.
+
+        Parameters
+        ----------
+        stage : of the task; it has a goal for the robot itself.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
+        along = self._errands.along_plan(situation)
+        decision = self._go(stage, along, reconciled, track)
+        if decision is None or decision.command is not None or along.closed == situation.closed:
+            return decision
+        return self._go(stage, situation, reconciled, track)
+
+    def _go_for_wish(
+        self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]
+    ) -> Decision | None:
+        """Return the next command for a wish about the robot itself that the plan has; None for none, never a verdict.
+
+        Parameters
+        ----------
+        stage : of the task; its goals hold.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
+        track : where the robot has been, (x, y) in squares, map frame.
+        """
+        found = self._errands.own_wish
+        if found is None:
+            return None
+        errand, wish = found
+        goals = tuple(goal for goal in stage.goals if goal.name not in TRACK_GOALS)
+        decision = self._go(replace(stage, goals=(*goals, wish)), situation, reconciled, track)
+        if decision is not None and decision.command is None:
+            self._errands.drop(errand, situation)
+            return None
+        return decision
 
     def _ordered(self, stage: Stage, situation: Situation) -> list[Fact]:
         """Return the goals for objects in the order in which they are pursued while there is no task plan.
@@ -252,7 +391,18 @@ class Decider:
         subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         verdict = verdict_if_not_found(situation.model) if unseen else TaskVerdict.IMPOSSIBLE
-        ask = partial(self.pursuer.pursue, subgoals, stage, situation, lambda: missing, verdict)
+
+        def ask() -> Decision:
+            """Return the next command there, or to look for another way where doors are shut; else the verdict."""
+            found = self.pursuer.pursue(subgoals, stage, situation, lambda: missing, verdict)
+            if found.command is not None or not situation.shut("utak"):
+                return found
+            within = situation.within_shut_doors()
+            unknown = unknown_destination("every way that is known leads through a forbidden door")
+            others = subgoals_towards([unknown], within, reconciled, TO_REACH)
+            other = self.pursuer.pursue(others, stage, within, lambda: unknown.missing)
+            return found if other.command is None else other
+
         decision = self.pursuer.feel_before_verdict(ask, stage, situation)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
@@ -347,7 +497,9 @@ class Decider:
         ----------
         cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
         """
-        carried = sorted({str(goal.args[0]) for stage in self.stages for goal in stage.carried})
+        wished = [goal for stage in self.stages for goal, _ in stage.wishes]
+        goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
+        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT_NAME})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding

@@ -4,7 +4,10 @@ A thing that is brought to a place of its own goal is led by planner.deciding.tr
 end. A thing that is moved aside, or to a spot that the plan chose, is brought there by the plan executor.
 """
 
+from dataclasses import replace
+
 from geometry.manipulation.goals import End
+from kb.language.terms import Fact
 from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act
@@ -20,7 +23,7 @@ from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention, NextErrand
 from planner.tasking.setting import DestinationFunction
-from planner.tasking.task_plan import TaskPlan
+from planner.tasking.task_plan import Errand, TaskPlan
 
 MAX_FAILURES = 3  # errands that fail one after the other within one decision; a bound on rounds
 
@@ -72,7 +75,8 @@ class ErrandRunner:
             if found is None:
                 break
             tools.executor.unwanted = {found.node.name: (found.turned, found.errand.avoid)}
-            decision = self._follow(found, stage, situation, reconciled, transporter, tools)
+            along = self.along_plan(situation)
+            decision = self._follow(found, stage, along, reconciled, transporter, tools)
             if decision is not None and decision.command is not None:
                 return decision
             self._intention.failed(found.errand, situation)
@@ -102,9 +106,49 @@ class ErrandRunner:
 
     @property
     def is_shut_out(self) -> bool:
-        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for."""
+        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
+
+        False while it is open where exactly a goal holds.
+        """
         rules = self._intention.rules
-        return bool(rules.blamed and not rules.closed)
+        return bool(rules.blamed and not rules.closed and not self._intention.is_open)
+
+    @property
+    def blamed_so_far(self) -> str:
+        """The users' rules because of which there is no plan as far as is known, in words; "" for none.
+
+        "" where a plan is under way, too, and where the rules close doors: then no way through these is taken.
+        """
+        return self.blamed if self.plan is None and not self._intention.rules.closed else ""
+
+    def along_plan(self, situation: Situation) -> Situation:
+        """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
+
+        Parameters
+        ----------
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        return self._intention.along_plan(situation)
+
+    @property
+    def own_wish(self) -> tuple[Errand, Fact] | None:
+        """The next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
+        return self._intention.own_wish()
+
+    def drop(self, errand: Errand, situation: Situation) -> None:
+        """Drop the wish of a step for good: it cannot be attained.
+
+        Parameters
+        ----------
+        errand : the present step of the plan.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        self._intention.failed(errand, situation)
+
+    @property
+    def wishes_that_hold(self) -> tuple[str, ...]:
+        """The wishes that hold now, as the task states them."""
+        return self._intention.wishes_that_hold()
 
     def _follow(
         self,
@@ -118,7 +162,8 @@ class ErrandRunner:
         """Return the next command of an errand; a verdict or None when it cannot be done."""
         if found.goal is None:
             return bring_to_spot(found.node, found.errand.place, found.end, stage, situation, tools)
-        goal = stage.carried[found.goal]
+        goal = found.goal
+        stage = stage if goal in stage.goals else replace(stage, goals=(*stage.goals, goal))
         decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
         if decision is None:
             return None

@@ -11,6 +11,7 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.raster.components import components
 from geometry.raster.rasterize import squares
+from kb.language.vocabulary import TRACK_GOALS
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
@@ -22,7 +23,7 @@ from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
 from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
 from planner.situation import Situation
-from planner.stages import TRACK_GOALS, Stage
+from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
 MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time

@@ -100,7 +100,8 @@ def _routes_opened(
     walls : (rows, columns) bool on the arrays of the view: a nook beside one of these squares counts; None for none.
     further : how many squares further than the nearest such floor the route leads, if there is floor so far.
     """
-    without, cost_maps = CostMaps(situation.model, under), situation.cost_maps
+    cost_maps = situation.cost_maps
+    without = CostMaps(situation.model, under, cost_maps.kept_off)
     beyond = (
         (without.distances[UNSEEN_LEVEL] != GEODESIC_UNREACHED)
         & (cost_maps.distances[UNSEEN_LEVEL] == GEODESIC_UNREACHED)

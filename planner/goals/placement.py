@@ -19,7 +19,7 @@ from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTI
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import dilate, shift_mask
 from planner.sights.frontiers import Viewpoint
-from planner.situation import Situation
+from planner.situation import NECK_WIDTH, Situation
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
 CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
@@ -214,11 +214,11 @@ def mask_to_polygon(mask: Bools) -> Any:
     return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
 
 
-def forbidden_necks(node: Node, situation: Situation) -> Bools:
-    """Compute the squares on the necks of doors through which an object may not be carried.
+def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bools:
+    """Compute the squares over which an object may not be carried: necks of doors, and regions that the task forbids.
 
-    The robot holds the object wherever that goes, so a door that is forbidden to either is forbidden to both. Squares
-    that the object covers now are left out.
+    The robot holds the object wherever that goes, so what is forbidden to either is forbidden to both. Squares that the
+    object covers now are left out.
 
     Parameters
     ----------
@@ -226,18 +226,24 @@ def forbidden_necks(node: Node, situation: Situation) -> Bools:
         The object.
     situation : Situation
         What is believed: world model, rooms, doors, corners and track.
+    margin : int
+        Squares that are added to the arrays of the view on each side.
 
     Returns
     -------
     Bools
-        (rows, columns) bool on the arrays of the view; all False when no door is forbidden.
+        (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False
+        when nothing is forbidden.
     """
     columns, rows = situation.model.labels.shape[::-1]
     doors = (*situation.shut("utak"), *situation.shut(node.name))
-    necks = (shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH) for door in doors)
-    none = np.zeros((rows, columns), bool)
-    mask: Bools = np.any([squares(neck, columns, rows) for neck in necks] or [none], axis=0)
-    return mask & ~situation.model.mask(node.patch)
+    mask = situation.region_kept_off(node.name, margin)
+    if not situation.lenient:
+        mask |= situation.region_kept_off("utak", margin)
+    for door in doors:
+        neck = shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH)
+        mask |= np.pad(squares(neck, columns, rows), margin)
+    return mask & ~np.pad(situation.model.mask(node.patch), margin)
 
 
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:

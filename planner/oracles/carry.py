@@ -23,9 +23,8 @@ from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL, dilate
-from planner.situation import Situation
+from planner.situation import NECK_WIDTH, Situation
 
-NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
 
 
@@ -284,12 +283,12 @@ class CarryOracle:
         """
         lying, margin = state.things[name], self.floors.margin
         outline = Translate(margin, margin).carry(lying.outline)
-        walk = self._free(state, name, certainty, shut)
-        free = walk | squares(outline, walk.shape[1], walk.shape[0])
+        free = self._free(state, name, certainty, shut)
+        free |= squares(outline, free.shape[1], free.shape[0])
         goal, held = moved(lying.reach(end), margin, margin), state.held == name
         where = goal.polygon.wkb if isinstance(goal, Inside) else goal
-        walk = np.ones_like(walk) if anywhere else walk
-        key = (outline.wkb, free.tobytes(), where, state.robot, held, inner, anywhere)
+        walk = np.ones_like(free) if anywhere else self._free(state, name, certainty, shut, alone=True)
+        key = (outline.wkb, free.tobytes(), walk.tobytes(), where, state.robot, held, inner)
         if key not in self._plans:
             self.asked += 1
             utak = state.robot[0] + margin, state.robot[1] + margin
@@ -327,17 +326,31 @@ class CarryOracle:
                 robot = robot[0] + motion.dx, robot[1] + motion.dy
         return state.after(name, Lying(back.polygon, pose, place), robot)
 
-    def _free(self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str]) -> Bools:
-        """Return the squares that the things of a state other than `name`, and shut doors, leave free."""
+    def _free(
+        self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str], alone: bool = False
+    ) -> Bools:
+        """Return the squares that other things of a state, shut doors and forbidden regions leave free.
+
+        Parameters
+        ----------
+        state : how everything lies.
+        name : the thing that is carried; None for none.
+        certainty : how sure the squares are.
+        shut : the names of doors that are not passed.
+        alone : whether the squares are those for the robot without the thing.
+        """
         free = self.floors.by_certainty[certainty].copy()
         rows, columns = free.shape
         margin = self.floors.margin
         for other, lying in state.things.items():
             if other != name:
                 free &= ~self._covered(other, lying, (rows, columns))
-        names = shut | {door.name for actor in (ROBOT, name) if actor for door in self._situation.shut(actor)}
+        actors = (ROBOT,) if alone or name is None else (ROBOT, name)
+        names = shut | {door.name for actor in actors for door in self._situation.shut(actor)}
         for door in names & self._doors.keys():
             free &= ~self._neck(self._doors[door], (rows, columns))
+        for actor in actors:
+            free &= ~self._situation.region_kept_off(actor, margin)
         x, y = (int(v) + margin for v in state.robot)
         if 0 <= x < columns and 0 <= y < rows:
             free[y, x] = True

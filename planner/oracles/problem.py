@@ -87,16 +87,18 @@ class PlacedGoal:
 
     Attributes
     ----------
-    name : g1, g2, ... in the order of the task.
+    name : g1, g2, ... in the order of the task; w1, w2, ... for wishes.
     words : the goal as the task states it; those of the robot joined by "and".
     subject : the object that it is about, or ROBOT.
     holds : whether it holds now.
+    weight : about how many commands it may cost, for a wish; None for a goal that must hold.
     """
 
     name: str
     words: str
     subject: str
     holds: bool
+    weight: int | None = None
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -111,12 +113,13 @@ class TaskProblem:
     Attributes
     ----------
     nodes : the objects that may be carried, by name, in the order of the model; their outlines are known.
-    goals : the goals of the stage, in the order of the task.
+    goals : the goals of the stage, in the order of the task, and then its wishes.
     places : by object and name of a place: the end there, meant for the object as it lies now. ROBOT has none here.
     fulfils : by object (or ROBOT) and name of a place: the names of the goals that hold there.
     stands : by the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the
         view.
     state : how everything is now.
+    open : whether it is open where exactly some goal holds, so that it may hold elsewhere, too.
     """
 
     nodes: Mapping[str, Node]
@@ -125,6 +128,7 @@ class TaskProblem:
     fulfils: Mapping[tuple[str, str], tuple[str, ...]]
     stands: Mapping[str, Any]
     state: TableState
+    open: bool = False
 
     def with_places(self, places: Mapping[tuple[str, str], End]) -> "TaskProblem":
         """Return the problem with further places: ends by object and name of a place."""

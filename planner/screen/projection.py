@@ -62,22 +62,27 @@ class CostMaps:
     carried : Bools | None
         (rows, columns) bool, the squares of an object that moves along with the robot and so is not in its way; None
         for no such object.
+    kept_off : Bools | None
+        (rows, columns) bool, the squares that the task forbids to the robot; None for none.
 
     Attributes
     ----------
     model : the world model.
     here : the square (column, row) of the robot, on the arrays of the view.
+    kept_off : as given.
     """
 
-    def __init__(self, model: WorldModel, carried: Bools | None = None) -> None:
+    def __init__(self, model: WorldModel, carried: Bools | None = None, kept_off: Bools | None = None) -> None:
         """Make the cost maps of a world model; each map is computed when it is first asked for.
 
         Parameters
         ----------
         model : what is believed.
         carried : (rows, columns) bool on the arrays of the view, squares that count as free; None for none.
+        kept_off : (rows, columns) bool on the arrays of the view, squares that the robot may not enter; None for none.
         """
         self.model = model
+        self.kept_off = kept_off
         self._carried = carried
         row, column = model.view.locate(*model.place)
         self.here = (column, row)
@@ -86,7 +91,8 @@ class CostMaps:
     def free(self, level: int) -> Bools:
         """Compute the squares that may be crossed at a certainty level, (rows, columns) bool: a new array at each call.
 
-        The robot's own square is always one of them; squares that stopped a motion never are, unless they are carried.
+        The robot's own square is always one of them; squares that stopped a motion
+        never are, unless they are carried, nor are those that the task forbids to it.
 
         Parameters
         ----------
@@ -102,6 +108,8 @@ class CostMaps:
         mask &= ~self._barred
         if self._carried is not None:
             mask |= self._carried
+        if self.kept_off is not None:
+            mask &= ~self.kept_off
         mask[self.here[1], self.here[0]] = True
         return mask
 
@@ -161,6 +169,8 @@ class CostMaps:
         doubtful = dilate(doubtful_squares, 1) | dilate(~view.seen, 1)
         mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= MAX_FREE_PROBABILITY) & ~doubtful)
         mask &= ~self._barred
+        if self.kept_off is not None:
+            mask &= ~self.kept_off
         mask[self.here[1], self.here[0]] = True
         return mask
 

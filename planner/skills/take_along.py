@@ -12,7 +12,7 @@ from geometry.motion.first_contact import ContactBody
 from geometry.motion.se2 import Translate
 from geometry.raster.components import components
 from kb.world.model import Node
-from planner.goals.placement import floor_leads_away, forbidden_necks, mask_to_polygon, to_view_frame
+from planner.goals.placement import floor_leads_away, forbidden_squares, mask_to_polygon, to_view_frame
 from planner.screen.moves import CARRYING_PACE
 from planner.screen.projection import SquareIndices, dilate, indices_to_mask
 from planner.situation import Situation
@@ -172,5 +172,5 @@ def _workspace(node: Node, situation: Situation) -> Workspace:
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    free = situation.cost_maps.free(0) & ~forbidden_necks(node, situation)
+    free = situation.cost_maps.free(0) & ~forbidden_squares(node, situation)
     return Workspace(free | situation.model.mask(node.patch))

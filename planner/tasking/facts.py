@@ -63,7 +63,7 @@ def problem_facts(
     ranks: dict[str, int] = {}
     for number, goal in enumerate(problem.goals):
         ranks.setdefault(goal.subject, number)
-        facts.append(f"goal({goal.name})")
+        facts.append(f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})")
         if goal.holds:
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
@@ -118,6 +118,8 @@ def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iter
             continue
         names.append((name, place))
         outlines.append(outline.buffer(-OVERLAP_ROUNDING))
+    if not outlines:
+        return
     tree = shapely.STRtree(outlines)
     for one, other in sorted(zip(*(column.tolist() for column in tree.query(outlines, "intersects")), strict=True)):
         (x, p), (y, q) = names[one], names[other]
@@ -144,6 +146,7 @@ def _world_facts(situation: Situation) -> Iterator[str]:
             yield f"bound({parameter},{name})"
     for node in situation.model.objects:
         yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
+        yield f"size({node.name},{int(node.patch.mask.sum())})"
         if node.colour is not None:
             yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)

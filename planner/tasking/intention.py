@@ -6,8 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.kernels.arrays import Bools
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, moved
+from kb.language.terms import Fact
+from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from planner.goals.placement import meets_end
 from planner.oracles.carry import CarryOracle
@@ -15,9 +17,17 @@ from planner.oracles.problem import HERE, ROBOT, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.rule_effects import RuleEffects, effects_of_rules
-from planner.tasking.search import make_plan
-from planner.tasking.setting import DestinationFunction, OriginFunction, PlaceFunction, place_name, problem_of
+from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
+from planner.tasking.search import TASK_ENCODING, make_plan
+from planner.tasking.setting import (
+    DestinationFunction,
+    OriginFunction,
+    PlaceFunction,
+    goal_of_place,
+    place_name,
+    problem_of,
+    wish_of_place,
+)
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
@@ -31,7 +41,7 @@ class NextErrand(NamedTuple):
     errand : the step of the plan.
     node : the object that is brought.
     end : where it shall lie, in squares, view frame.
-    goal : the number of the carried goal of the stage whose own end this is; None for a spot that the planner chose.
+    goal : the goal or wish whose own end this is; None for a spot that the planner chose.
     end_name : the name of that end among the ends of the goal; "" for a spot.
     turned : by how many degrees the object had been turned when the plan was made.
     """
@@ -39,7 +49,7 @@ class NextErrand(NamedTuple):
     errand: Errand
     node: Node
     end: End
-    goal: int | None
+    goal: Fact | None
     end_name: str
     turned: float
 
@@ -58,6 +68,7 @@ class _Kept:
     bounds : where each thing lies at the beginning of each errand: its bounds, by the number of the errand and name.
     ways : the squares (x, y) that each errand crosses, (n, 2).
     turned : by how many degrees each thing had been turned when the plan was made.
+    led_round : the middles (x, y) of the doors that each errand does not pass, where users' rules are about task plans.
     number : the errand that is done now.
     """
 
@@ -69,6 +80,7 @@ class _Kept:
     bounds: tuple[Mapping[str, tuple[float, ...]], ...]
     ways: tuple[Any, ...]
     turned: Mapping[str, float]
+    led_round: tuple[tuple[XY, ...], ...] = ()
     number: int = 0
 
 
@@ -93,6 +105,7 @@ class Intention:
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
         self._stage: Stage | None = None  # for which `_tried` counts
+        self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self.rules = RuleEffects()
 
     @property
@@ -128,6 +141,7 @@ class Intention:
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
+        stage = self._without_dropped(stage)
         self._problem = problem_of(stage, situation, place, origin, self._where)
         if stage != self._stage:
             self._stage, self._tried = stage, []
@@ -148,7 +162,7 @@ class Intention:
         ----------
         stage, situation, place, origin : as for `update`, which is called before.
         """
-        kept, problem = self._kept, self._problem
+        kept, problem, stage = self._kept, self._problem, self._without_dropped(stage)
         if kept is None or problem is None or kept.number >= len(kept.plan.errands):
             return None
         errand = kept.plan.errands[kept.number]
@@ -166,15 +180,55 @@ class Intention:
     def failed(self, errand: Errand, situation: Situation) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
 
+        A wish is dropped for good.
+
         Parameters
         ----------
         errand : the present errand.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
+        wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
+        self._dropped |= set() if wish is None else {wish}
         others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
         given = tuple((name, HERE) for name in others)
         self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
         self._kept = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is open where exactly some goal of the problem holds."""
+        return self._problem is None or self._problem.open
+
+    def along_plan(self, situation: Situation) -> Situation:
+        """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
+
+        Parameters
+        ----------
+        situation : what is believed: world model, rooms, doors, corners and track.
+        """
+        kept = self._kept
+        if kept is None or kept.number >= len(kept.led_round):
+            return situation
+        closed = doors_at(kept.led_round[kept.number], situation)
+        return replace(situation, closed=situation.closed | closed)
+
+    def own_wish(self) -> tuple[Errand, Fact] | None:
+        """Return the next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
+        kept = self._kept
+        if kept is None or kept.number >= len(kept.plan.errands):
+            return None
+        errand = kept.plan.errands[kept.number]
+        wish = wish_of_place(errand.place, kept.stage) if errand.subject == ROBOT else None
+        return None if wish is None else (errand, wish)
+
+    def wishes_that_hold(self) -> tuple[str, ...]:
+        """Return the wishes that hold now, as the task states them; () while no plan can be made."""
+        goals = () if self._problem is None else self._problem.goals
+        return tuple(goal.words for goal in goals if goal.weight is not None and goal.holds)
+
+    def _without_dropped(self, stage: Stage) -> Stage:
+        """Return a stage without the wishes that were dropped."""
+        return replace(stage, wishes=tuple(pair for pair in stage.wishes if pair[0] not in self._dropped))
 
     def _kept_still(self, stage: Stage, problem: TaskProblem, situation: Situation) -> _Kept | None:
         """Return the plan under way, moved on over errands that are done; None when what it rests on fell."""
@@ -197,7 +251,8 @@ class Intention:
     def _stands(self, kept: _Kept, problem: TaskProblem, situation: Situation) -> bool:
         """Return whether all things lie as the plan expects, and no way that is left is seen to be blocked."""
         if kept.number >= len(kept.plan.errands):
-            return all(goal.holds or goal.subject == ROBOT for goal in problem.goals)
+            missed = kept.plan.missed
+            return all(goal.holds or goal.subject == ROBOT or goal.name in missed for goal in problem.goals)
         subject = kept.plan.errands[kept.number].subject
         now = _bounds(problem, situation)
         for name, expected in kept.bounds[kept.number].items():
@@ -219,7 +274,8 @@ class Intention:
         self, stage: Stage, problem: TaskProblem, situation: Situation, avoid: Mapping[str, Any], turn: float
     ) -> _Kept | None:
         """Return a new plan with what it rests on; None when there is none that attains all goals."""
-        if all(goal.holds for goal in problem.goals):
+        ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # then there may be goals that the task does not have
+        if all(goal.holds for goal in problem.goals) and not ruled:
             self._attempt = None
             return None
         lying = _lying(situation)
@@ -246,7 +302,9 @@ class Intention:
         )
         ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
         turned = {name: node.turned for name, node in problem.nodes.items()}
-        return _Kept(made.plan, stage, tuple(problem.nodes), frozenset(problem.places), spots, bounds, ways, turned)
+        names, places = tuple(problem.nodes), frozenset(problem.places)
+        led_round = doors_led_round(made, situation)
+        return _Kept(made.plan, stage, names, places, spots, bounds, ways, turned, led_round)
 
 
 def _goal_of(
@@ -256,18 +314,16 @@ def _goal_of(
     situation: Situation,
     place: PlaceFunction,
     origin: OriginFunction,
-) -> tuple[int | None, str]:
-    """Return the number of the carried goal that an errand attains, and the name of its end there."""
-    for number, goal in enumerate(stage.carried):
-        prefix = f"g{number + 1}"
-        if not errand.place.startswith(f"{prefix}_"):
-            continue
-        node = problem.nodes[errand.subject]
-        land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
-        for name in (*land.ends, *land.loose):
-            if place_name(prefix, name) == errand.place:
-                return number, name
-    return None, ""
+) -> tuple[Fact | None, str]:
+    """Return the goal or wish that an errand attains, and the name of its end there."""
+    found = goal_of_place(errand.place, stage)
+    if found is None:
+        return None, ""
+    name, goal = found
+    node = problem.nodes[errand.subject]
+    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
+    ends = (*land.ends, *land.loose)
+    return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
 
 def _moved_to_view(end: End, situation: Situation) -> End:

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from geometry.kernels.arrays import Bools
+from geometry.kernels.arrays import Bools, Ints
 from geometry.manipulation.goals import End, Inside
 from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
+from kb.world.rooms import NO_ROOM
 from planner.oracles.carry import Certainty, Floors
 from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import SPOT_SLACK, covered_by, spots
@@ -43,8 +44,14 @@ class Offers:
     shape : (rows, columns) of the floors.
     """
 
-    def __init__(self, floors: Floors) -> None:
-        """Make offers for some floors; nothing is in the way."""
+    def __init__(self, floors: Floors, rooms: Ints | None = None) -> None:
+        """Make offers for some floors; nothing is in the way.
+
+        floors : the squares that may be used, with a margin.
+        rooms : the number of the room of each square of the view; then places are offered in the room of a thing, too,
+            for rules may want it there. None for places anywhere.
+        """
+        self._rooms = None if rooms is None else np.pad(rooms, floors.margin)
         sure = floors.by_certainty[Certainty.SURE]
         self.aside: list[tuple[str, str]] = []
         self.spots: set[tuple[str, str]] = set()
@@ -96,7 +103,20 @@ class Offers:
         floor = self._floors.by_certainty[Certainty.SURE]
         others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
         open_floor = floor & ~covered_by(others, self.shape)
-        return self._spots(name, problem, open_floor, open_floor) or self._spots(name, problem, open_floor, floor)
+        found = self._spots_over(name, problem, open_floor, open_floor, floor)
+        if self._rooms is None:
+            return found
+        own = squares(self._carry(problem.state.things[name].outline), self.shape[1], self.shape[0])
+        rooms = np.unique(self._rooms[own & (self._rooms != NO_ROOM)])
+        in_rooms = open_floor & np.isin(self._rooms, rooms)
+        within = self._spots_over(name, problem, in_rooms, open_floor, floor)
+        return found + [end for end in within if end not in found]
+
+    def _spots_over(
+        self, name: str, problem: TaskProblem, where: Bools, open_floor: Bools, floor: Bools
+    ) -> list[Inside]:
+        """Return places on some squares to which a thing can be pushed past others; else over all of the floor."""
+        return self._spots(name, problem, where, open_floor) or self._spots(name, problem, where, floor)
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
         """Return places within the region of a goal."""

@@ -1,6 +1,7 @@
 """The effects of users' rules on a task plan: doors that they close to every plan, and rules that leave no plan."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
@@ -33,12 +34,54 @@ class RuleEffects:
         ----------
         situation : what is believed: world model, rooms, doors, corners and track.
         """
-        view = situation.model.view
-        places = [(x - view.west, y - view.south) for x, y in self.closed]
-        doors = situation.rooms.doors
-        return frozenset(
-            door.name for door in doors if any(math.dist(door.place, place) <= SAME_DOOR for place in places)
-        )
+        return doors_at(self.closed, situation)
+
+
+def doors_at(middles: Sequence[XY], situation: Situation) -> frozenset[str]:
+    """Return the names that doors at some places bear now.
+
+    Parameters
+    ----------
+    middles : the middles (x, y) of the doors as they were, in squares, map frame.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    """
+    view = situation.model.view
+    places = [(x - view.west, y - view.south) for x, y in middles]
+    doors = situation.rooms.doors
+    return frozenset(door.name for door in doors if any(math.dist(door.place, place) <= SAME_DOOR for place in places))
+
+
+def doors_led_round(made: MadePlan, situation: Situation) -> tuple[tuple[XY, ...], ...]:
+    """Return the doors that each errand of a plan does not pass; () when no users' rule is about task plans.
+
+    Rules may give doors a price, or forbid them for some errands. Then the way of an errand is that of the plan.
+
+    Parameters
+    ----------
+    made : the plan, with the facts from which it was made.
+    situation : what is believed: world model, rooms, doors, corners and track.
+
+    Returns
+    -------
+    tuple of tuples
+        For each errand the middles (x, y) of such doors, in squares, map frame.
+    """
+    if not rules_reach(TASK_ENCODING.stem, situation.rules):
+        return ()
+    doors = _doors_of(made, situation)
+    return tuple(
+        tuple(middle for name, middle in doors.items() if name not in errand.doors) for errand in made.plan.errands
+    )
+
+
+def _doors_of(made: MadePlan, situation: Situation) -> dict[str, XY]:
+    """Return the middles (x, y) of the doors that a plan knows, by name, in squares, map frame."""
+    view = situation.model.view
+    return {
+        door.name: (door.place[0] + view.west, door.place[1] + view.south)
+        for door in situation.rooms.doors
+        if any(fact.startswith(f"connects({door.name},") for fact in made.facts)
+    }
 
 
 def effects_of_rules(made: MadePlan, situation: Situation) -> RuleEffects:
@@ -53,14 +96,11 @@ def effects_of_rules(made: MadePlan, situation: Situation) -> RuleEffects:
     if not made.facts or not rules_reach(TASK_ENCODING.stem, rules):
         return RuleEffects()
     closed = []
-    view = situation.model.view
-    for door in situation.rooms.doors:
-        if not any(fact.startswith(f"connects({door.name},") for fact in made.facts):
-            continue
+    for name, middle in _doors_of(made, situation).items():
         with record_decisions():  # a question about the plan, not a decision
-            answer = solve([TASK_ENCODING, *rules], (*made.facts, f"asked({door.name})"))
+            answer = solve([TASK_ENCODING, *rules], (*made.facts, f"asked({name})"))
         if answer and any(atom.name == "closed" for atom in answer):
-            closed.append((door.place[0] + view.west, door.place[1] + view.south))
+            closed.append(middle)
     blamed = rules_to_blame(TASK_ENCODING, rules, made.facts, _leaves_goals) if made.plan.unmet else ()
     return RuleEffects(tuple(closed), blamed)
 

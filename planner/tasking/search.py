@@ -33,6 +33,7 @@ MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its pla
 MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
 MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
+LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encoding
 
 
 class MadePlan(NamedTuple):
@@ -64,11 +65,13 @@ class Proposal(NamedTuple):
     errands : its steps, in order.
     unmet : the goals that do not hold after them.
     facts : what the encoding was given.
+    missed : the wishes that do not hold after them, each with the commands that it may cost.
     """
 
     errands: tuple[Errand, ...]
     unmet: tuple[str, ...]
     facts: tuple[str, ...]
+    missed: Mapping[str, int]
 
 
 class PlanSearch:
@@ -88,26 +91,27 @@ class PlanSearch:
         """
         self._problem, self._situation, self._oracle = with_returns(problem), situation, oracle
         self._answers = Answers(refutations=tuple(tried))
-        self._offers = Offers(oracle.floors)
+        self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
+        self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
         self._facts = problem_facts(problem, (), situation)
         self._cut = False  # whether a search of clingo was cut off by its limit
         self._offers.note_in_way(things_in_way(self._facts))
-        self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
-        out_of_place = {goal.subject for goal in self._problem.goals if not goal.holds}
+        goals = self._problem.goals  # a wish that holds may not hold any more when something else was brought
+        out_of_place = {goal.subject for goal in goals if not goal.holds or goal.weight is not None}
         horizon = max(1, len(out_of_place))
         most = horizon + MAX_MORE_ERRANDS
         best: TaskPlan | None = None
         facts: tuple[str, ...] = ()
-        better, least, proved, number = 0, 0, False, 0
+        better, least, proved, number, best_price = 0, 0, False, 0, 0
         while number < MAX_PROPOSALS and better <= MAX_BETTER_ROUNDS and not proved:
             if self._oracle.asked > MAX_QUESTIONS:
                 break
             number += 1
             proposal = self._propose(horizon)
-            if proposal.unmet and best is None and (self._offer() or horizon < most):
+            if proposal.unmet and best is None and (self._offer(proposal.unmet) or horizon < most):
                 horizon += not self._offers.fresh
                 self._offers.fresh = False
                 continue
@@ -122,10 +126,14 @@ class PlanSearch:
             better += 1
             proved = best is not None and verified == best.errands  # no proposal is cheaper by what geometry answered
             cost = sum(errand.commands for errand in verified)
-            if best is None or cost < best.cost or proved:
-                best, facts = TaskPlan(verified, (), cost), proposal.facts
+            price = cost + sum(proposal.missed.values())
+            if best is None or price < best_price or proved:
+                best, facts = TaskPlan(verified, (), cost, missed=tuple(proposal.missed)), proposal.facts
+                best_price = price
         if best is None:
-            best = TaskPlan((), tuple(goal.name for goal in self._problem.goals if not goal.holds))
+            best = TaskPlan(
+                (), tuple(goal.name for goal in self._problem.goals if goal.weight is None and not goal.holds)
+            )
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
             solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS, self._about())
         refutations = self._answers.refutations
@@ -150,10 +158,18 @@ class PlanSearch:
             else:
                 found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
         errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
-        return Proposal(errands, unmet, facts)
+        missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
+        return Proposal(errands, unmet, facts, missed)
 
-    def _offer(self) -> bool:
-        """Offer places for things that are in the way; return whether any is new."""
+    def _offer(self, unmet: Sequence[str]) -> bool:
+        """Offer places for things that are in the way; return whether any is new.
+
+        A goal of users' rules may be about any thing: while one is unmet, places are offered for all.
+
+        unmet : the goals that the plan does not attain.
+        """
+        if not {goal.name for goal in self._problem.goals}.issuperset(unmet):
+            self._offers.note_in_way(list(self._problem.nodes))
         offered = self._offers.places(self._problem)
         if offered is None:
             return False
@@ -167,14 +183,16 @@ class PlanSearch:
         total = 0
         for errand in errands:
             way = errand.subject, place[errand.subject], errand.place
-            total += self._answers.commands.get(way, LEAST_COMMANDS) + len(errand.doors)
+            least = LEAST_WALK if errand.subject == ROBOT else LEAST_COMMANDS
+            total += self._answers.commands.get(way, least) + len(errand.doors)
             place[errand.subject] = errand.place
         return total
 
     def _verify(self, errands: Sequence[Errand]) -> tuple[Errand, ...] | None:
         """Return the errands with what geometry says of each; None when one is refuted. Changes the answers."""
         state, found = self._problem.state, list[Errand]()
-        if len(self._problem.nodes) == 1 and len(errands) == 1 and not self._ruled:
+        weighed = self._ruled or any(goal.weight is not None for goal in self._problem.goals)
+        if len(self._problem.nodes) == 1 and len(errands) == 1 and not weighed:
             return tuple(errands)  # one thing and one way: the plan executor asks geometry, and there is no other plan
         for errand in errands:
             origin = HERE if errand.subject == ROBOT else state.things[errand.subject].place

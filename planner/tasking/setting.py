@@ -1,7 +1,8 @@
 """The problem of a stage: its goals with the places where they hold, and the things that may be carried."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -9,14 +10,18 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
+from kb.language.vocabulary import TRACK_GOALS
 from kb.objects.held_object import is_grid_aligned
+from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
+from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import Destination, robot_stands_on
 from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
-from planner.stages import TRACK_GOALS, Stage
+from planner.stages import Stage
 
+TASK_ENCODING_NAME = "task"  # the encoding of task plans, without `.lp`
 PlaceFunction = Callable[[Fact, Node, XY, Situation], Placement]
 OriginFunction = Callable[[str, Node, Situation], XY]
 DestinationFunction = Callable[[Fact, Situation], Destination]
@@ -28,6 +33,7 @@ def problem_of(
     """Return the problem of a stage; None while it is open what a goal means or where it holds.
 
     None, too, while a thing that is askew is in hand: it is set down first.
+    Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
 
     Parameters
     ----------
@@ -51,34 +57,108 @@ def problem_of(
     goals: list[PlacedGoal] = []
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
-    for number, goal in enumerate(stage.carried, 1):
+    open_goals: list[str] = []
+    ruled = rules_reach(TASK_ENCODING_NAME, situation.rules)
+    for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
-        if node is None:
-            return None
-        land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
-        ends = {**land.ends, **land.loose}
-        outline = state.things[node.name].outline
-        holds = land.holds or meets_any_end(land.loose, outline)
-        if not holds and (not ends or land.missing):
-            return None
-        goals.append(PlacedGoal(f"g{number}", str(goal), node.name, holds))
-        for name, end in ends.items():
-            places[node.name, place_name(f"g{number}", name)] = end
-            fulfils[node.name, place_name(f"g{number}", name)] = (f"g{number}",)
-    stands = {}
+        ends, is_open, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
+        is_open = is_open and not holds
+        if node is None or not (holds or ends) or (weight is None and is_open and not ruled):
+            if weight is None:
+                return None
+            continue  # a wish of which nothing is known yet
+        open_goals += [name] * (is_open and weight is None)
+        goals.append(PlacedGoal(name, str(goal), node.name, holds, weight))
+        for end_name, end in ends.items():
+            places[node.name, place_name(name, end_name)] = end
+            fulfils[node.name, place_name(name, end_name)] = (name,)
+    stands: dict[str, Any] = {}
     own = [goal for goal in stage.own if goal.name not in TRACK_GOALS]
-    found = [where(goal, situation) for goal in own]
-    if own and not any(one.missing for one in found):
-        squares = found[0].squares
-        for one in found[1:]:
-            squares = np.intersect1d(squares, one.squares)
-        if len(squares):
-            name = f"g{len(goals) + 1}"
-            words = " and ".join(map(str, own))
-            goals.append(PlacedGoal(name, words, ROBOT, robot_stands_on(squares, model)))
-            stands[place_name(name, "there")] = squares
-            fulfils[ROBOT, place_name(name, "there")] = (name,)
-    return TaskProblem(things, tuple(goals), places, fulfils, stands, state)
+    squares = _common_squares(own, situation, where) if own else None
+    own_name = f"g{len(stage.carried) + 1}"
+    if squares is not None and len(squares):
+        goals.append(PlacedGoal(own_name, " and ".join(map(str, own)), ROBOT, robot_stands_on(squares, model)))
+        parts = _by_room(squares, situation)
+        stands |= {place_name(own_name, room): part for room, part in parts.items()}
+        fulfils |= {(ROBOT, place_name(own_name, room)): (own_name,) for room in parts}
+    for name, goal, weight in _numbered_wishes(stage):
+        wished = _common_squares([*own, goal], situation, where) if str(goal.args[0]) == ROBOT else None
+        if wished is not None and len(wished):
+            goals.append(PlacedGoal(name, str(goal), ROBOT, robot_stands_on(wished, model), weight))
+            parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
+            stands |= {place_name(name, room): part for room, part in parts.items()}
+            fulfils |= {(ROBOT, place_name(name, room)): names for room in parts}
+    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state, bool(open_goals))
+
+
+def _numbered(stage: Stage) -> Iterator[tuple[str, Fact, int | None]]:
+    """Yield the goals and wishes of a stage for objects: name, goal, and the weight of a wish or None."""
+    yield from ((f"g{number}", goal, None) for number, goal in enumerate(stage.carried, 1))
+    yield from (one for one in _numbered_wishes(stage) if str(one[1].args[0]) != ROBOT)
+
+
+def _numbered_wishes(stage: Stage) -> Iterator[tuple[str, Fact, int]]:
+    """Yield the wishes of a stage: name, goal and weight."""
+    yield from ((f"w{number}", goal, weight) for number, (goal, weight) in enumerate(stage.wishes, 1))
+
+
+def goal_of_place(place: str, stage: Stage) -> tuple[str, Fact] | None:
+    """Return the goal or wish for an object that a place belongs to, with its name; None for a spot aside.
+
+    Parameters
+    ----------
+    place : the name of the place, as `place_name` makes it.
+    stage : of the task: the goals that shall hold now.
+    """
+    return next(((name, goal) for name, goal, _ in _numbered(stage) if place.startswith(f"{name}_")), None)
+
+
+def wish_of_place(place: str, stage: Stage) -> Fact | None:
+    """Return the wish that a place belongs to; None when it is the place of a goal, or a spot.
+
+    Parameters
+    ----------
+    place : the name of the place, as `place_name` makes it.
+    stage : of the task: the goals that shall hold now.
+    """
+    return next((goal for name, goal, _ in _numbered_wishes(stage) if place.startswith(f"{name}_")), None)
+
+
+def _goals_before_wishes(goals: list[PlacedGoal]) -> tuple[PlacedGoal, ...]:
+    """Return goals in order, those that must hold first."""
+    return tuple(sorted(goals, key=lambda goal: goal.weight is not None))
+
+
+def _ends(
+    goal: Fact,
+    node: Node,
+    state: TableState,
+    situation: Situation,
+    place: PlaceFunction,
+    origin: OriginFunction,
+) -> tuple[Mapping[str, End], bool, bool]:
+    """Return the ends of a goal for an object, whether it is open where exactly these are, and whether it holds."""
+    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
+    ends = {**land.ends, **land.loose}
+    holds = land.holds or meets_any_end(land.loose, state.things[node.name].outline)
+    return ends, bool(land.missing), holds
+
+
+def _by_room(squares: Any, situation: Situation) -> dict[str, Any]:
+    """Return the parts of some squares (flat indices) in each room, by its name; "there" for those in none."""
+    numbers = situation.rooms.labels.ravel()[squares]
+    return {f"r{n}" if n != NO_ROOM else "there": squares[numbers == n] for n in np.unique(numbers)}
+
+
+def _common_squares(goals: Sequence[Fact], situation: Situation, where: DestinationFunction) -> Any:
+    """Return the squares on which all of some goals hold for the robot, flat indices; None while that is open."""
+    found = [where(goal, situation) for goal in goals]
+    if any(one.missing for one in found):
+        return None
+    squares = found[0].squares
+    for one in found[1:]:
+        squares = np.intersect1d(squares, one.squares)
+    return squares
 
 
 def _can_be_carried(node: Node) -> bool:

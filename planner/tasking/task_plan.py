@@ -104,6 +104,7 @@ class TaskPlan:
     refutations : the steps that geometry refuted on the way to it.
     rounds : how many plans were made.
     goals : the goals of the stage, in the order of the task, as they were when it was made.
+    missed : the wishes that do not hold at its end.
     """
 
     errands: tuple[Errand, ...]
@@ -114,6 +115,7 @@ class TaskPlan:
     refutations: tuple[RefutedStep, ...] = ()
     rounds: int = 0
     goals: tuple[PlacedGoal, ...] = ()
+    missed: tuple[str, ...] = ()
 
     @property
     def verified(self) -> bool:

@@ -9,6 +9,7 @@ from kb.language.atoms import atom_parts
 from kb.language.vocabulary import (
     BELIEF_PREDICATES,
     CIRCUMSTANCES,
+    CONSTRAINT_GOALS,
     CORNER_NAMES,
     GOAL_CONDITIONS,
     GOAL_VOCABULARY,
@@ -31,7 +32,7 @@ WORDS_OF_TYPE: Mapping[str, tuple[str, ...]] = {
     "walker": ("utak",),
     "corner or name": ("corner(", "start", "utak"),
     "room or name": ("room(next)",),
-    "a goal": tuple(f"{name}(" for name in GOAL_VOCABULARY if name not in ("first", "then", "not_through")),
+    "a goal": tuple(f"{name}(" for name in GOAL_CONDITIONS if name not in CONSTRAINT_GOALS),
     "what is claimed": ("shape(", "colour("),
     "place": ("corner",),
     "a goal of the task": tuple(f"{name}(" for name in GOAL_CONDITIONS),

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from geometry.kernels.arrays import XY
 from kb.language.diagnostics import BadInputError
 from kb.language.terms import Fact, Symbol
-from kb.task.task import Task
-from planner.stages import CONSTRAINT_GOALS
+from kb.language.vocabulary import CONSTRAINT_GOALS
+from kb.task.task import WRAPPING_GOALS, Task
 from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
 from simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
 from simulator.scenario.expectation import should_fail
@@ -67,7 +67,7 @@ class Dropped:
     ----------
     index : its number in goal.lp, from 0.
     goal : the fact as text.
-    is_constraint : whether it is a constraint (not_through).
+    is_constraint : whether it is a constraint (such as not_through) or a wish: nothing that must be attained.
     """
 
     index: int
@@ -181,8 +181,8 @@ def dropped_goals(task: Task) -> list[Dropped]:
 
 
 def _is_constraint(goal: Fact) -> bool:
-    """Return whether a goal is a constraint on the way."""
-    return goal.name in CONSTRAINT_GOALS
+    """Return whether a goal is a constraint on the way, or a wish: the robot need not attain it."""
+    return goal.name in CONSTRAINT_GOALS or goal.name == "prefer"
 
 
 def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
@@ -219,9 +219,9 @@ def _conditions(scenario: Scenario, dropped: list[Dropped], away: set[str], slow
 
 
 def _goal(text: str) -> Fact:
-    """Return the goal in a text, without first(...) and then(...)."""
+    """Return the goal in a text, without first(...), then(...) and prefer(...)."""
     (fact,) = facts_of([text])
-    inner = fact.args[0] if fact.name in ("first", "then") else fact
+    inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
     assert isinstance(inner, Symbol)
     return inner
 

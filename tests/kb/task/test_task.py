@@ -66,6 +66,8 @@ def test_a_step_may_be_repeated(tmp_path: Path) -> None:
 
 
 def test_goals_name_parameters(tmp_path: Path) -> None:
+    wished = "at(utak, x). prefer(at(y, start), 3). carry_nothing_through(d)."
+    assert task(tmp_path, START, wished).goal_parameters == {"x", "y", "d"}
     assert task(tmp_path, START, "first(at(utak, x)). then(through(y, d)).").goal_parameters == {"x", "y", "d"}
 
 
@@ -105,6 +107,24 @@ BAD = {
     ("", "then(at(utak, start))."): "without anything before it",
     ("", "at(utak, start). first(at(utak, corner(northeast)))."): "must come before",
     ("", "first(first(at(utak, start)))."): "unknown predicate first/1",
+    ("", 'avoid(utak, "POLYGON ((0 0, 1 0, 1 1, 0 0))").'): "the goal is empty",
+    ("", 'at(utak, start). avoid(utak, "POINT (1 1)").'): "a shape here is a POLYGON or MULTIPOLYGON",
+    ("", 'at(utak, start). avoid(utak, "POLYGON ((0 0, 1 0, 1 1))").'): "goal.lp:1:",
+    ("door(d).", 'at(utak, start). avoid(d, "POLYGON ((0 0, 1 0, 1 1, 0 0))").'): "avoid wants an object or utak here",
+    ("", 'first(avoid(utak, "POLYGON ((0 0, 1 0, 1 1, 0 0))")).'): "needs something to attain, not a constraint",
+    ("object(x).", "at(utak, x). carry_nothing_through(x)."): "x is an object; carry_nothing_through wants a door here",
+    ("door(d).", "at(utak, start). carry_nothing_trough(d)."): "did you mean carry_nothing_through?",
+    ("door(d).", "carry_nothing_through(d)."): "the goal is empty",
+    ("object(x).", "prefer(at(x, start), 3)."): "the goal is empty",
+    ("object(x).", "at(utak, x). prefer(at(x, start), -1)."): "must be from 0 to 1000000, not -1",
+    ("object(x).", "at(utak, x). prefer(at(y, start), 1)."): "y is not introduced",
+    ("object(x).", "at(utak, x). prefer(at(utak, x), 1)."): "is a goal already, and no wish",
+    ("object(x).", "at(utak, x). prefer(circled(utak, x), 1)."): "needs a goal that a place fulfils",
+    (
+        "object(x). door(d).",
+        "at(utak, x). prefer(not_through(x, d), 1).",
+    ): "needs something to attain, not a constraint",
+    ("object(x).", "at(utak, x). prefer(prefer(at(x, start), 1), 1)."): "unknown predicate prefer/2",
 }
 
 

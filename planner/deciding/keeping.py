@@ -1,0 +1,230 @@
+"""Keeping: whether the constraints on the way were kept, by the believed tracks of the robot and of the things.
+
+What was moved is remembered in the robot's own frame. The robot's commands are given in it, so its own track there does
+not depend on where the map believes it to have woken.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import shapely
+
+from geometry.kernels.arrays import XY
+from kb.body import Command, Move, Push
+from kb.language.terms import Fact
+from kb.task.task import Task
+from kb.world.model import Node, WorldModel
+from kb.world.rooms import went_through
+from planner.constraints import (
+    CARRY_NOTHING_THROUGH,
+    ROBOT_NAME,
+    SAME_PLACE,
+    avoidances,
+    in_robot_frame,
+    region_of,
+    swept_region,
+)
+from planner.decision import Decision, TaskVerdict
+from planner.goals.placement import mask_to_polygon
+from planner.situation import Situation
+
+OUTLINE_DOUBT = 0.25  # squares by which a measured outline may lie elsewhere, as for poses (planner.goals.near_goal)
+SHAKEN_DOUBT = 0.5  # squares by which the robot may be elsewhere after impressions contradicted each other: half a one
+
+
+@dataclass(frozen=True)
+class ThingTrack:
+    """The track of a thing, in squares, robot frame.
+
+    Attributes
+    ----------
+    outline : its newest outline, a shapely Polygon.
+    turned : by how many degrees it was turned until then.
+    robot : where the robot stood then.
+    swept : what it has covered since it was first moved; None while it was not.
+    middles : where its middle was, oldest first.
+    """
+
+    outline: Any
+    turned: float
+    robot: XY
+    swept: Any = None
+    middles: tuple[XY, ...] = ()
+
+
+@dataclass
+class ConstraintKeeper:
+    """Remembers where things were, and tells whether the constraints on the way were kept.
+
+    Attributes
+    ----------
+    task : whose constraints are meant.
+    """
+
+    task: Task
+    _tracks: dict[str, ThingTrack] = field(default_factory=dict)
+
+    def note(self, model: WorldModel) -> None:
+        """Remember where all things are believed to be now; nothing when no constraint is about things.
+
+        Parameters
+        ----------
+        model : what is believed.
+        """
+        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT_NAME]
+        if not about_things and not self._nothing_through:
+            return
+        for node in model.objects:
+            if node.polygon is not None:
+                self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
+
+    def broken_at_start(self, situation: Situation) -> Decision | None:
+        """Return the verdict that a region was touched from the beginning; None when no such thing is known.
+
+        Parameters
+        ----------
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        model = situation.model
+        for name, fact in avoidances(self.task):
+            region = region_of(fact)
+            if name == ROBOT_NAME and region.intersects(shapely.Point(0.0, 0.0)):
+                why = f"{fact} cannot hold: the robot wakes in that region"
+                return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
+            node = model.object(situation.binding.get(name, ""))
+            if node is None or node.polygon is None or node.moved or node.vague or not model.view.sure:
+                continue
+            surely = in_robot_frame(node.polygon, model.frame).buffer(-_doubt(model, region) - 1.0)
+            if not surely.is_empty and surely.intersects(region):
+                return Decision(None, f"{fact} cannot hold: {node.name} lies in that region", TaskVerdict.IMPOSSIBLE)
+        return None
+
+    def guarded(self, decision: Decision, situation: Situation) -> Decision:
+        """Return a decision; the verdict `limit` instead of a command that surely leads into a forbidden region.
+
+        Parameters
+        ----------
+        decision : what was decided.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        for name, fact in avoidances(self.task):
+            way = _way_of(decision.command, name, situation)
+            if way is not None and way.intersects(region_of(fact)):
+                why = f"{fact} would be broken by the next command; {decision.why}"
+                return Decision(None, why, TaskVerdict.LIMIT)
+        return decision
+
+    def doubt_of_done(self, situation: Situation) -> str:
+        """Return why the constraints may not have been kept, in words; "" when they surely were, as is believed.
+
+        Parameters
+        ----------
+        situation : what is believed (world model, rooms, doors, corners, track), when all goals hold.
+        """
+        return next(self._doubts(situation), "")
+
+    def _doubts(self, situation: Situation) -> Iterator[str]:
+        """Yield a reason for each constraint of which it cannot be told that it was kept."""
+        for name, fact in avoidances(self.task):
+            doubt = _robot_doubt(fact, situation) if name == ROBOT_NAME else self._thing_doubt(fact, name, situation)
+            if doubt:
+                yield doubt
+        if self._nothing_through:
+            yield from self._carried_through(situation)
+
+    @property
+    def _nothing_through(self) -> bool:
+        """Whether the task has carry_nothing_through(d)."""
+        return any(goal.name == CARRY_NOTHING_THROUGH for goal in self.task.goals)
+
+    def _thing_doubt(self, fact: Fact, name: str, situation: Situation) -> str:
+        """Return why the thing of avoid(x, "WKT") may have touched the region; "" when it surely did not."""
+        model, region = situation.model, region_of(fact)
+        node = model.object(situation.binding.get(name, ""))
+        if node is None:
+            return f"it cannot be told whether {fact} holds: nothing seen so far is {name}"
+        if model.anew and node.moved:
+            return f"it cannot be told whether {fact} holds: the robot was lost"
+        track = self._tracks.get(node.name)
+        if track is None:
+            covered = mask_to_polygon(model.mask(node.patch))
+            moved = shapely.transform(covered, lambda points: points + np.array([model.view.west, model.view.south]))
+            covered = in_robot_frame(moved, model.frame)
+        else:
+            covered = track.outline if track.swept is None else track.swept
+        if covered.intersects(region):
+            return f"{fact} does not hold: {node.name} touched that region"
+        if covered.distance(region) <= _doubt(model, region):
+            return f"it cannot be told whether {fact} holds: {node.name} came close to that region"
+        return ""
+
+    def _carried_through(self, situation: Situation) -> Iterator[str]:
+        """Yield a reason for each thing that was carried through a likely door."""
+        model = situation.model
+        west, south = model.view.west, model.view.south
+        for name, track in self._tracks.items():
+            points = [model.frame.place_from_utak(*middle) for middle in track.middles]
+            line = np.array([(x - west, y - south) for x, y in points]).reshape(-1, 2)
+            doors = [door.name for door in situation.rooms.doors if door.likely and went_through(line, door)]
+            if doors:
+                yield f"{name} was carried through {doors[0]}, and nothing tells which door is forbidden"
+
+
+def _continued(known: ThingTrack | None, node: Node, model: WorldModel) -> ThingTrack:
+    """Return what is remembered of a thing after an impression."""
+    outline = in_robot_frame(node.polygon, model.frame)
+    robot = model.frame.place_to_utak(*model.place)
+    middle = outline.centroid.x, outline.centroid.y
+    if known is None or not node.moved:
+        return ThingTrack(outline, node.turned, robot, None, (middle,))
+    if outline.equals_exact(known.outline, SAME_PLACE):
+        return known
+    step = swept_region(known.outline, outline, node.turned - known.turned, known.robot)
+    swept = step if known.swept is None else shapely.union_all([known.swept, step])
+    return ThingTrack(outline, node.turned, robot, swept, (*known.middles, middle))
+
+
+def _doubt(model: WorldModel, region: Any) -> float:
+    """Return by how many squares a thing may be elsewhere than believed, near a region of the robot frame."""
+    west, south, east, north = model.leeway
+    woke = math.hypot(max(-west, east), max(-south, north))
+    far = region.hausdorff_distance(shapely.Point(0.0, 0.0))
+    return OUTLINE_DOUBT + woke + model.spread * float(far) + SHAKEN_DOUBT * model.shaken
+
+
+def _robot_doubt(fact: Fact, situation: Situation) -> str:
+    """Return why the robot may have touched the region of avoid(utak, "WKT"); "" when it surely did not."""
+    model, region = situation.model, region_of(fact)
+    if model.anew:
+        return f"it cannot be told whether {fact} holds: the robot was lost"
+    track = _line([model.frame.place_to_utak(x, y) for x, y in situation.track])
+    if track.intersects(region):
+        return f"{fact} does not hold: the robot touched that region"
+    if track.distance(region) <= SHAKEN_DOUBT * model.shaken:
+        return f"it cannot be told whether {fact} holds: the robot came close to that region"
+    return ""
+
+
+def _way_of(command: Command | None, name: str, situation: Situation) -> Any:
+    """Return what the robot or the object of a parameter would touch by a command; None for nothing, robot frame."""
+    model = situation.model
+    if not isinstance(command, Move | Push):
+        return None
+    x, y = model.frame.place_to_utak(*model.place)
+    if name == ROBOT_NAME:
+        return _line([(x, y), (x + command.east, y + command.north)])
+    held = model.object(model.held or "")
+    if held is None or held.polygon is None or situation.binding.get(name) != held.name:
+        return None
+    before = in_robot_frame(held.polygon, model.frame)
+    after = shapely.transform(before, lambda points: points + np.array([command.east, command.north]))
+    return swept_region(before, after, 0.0, (x, y))
+
+
+def _line(points: Sequence[XY]) -> Any:
+    """Return the line through points (x, y), or the point itself when all are one."""
+    line = shapely.LineString([points[0], *points])
+    return line if line.length else shapely.Point(points[0])

@@ -1,0 +1,224 @@
+"""The ten rules of docs/rules: each changes the task plan as its sentence says. Small worlds that are wholly known."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from geometry.manipulation.goals import End, Inside
+from kb.body import Grasp
+from kb.language.reader import facts_from_text
+from planner.goals.object_goals import goal_placement
+from planner.goals.placement import mask_to_polygon
+from planner.goals.robot_goals import destination
+from planner.oracles.carry import CarryOracle
+from planner.situation import Situation
+from planner.stages import Stage
+from planner.tasking.rule_effects import doors_led_round, effects_of_rules
+from planner.tasking.search import MadePlan, make_plan
+from planner.tasking.setting import problem_of
+from simulator.scenario.settings import Settings
+from tests.planner.carrying.test_carrying import run, scene
+from tests.planner.situations import known_situation
+from tests.planner.tasking.test_search import SWAPPED, moved, problem_for
+
+RULES = Path(__file__).resolve().parents[3] / "docs" / "rules"
+WALL = "b" * 30
+SIDE, MIDDLE = "." * 12, "." * 16
+
+
+def three_rooms(middle: Mapping[int, str]) -> list[str]:
+    """Return three rooms; a door of 4 leads west from the middle one, one of 6 east. middle : its rows, by number."""
+    rows = []
+    for number in range(14):
+        west, east = (".." if least <= number <= 13 - least else "bb" for least in (5, 4))
+        rows.append(f"b{SIDE}{west}{middle.get(number, MIDDLE)}{east}{SIDE}b")
+    return ["b" * len(rows[0]), *rows, "b" * len(rows[0])]
+
+
+WALKER = three_rooms({8: "....U..........."})
+SMALL = three_rooms({n: row for n in (8, 9, 10) for row in ("..ggg....hhh....",)} | {12: "......U........."})
+BIG = three_rooms(dict.fromkeys((8, 9, 10), "..gggg..........") | {12: "......U........."})
+WIDE_BLOCKED = three_rooms(dict.fromkeys((4, 5, 6, 7, 8, 9), "..ggg.......hhh.") | {12: "......U........."})
+TWO_IN_THE_WAY = [  # h stands in the upper corridor, the greater k in the lower one; g must go through one of them
+    WALL,
+    "b..........bbbbbbbb.........bb",
+    *["b.............hhh..........bbb"] * 3,
+    "b..........bbbbbbbb.........bb",
+    "b.gg.......bbbbbbbb.........bb",
+    "b.gg...U...bbbbbbbb.........bb",
+    "b..........bbbbbbbb.........bb",
+    *["b............kkkk..........bbb"] * 3,
+    "b..........bbbbbbbb.........bb",
+    WALL,
+]
+
+
+def rule(name: str) -> tuple[Path, ...]:
+    """Return the file of a rule, by the beginning of its name."""
+    (found,) = RULES.glob(f"{name}_*.lp")
+    return (found,)
+
+
+def situation_with(rows: list[str], rules: tuple[Path, ...], bound: Mapping[str, str]) -> Situation:
+    """Return a situation that is wholly known, with users' rules and what the task calls things."""
+    return replace(known_situation(rows), rules=rules, binding=bound)
+
+
+def made_with(
+    rows: list[str], ends: Mapping[str, End], rules: tuple[Path, ...], bound: Mapping[str, str]
+) -> tuple[MadePlan, Situation]:
+    """Return the plan with users' rules, and its situation."""
+    situation = situation_with(rows, rules, bound)
+    problem = problem_for(situation, ends)
+    return make_plan(problem, situation, CarryOracle(problem, situation)), situation
+
+
+def walk_with(rules: tuple[Path, ...]) -> tuple[MadePlan, Situation]:
+    """Return the plan of a robot that shall go to a room next to that in which it is."""
+    situation = situation_with(WALKER, rules, {})
+    stage = Stage(facts_from_text("in(utak, room(next))."))
+    problem = problem_of(stage, situation, goal_placement, lambda _x, _node, _situation: (0.5, 0.5), destination)
+    assert problem is not None and len(problem.stands) == 2
+    return make_plan(problem, situation, CarryOracle(problem, situation)), situation
+
+
+def to_room(name: str, number: int, situation: Situation) -> Inside:
+    """Return the end of a thing anywhere in a room."""
+    return Inside(mask_to_polygon(situation.rooms.labels == number))
+
+
+def actions(made: MadePlan) -> list[tuple[str, str]]:
+    """Return the steps of a plan: action and object."""
+    return [(errand.action, errand.subject) for errand in made.plan.errands]
+
+
+def room_after(made: MadePlan, name: str, situation: Situation) -> int:
+    """Return the number of the room in which a thing lies after a plan; its own when it is not moved."""
+    outline = made.states[0].things[name].outline
+    for errand in made.plan.errands:
+        if errand.subject == name:
+            spot = made.places[name, errand.place]
+            assert isinstance(spot, Inside)
+            outline = spot.polygon
+    x, y = outline.centroid.coords[0]
+    return int(situation.rooms.labels[int(y), int(x)])
+
+
+def width_of(name: str, situation: Situation) -> float:
+    """Return the width of a door, in squares."""
+    return next(float(door.width) for door in situation.rooms.doors if door.name == name)
+
+
+def test_there_are_ten_rules_and_each_has_its_sentence() -> None:
+    files = sorted(RULES.glob("*.lp"))
+    assert [file.name[:2] for file in files] == [f"{number:02}" for number in range(1, 11)]
+    assert all('%! because "' in file.read_text() for file in files)
+
+
+def test_a_narrow_door_is_not_passed_and_is_closed_to_the_robot() -> None:
+    made, situation = walk_with(rule("01"))
+    (errand,) = made.plan.errands
+    assert [width_of(door, situation) for door in errand.doors] == [6.0]
+    effects = effects_of_rules(made, situation)
+    (closed,) = effects.names_of_closed(situation)
+    assert width_of(closed, situation) == 4.0 and effects.blamed == ()
+    without, situation = walk_with(())
+    assert effects_of_rules(without, situation).closed == () and not without.plan.unmet
+
+
+def test_a_door_with_a_price_is_led_round_and_not_closed() -> None:
+    made, situation = walk_with(rule("10"))
+    (errand,) = made.plan.errands
+    assert [width_of(door, situation) for door in errand.doors] == [6.0]
+    assert effects_of_rules(made, situation).closed == ()
+    assert [len(doors) for doors in doors_led_round(made, situation)] == [1]
+
+
+@pytest.mark.parametrize("name", ["02", "03"])
+def test_the_second_thing_is_brought_first(name: str) -> None:
+    ends = {"g": moved(0, 2), "h": moved(0, 2)}
+    assert actions(made_with(SWAPPED, ends, (), {"x": "g", "y": "h"})[0]) == [("carry", "g"), ("carry", "h")]
+    made, _ = made_with(SWAPPED, ends, rule(name), {"x": "g", "y": "h"})
+    assert actions(made) == [("carry", "h"), ("carry", "g")] and not made.plan.unmet
+
+
+def test_a_strict_order_leaves_no_plan_where_a_preferred_one_gives_way() -> None:
+    ends = {"g": moved(0, 2)}  # h has no place of its own
+    strict, situation = made_with(SWAPPED, ends, rule("02"), {"x": "g", "y": "h"})
+    assert strict.plan.unmet == ("g1",)
+    assert effects_of_rules(strict, situation).blamed == (f"{rule('02')[0]}:4",)
+    assert actions(made_with(SWAPPED, ends, rule("03"), {"x": "g", "y": "h"})[0]) == [("carry", "g")]
+
+
+def through_a_corridor(rules: tuple[Path, ...], bound: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return the plan for g through one of two corridors in which something stands."""
+    made, _ = made_with(TWO_IN_THE_WAY, {"g": moved(20, 0)}, rules, bound)
+    assert not made.plan.unmet
+    return actions(made)
+
+
+def test_the_nearest_thing_is_moved_aside_without_rules() -> None:
+    assert through_a_corridor((), {})[-1] == ("carry", "g")
+
+
+@pytest.mark.parametrize(("kept", "other"), [("h", "k"), ("k", "h")])
+def test_what_is_kept_where_it_is_is_not_moved_aside(kept: str, other: str) -> None:
+    assert through_a_corridor(rule("04"), {"keep": kept}) == [("clear", other), ("carry", "g")]
+
+
+def test_only_small_things_are_moved_aside() -> None:
+    assert through_a_corridor(rule("05"), {}) == [("clear", "h"), ("carry", "g")]
+
+
+@pytest.mark.parametrize(("rows", "unmet"), [(BIG, ("g1",)), (SMALL, ())])
+def test_nothing_big_is_brought_through_doors(rows: list[str], unmet: tuple[str, ...]) -> None:
+    east = {"g": to_room("g", 3, known_situation(rows))}
+    assert not made_with(rows, east, (), {})[0].plan.unmet
+    made, situation = made_with(rows, east, rule("07"), {})
+    assert made.plan.unmet == unmet
+    assert bool(effects_of_rules(made, situation).blamed) == bool(unmet)
+
+
+def test_a_thing_is_moved_aside_within_its_room() -> None:
+    rooms = []
+    for rules in ((), rule("06")):
+        made, situation = made_with(WIDE_BLOCKED, {"g": to_room("g", 3, known_situation(WIDE_BLOCKED))}, rules, {})
+        assert [name for action, name in actions(made) if action == "clear"] == ["h"]
+        rooms.append(room_after(made, "h", situation))
+    assert rooms[1] == 1
+
+
+def test_a_goal_of_the_users_own_is_attained() -> None:
+    bound = {"x": "g", "y": "h"}
+    ends = {"g": moved(0, 2)}
+    assert actions(made_with(SMALL, ends, (), bound)[0]) == [("carry", "g")]
+    made, situation = made_with(SMALL, ends, rule("08"), bound)
+    assert sorted(actions(made)) == [("carry", "g"), ("clear", "h")] and not made.plan.unmet
+    assert room_after(made, "h", situation) != 1
+
+
+def test_a_rule_that_leaves_no_plan_is_named() -> None:
+    made, situation = made_with(SWAPPED, {"g": moved(0, 2)}, rule("09"), {})
+    assert made.plan.unmet == ("g1",)
+    assert effects_of_rules(made, situation).blamed == (f"{rule('09')[0]}:2",)
+
+
+def test_nothing_is_touched_where_a_rule_leaves_no_plan(tmp_path: Path) -> None:
+    example = Path(__file__).resolve().parents[3] / "examples" / "push_square_next_room"
+    found = run(example, Settings(kb_files=tuple(map(str, rule("09")))))
+    assert not found.result.believed and "09_touch_nothing.lp:2 leaves no plan" in found.result.reason
+    assert not any(isinstance(command, Grasp) for command in found.commands)
+
+
+@pytest.mark.parametrize(("rules", "room"), [((), "west"), (rule("01"), "east")])
+def test_the_robot_takes_another_door_where_a_rule_forbids_the_nearest(
+    rules: tuple[Path, ...], room: str, tmp_path: Path
+) -> None:
+    ring = "2 2, 15 2, 15 7, 17 7, 17 2, 30 2, 30 6, 32 6, 32 2, 44 2, 44 16, 32 16, 32 12, 30 12, 30 16, 17 16, 17 11"
+    verge = f'verge("POLYGON ((0 0, 0 18, 46 18, 46 0, 0 0), ({ring}, 15 11, 15 16, 2 16, 2 2))").'
+    world = f'table(46, 18).\n{verge}\nutak("POINT (22.5 9.5)", 0).\n'
+    found = run(scene(tmp_path, world, "", "in(utak, room(next))."), Settings(kb_files=tuple(map(str, rules))))
+    assert found.result.believed
+    assert (found.session.table.utak[0] < 16) == (room == "west")
