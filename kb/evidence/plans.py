@@ -11,9 +11,9 @@ from kb.language.vocabulary import PLAN_PREDICATES
 from kb.tracing.decisions import SolverCall
 from kb.world.stated_plan import stated_plan
 
-TASK_ENCODING_NAME = "task"  # the encoding of the task plan
+PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
-ROBOT_NAME = "utak"  # the robot among what a plan brings
+PLANNED_ROBOT = "utak"  # the robot among what a plan brings
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 
 
@@ -132,7 +132,7 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
 def _brought(planned: str) -> str:
     """Return the name of what a step of the plan brings; that of the robot for its own way."""
     action, arguments = atom_parts(planned)
-    return arguments[0] if action in ("carry", "clear") else ROBOT_NAME
+    return arguments[0] if action in ("carry", "clear") else PLANNED_ROBOT
 
 
 def _place(refuted: str) -> str:
@@ -186,7 +186,7 @@ def _decision(record: Record, step: int) -> tuple[int, SolverCall] | None:
     """Return the newest decision of task.lp up to a step, with its step; None when there is none."""
     for number in range(step, -1, -1):
         for call in reversed(record.decisions(number)):
-            if call.encoding == TASK_ENCODING_NAME and call.answer is not None:
+            if call.encoding == PLAN_ENCODING and call.answer is not None:
                 return number, call
     return None
 

@@ -178,7 +178,8 @@ class Decider:
                     decision = Decision(None, why, TaskVerdict.LIMIT)
                 if decision.verdict is not None and self._errands.blamed and not self._errands.is_shut_out:
                     decision = replace(decision, why=f"{decision.why}; {self._errands.blamed}")
-                if model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE:
+                unproved = model.anew and model.shaken and decision.verdict == TaskVerdict.IMPOSSIBLE
+                if unproved:
                     decision = replace(decision, verdict=TaskVerdict.LIMIT)
                 else:
                     decision = qualify(decision, situation, feeling_scope(stage, situation))

@@ -104,8 +104,8 @@ class Intention:
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
         self._problem: TaskProblem | None = None  # of the present situation
-        self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self._stage: Stage | None = None  # for which `_tried` counts
+        self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self.rules = RuleEffects()
 
     @property

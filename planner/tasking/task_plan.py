@@ -103,8 +103,8 @@ class TaskPlan:
         was found.
     refutations : the steps that geometry refuted on the way to it.
     rounds : how many plans were made.
-    missed : the wishes that do not hold at its end.
     goals : the goals of the stage, in the order of the task, as they were when it was made.
+    missed : the wishes that do not hold at its end.
     """
 
     errands: tuple[Errand, ...]
@@ -114,8 +114,8 @@ class TaskPlan:
     proved: bool = True
     refutations: tuple[RefutedStep, ...] = ()
     rounds: int = 0
-    missed: tuple[str, ...] = ()
     goals: tuple[PlacedGoal, ...] = ()
+    missed: tuple[str, ...] = ()
 
     @property
     def verified(self) -> bool:
