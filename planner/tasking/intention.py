@@ -1,5 +1,6 @@
 """The intention: the task plan under way. It is kept while what it rests on stands, and made anew when that falls."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -31,6 +32,7 @@ from planner.tasking.setting import (
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
+MORE_FLOOR = 1.25  # times the floor for which there was no plan, with which it is worth to look for one; a convention
 
 
 class NextErrand(NamedTuple):
@@ -279,8 +281,10 @@ class Intention:
             self._attempt = None
             return None
         lying = _lying(situation)
-        believed = (lying, situation.cost_maps.free(UNSEEN_LEVEL).tobytes(), len(self._tried))
-        if believed == self._hopeless:
+        # More that is seen leaves less that may be free, so only more floor to put things on can bring a new plan.
+        floor = int(math.log(max(1, situation.cost_maps.free(0).sum()), MORE_FLOOR))
+        believed = (lying, frozenset(problem.places), floor, len(self._tried))
+        if self._hopeless is not None and (situation.model.held is not None or believed == self._hopeless):
             return None
         tried = [refutation for where, refutation in self._tried if where == lying]
         for on_lattice in (True, False):  # ways by whole squares are found fast, and mostly they do

@@ -20,7 +20,7 @@ from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
 from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
-from planner.oracles.problem import HERE, ROBOT, TableState, TaskProblem
+from planner.oracles.problem import ANYWHERE, HERE, ROBOT, TableState, TaskProblem
 from planner.situation import Situation
 from planner.tasking.facts import Answers, answer_facts, problem_facts, things_in_way
 from planner.tasking.offers import Offers, with_returns
@@ -228,7 +228,8 @@ class PlanSearch:
             shut = frozenset()
         known = self._known_circumstances(state, errand, shut)
         if known is not None:
-            return replace(known, origin=origin, stood=None if known.stood is None else state.last)
+            stood = None if known.stood is None else state.last
+            return replace(known, origin=ANYWHERE if stood is None else origin, stood=stood)
         others = frozenset(name for name in state.things if name != errand.subject)
         alone = self._ask(state.without(others), errand, shut)
         gone = others if alone.after is None else frozenset[str]()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
 from planner.oracles.carry import Certainty
-from planner.oracles.problem import ROBOT, PlacedGoal
+from planner.oracles.problem import ANYWHERE, ROBOT, PlacedGoal
 
 GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place where a goal holds
 
@@ -71,9 +71,15 @@ class RefutedStep:
         return str(Errand(action, self.subject, self.place))
 
     @property
+    def _places(self) -> set[tuple[str, str]]:
+        """The places of all things on which it rests: that of the subject too, unless it counts from anywhere."""
+        own = set() if self.origin == ANYWHERE else {(self.subject, self.origin)}
+        return own | set(self.given)
+
+    @property
     def circumstances(self) -> tuple[str, ...]:
         """On what it rests, as the facts say it: at(N,P) for the subject and other objects, stood(N), shut(D)."""
-        found = [f"at({name},{place})" for name, place in sorted({(self.subject, self.origin), *self.given})]
+        found = [f"at({name},{place})" for name, place in sorted(self._places)]
         found += [] if self.stood is None else [f"stood({self.stood})"]
         return (*found, *(f"shut({door})" for door in self.shut))
 
