@@ -156,7 +156,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
         ("shut", 2): (REFUTATION_ARGUMENT, PLAN_DOOR_ARGUMENT),
         ("time", 1): (TIME_ARGUMENT,),
-        ("joined", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
+        ("doors_lead", 2): (PLAN_ROOM_ARGUMENT, PLAN_ROOM_ARGUMENT),
         ("at", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("last", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
@@ -178,7 +178,7 @@ PLAN_FACTS = frozenset(
     [
         "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "lies", "connects",
         "size",
-        "refuted", "given", "stood", "shut", "time", "joined", "at", "last", "occurs", "brought", "busy",
+        "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
     ]
 )  # fmt: skip

@@ -12,6 +12,7 @@ import numpy as np
 from geometry.kernels.arrays import Bools, Ints
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
+from planner.screen.projection import dilate
 
 SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
 MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
@@ -21,8 +22,8 @@ MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on 
 def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[tuple[int, int]]:
     """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
 
-    The nearest place off `keep_clear` comes first; then those that are furthest from the ones chosen before; at last
-    places on `keep_clear`, chosen likewise. [] when there is none.
+    Places off `keep_clear` with a free square all round come first: the nearest one, then those that are furthest from
+    the ones chosen before; then other places off `keep_clear`, at last those on it, chosen likewise. [] for none.
 
     Parameters
     ----------
@@ -44,9 +45,11 @@ def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[
     usable = _fits(floor, offsets) & (far != GEODESIC_UNREACHED)
     usable[row, column] = False
     clear = usable & _fits(~keep_clear, offsets)
-    apart = max(offsets.max(axis=0)) + 1
-    chosen = _apart(clear, far, MAX_CLEAR_SPOTS, int(apart))
-    chosen += _apart(usable & ~clear, far, MAX_OTHER_SPOTS, int(apart))
+    roomy = clear & _fits(~dilate(~(around | floor | own), 1), offsets)
+    apart = int(max(offsets.max(axis=0)) + 1)
+    chosen = _apart(roomy, far, MAX_CLEAR_SPOTS, apart)
+    chosen += _apart(clear & ~roomy, far, MAX_CLEAR_SPOTS - len(chosen), apart)
+    chosen += _apart(usable & ~clear, far, MAX_OTHER_SPOTS, apart)
     return [(x - column, y - row) for x, y in chosen]
 
 
@@ -64,7 +67,7 @@ def _fits(mask: Bools, offsets: Ints) -> Bools:
 def _apart(mask: Bools, far: Ints, number: int, apart: int) -> list[tuple[int, int]]:
     """Return at most `number` squares (column, row) of a mask: the nearest, then those furthest from these."""
     where = np.argwhere(mask)
-    if not len(where):
+    if not len(where) or number < 1:
         return []
     chosen = [int(np.argmin(far[mask]))]
     gap = np.abs(where - where[chosen[0]]).max(axis=1)

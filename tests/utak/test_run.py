@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import utak
+from kb.language.vocabulary import PLAN_PREDICATES
 from simulator.cli.main import main
 from simulator.run.session import Session
 
@@ -79,7 +80,9 @@ def test_a_fork_may_have_another_goal() -> None:
     run = utak.Run(NEXT_ROOM)
     run.step()
     fork = run.fork(goal="at(utak, corner(southwest)).", expect="within(30).")
-    assert fork.world.facts == run.world.facts
+    planned = {f"{name}(" for name, _ in PLAN_PREDICATES}
+    said, before = ([fact for fact in one.world.facts if not fact.startswith(tuple(planned))] for one in (fork, run))
+    assert said == before
     assert fork.finish().reason == "at(utak,corner(southwest)) holds"
     assert (fork.achieved, fork.scenario.goals) == (True, ("at(utak,corner(southwest))",))
     assert run.finish().reason == "in(utak,room(next)) holds"

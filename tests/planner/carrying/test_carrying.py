@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import replace
 from itertools import chain, repeat
 from pathlib import Path
@@ -109,7 +110,7 @@ def test_an_immovable_object_is_found_out(tmp_path: Path) -> None:
     done = run(folder)
     assert not done.result.believed
     assert "cannot be moved" in done.result.reason
-    assert done.result.steps < 30
+    assert done.result.steps < 60
 
 
 @pytest.mark.parametrize(
@@ -153,7 +154,8 @@ def test_a_brick_that_is_measured_stays_one(tmp_path: Path) -> None:
     brick = f'object(t, g, "{box(8, 6, 12, 9)}").'
     folder = scene(tmp_path, room(brick), "object(x). shape(x, square).", "at(x, corner(northeast)).")
     done = run(folder)
-    assert done.result.verdict == "possible_if" and "nothing seen so far is x" in done.result.reason
+    # It was moved, so it is one thing; and all walls were felt.
+    assert done.result.verdict == "impossible" and "nothing seen so far is x" in done.result.reason
     assert done.session.table.polygons["t"].centroid.distance(shapely.Point(10, 7.5)) < 3.0
 
 
@@ -310,6 +312,9 @@ class Obedient:
     def __getattr__(self, name: str) -> Any:
         return getattr(self._decider, name)
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Obedient":
+        return Obedient(deepcopy(self._decider, memo), self._orders)  # a copy gives the same orders
+
 
 def test_a_push_that_was_stopped_unseen_is_told_by_a_contradiction_in_the_next_impression(tmp_path: Path) -> None:
     # The impression after it fits where it should have led, but not together with what that impression settles.
@@ -361,6 +366,11 @@ class FirstPushLoops:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._guard, name)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "FirstPushLoops":
+        copied = FirstPushLoops()
+        copied._guard, copied.circling = deepcopy(self._guard, memo), self.circling
+        return copied
 
 
 def test_an_object_that_is_carried_in_circles_is_released_and_grasped_elsewhere(tmp_path: Path) -> None:

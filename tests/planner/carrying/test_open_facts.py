@@ -67,7 +67,8 @@ def test_an_object_that_was_never_moved_may_be_several() -> None:
 def test_an_object_with_reached_floor_all_around_leads_a_walking_robot_nowhere() -> None:
     situation = situation_of(felt(known_model(WITH_A_THING)))
     assert "more than one thing" in nearest_open_fact(situation, (0.0, 0.0))
-    assert nearest_open_fact(situation, (0.0, 0.0), FeelingScope(parting=False)) == ""
+    assert nearest_open_fact(situation, (0.0, 0.0), FeelingScope(parting=False, things=False)) == ""
+    assert "more than one thing" in nearest_open_fact(situation, (0.0, 0.0), FeelingScope(parting=False))
 
 
 @pytest.mark.parametrize("verdict", [None, TaskVerdict.DONE, TaskVerdict.LIMIT, TaskVerdict.POSSIBLE_IF])

@@ -36,6 +36,7 @@ class Undecided:
     task = Task({}, (), ())
     bound: Mapping[str, str] = {}
     corners: Mapping[str, Corner] = {}
+    plan = attempt = None
 
     def __init__(self) -> None:
         self.asked: list[bool] = []

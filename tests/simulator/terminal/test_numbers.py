@@ -147,12 +147,17 @@ def suite(scene: Path, tmp_path: Path) -> list[list[str]]:
     return [["test", str(scene), "--max-steps", "1"]]
 
 
+def plan(scene: Path, tmp_path: Path) -> list[list[str]]:
+    return [["plan", str(scene), "--max-steps", "1"]]
+
+
 PRINTED: dict[str, Callable[[Path, Path], list[list[str]]]] = {
     "run": run,
     "query": query,
     "routes": routes,
     "sweep": sweep,
     "explain": explain,
+    "plan": plan,
     "test": suite,
 }
 
