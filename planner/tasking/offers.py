@@ -1,5 +1,6 @@
 """Places that a search offers for things in the way: aside, and apart from each other within a goal's region."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -11,6 +12,7 @@ from geometry.manipulation.goals import End, Inside
 from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
 from kb.world.rooms import NO_ROOM
+from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import Certainty, Floors
 from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import SPOT_SLACK, covered_by, spots
@@ -29,8 +31,17 @@ def with_returns(problem: TaskProblem) -> TaskProblem:
 
 
 def end_about(outline: Any) -> Inside:
-    """Return the end of a thing at one spot: its outline there (shapely Polygon), with SPOT_SLACK about it."""
-    return Inside(outline.buffer(SPOT_SLACK, join_style="mitre"))
+    """Return the end of a thing at one spot: the squares that its outline there covers, with SPOT_SLACK about them.
+
+    Parameters
+    ----------
+    outline : shapely Polygon, in squares; the end is in the same frame.
+    """
+    west, south, east, north = outline.bounds
+    x, y = math.floor(west), math.floor(south)
+    mask = squares(Translate(-float(x), -float(y)).carry(outline), math.ceil(east) - x, math.ceil(north) - y)
+    covered = Translate(float(x), float(y)).carry(mask_to_polygon(mask))
+    return Inside(covered.buffer(SPOT_SLACK, join_style="mitre"))
 
 
 class Offers:
