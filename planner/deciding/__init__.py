@@ -3,6 +3,7 @@
 decider       stages of the task, one after the other
 transport     a goal for an object: find it, look at it, carry it, or give up
 errands       the next step of the task plan, carried out
+bringing      an object is brought to an end that no goal of its own asks for
 clearing      navigation among movable obstacles: what blocks the robot is moved aside
 obstacles     the objects that block the way, as they lie or as they may go on in a wall
 feeling       before the robot gives up, it feels walls that may be things

@@ -8,18 +8,15 @@ from collections.abc import Iterable, Sequence
 from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.world.model import Node
-from planner.advice import Act
+from planner.deciding.bringing import bring_to_end
 from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict
 from planner.goals.embedded import Supposition, suppose
-from planner.goals.placement import CERTAIN_OBJECT, POSSIBLE_OBJECT
-from planner.navigation.subgoals import Subgoal
-from planner.sights.frontiers import touch_viewpoint
+from planner.goals.placement import POSSIBLE_OBJECT
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.subgoal_kind import SubgoalKind
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 
@@ -245,20 +242,5 @@ def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tool
     rim = feel_rim(node, stage, situation, tools.pursuer)
     if rim is not None:
         return rim
-    if node.confidence < CERTAIN_OBJECT:
-        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
-        look = tools.pursuer.pursue_look(touch, stage, situation)
-        return None if look is None or look.command is None else look
-    if node.polygon is None or node.vague:
-        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
-        if look is not None and look.command is not None:
-            return look
-    if node.polygon is None:
-        return None
-    tools.executor.drop_other_plan(node.name)
-    advice = tools.executor.advise(node, {ASIDE_TARGET: aside}, situation)
-    if not isinstance(advice, Act):
-        return tools.pursuer.prepare(advice, stage, situation)
-    if tools.pursuer.closes_loop(situation.model, advice.command):
-        return None
-    return Decision(advice.command, f"{node.name} blocks the robot's way: {advice.why}; {stage}")
+    purpose = f"{node.name} blocks the robot's way: "
+    return bring_to_end(node, ASIDE_TARGET, aside, stage, situation, tools, purpose)

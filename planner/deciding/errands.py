@@ -6,21 +6,15 @@ end. A thing that is moved aside, or to a spot that the plan chose, is brought t
 
 from dataclasses import replace
 
-from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.task.binding import Reconciliation
-from kb.world.model import Node
-from planner.advice import Act
 from planner.carrying.preconditions import turn_cost
+from planner.deciding.bringing import bring_to_end
 from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
 from planner.decision import Decision
-from planner.goals.placement import CERTAIN_OBJECT
-from planner.navigation.subgoals import Subgoal
-from planner.sights.frontiers import touch_viewpoint
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention, NextErrand
 from planner.tasking.setting import DestinationFunction
 from planner.tasking.task_plan import Errand, TaskPlan
@@ -161,46 +155,10 @@ class ErrandRunner:
     ) -> Decision | None:
         """Return the next command of an errand; a verdict or None when it cannot be done."""
         if found.goal is None:
-            return bring_to_spot(found.node, found.errand.place, found.end, stage, situation, tools)
+            return bring_to_end(found.node, found.errand.place, found.end, stage, situation, tools)
         goal = found.goal
         stage = stage if goal in stage.goals else replace(stage, goals=(*stage.goals, goal))
         decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
         if decision is None:
             return None
         return transporter.free_robot(str(goal.args[0]), stage, situation, tools) or decision
-
-
-def bring_to_spot(
-    node: Node, place: str, end: End, stage: Stage, situation: Situation, tools: Tools
-) -> Decision | None:
-    """Return the next command to bring an object to a spot, or to find out what it is; None when there is none.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
-    Parameters
-    ----------
-    node : the object.
-    place : the name of the spot.
-    end : where it shall lie, in squares, view frame.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : executor, pursuer and verifier, with which the command is worked out.
-    """
-    if node.confidence < CERTAIN_OBJECT:
-        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
-        look = tools.pursuer.pursue_look(touch, stage, situation)
-        return None if look is None or look.command is None else look
-    if node.polygon is None or node.vague:
-        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
-        if look is not None and look.command is not None:
-            return look
-    if node.polygon is None:
-        return None
-    tools.executor.drop_other_plan(node.name)
-    advice = tools.executor.advise(node, {place: end}, situation)
-    if not isinstance(advice, Act):
-        return tools.pursuer.prepare(advice, stage, situation)
-    if tools.pursuer.closes_loop(situation.model, advice.command):
-        return None
-    return Decision(advice.command, f"{advice.why}; {stage}")
