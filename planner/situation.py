@@ -1,6 +1,6 @@
 """The situation: all that the meaning of a goal depends on, and what follows from it for doors and rooms."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -30,6 +30,24 @@ from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
 
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
+
+
+def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:
+    """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool; all False for none.
+
+    Square [margin, margin] is square [0, 0] of the view.
+
+    Parameters
+    ----------
+    doors : the doors, their necks in squares, view frame.
+    shape : (rows, columns) of the arrays of the view.
+    margin : squares that are added on each side.
+    """
+    rows, columns = shape
+    mask: Bools = np.zeros((rows, columns), np.bool_)
+    for door in doors:
+        mask |= squares(shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH), columns, rows)
+    return np.pad(mask, margin)
 
 
 @dataclass(frozen=True)
@@ -204,9 +222,7 @@ class Situation:
 
     def within_shut_doors(self) -> "Situation":
         """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
-        rows, columns = self.model.labels.shape
-        necks = [shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH) for door in self.shut(ROBOT_ACTOR)]
-        kept_off = np.any([squares(neck, columns, rows) for neck in necks] or [np.zeros((rows, columns), bool)], axis=0)
+        kept_off = neck_squares(self.shut(ROBOT_ACTOR), self.model.labels.shape)
         if self.cost_maps.kept_off is not None:
             kept_off = kept_off | self.cost_maps.kept_off
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))

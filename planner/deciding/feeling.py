@@ -6,23 +6,20 @@ planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses w
 from collections.abc import Sequence
 
 import numpy as np
-import shapely
 
 from geometry.kernels.arrays import Bools
 from geometry.raster.components import components
-from geometry.raster.rasterize import squares
 from kb.language.vocabulary import TRACK_GOALS
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.deciding.pursuit import Pursuer
 from planner.decision import Decision
-from planner.goals.placement import NEGLIGIBLE_LENGTH
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
 from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
-from planner.situation import Situation
+from planner.situation import Situation, neck_squares
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
@@ -65,10 +62,7 @@ def _wanted(stage: Stage, situation: Situation) -> Bools | None:
 def _floor_this_side(doors: Sequence[Door], situation: Situation) -> Bools:
     """Return the floor that the robot reaches without going through some doors, (rows, columns) bool."""
     floor = situation.cost_maps.floor
-    rows, columns = floor.shape
-    free = floor.copy()
-    for door in doors:
-        free &= ~squares(shapely.LineString([door.a, door.b]).buffer(NEGLIGIBLE_LENGTH), columns, rows)
+    free = floor & ~neck_squares(doors, floor.shape)
     column, row = situation.cost_maps.here
     labels = components(free).labels
     mask: Bools = free & (labels == labels[row, column])

@@ -14,12 +14,11 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose, Translate
-from geometry.raster.rasterize import squares
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import dilate, shift_mask
 from planner.sights.frontiers import Viewpoint
-from planner.situation import NECK_WIDTH, Situation
+from planner.situation import Situation, neck_squares
 
 NEGLIGIBLE_LENGTH = 0.01  # squares that do not matter (convention)
 CERTAIN_OBJECT = 95  # percent: with less it may be a piece of wall, and is felt before it is taken (tuned)
@@ -235,14 +234,11 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
         (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False
         when nothing is forbidden.
     """
-    columns, rows = situation.model.labels.shape[::-1]
     doors = (*situation.shut("utak"), *situation.shut(node.name))
     mask = situation.region_kept_off(node.name, margin)
     if not situation.lenient:
         mask |= situation.region_kept_off("utak", margin)
-    for door in doors:
-        neck = shapely.LineString([door.a, door.b]).buffer(NECK_WIDTH)
-        mask |= np.pad(squares(neck, columns, rows), margin)
+    mask |= neck_squares(doors, situation.model.labels.shape, margin)
     return mask & ~np.pad(situation.model.mask(node.patch), margin)
 
 

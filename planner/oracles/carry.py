@@ -10,7 +10,6 @@ from enum import StrEnum
 from typing import Any, NamedTuple
 
 import numpy as np
-import shapely
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, Inside, moved
@@ -19,11 +18,10 @@ from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from kb.world.model import Node
-from kb.world.rooms import Door
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL, dilate
-from planner.situation import NECK_WIDTH, Situation
+from planner.situation import Situation, neck_squares
 
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
 
@@ -146,7 +144,6 @@ class CarryOracle:
         self.floors = floors_of(problem, situation)
         self._problem, self._situation = problem, situation
         self._pull, self._avoid, self._turn, self._on_lattice = pull, avoid or {}, turn, on_lattice
-        self._doors = {door.name: door for door in situation.rooms.doors}
         self._answers: dict[Any, OracleAnswer] = {}
         self._plans: dict[Any, CarryingPlan] = {}
 
@@ -347,8 +344,8 @@ class CarryOracle:
                 free &= ~self._covered(other, lying, (rows, columns))
         actors = (ROBOT,) if alone or name is None else (ROBOT, name)
         names = shut | {door.name for actor in actors for door in self._situation.shut(actor)}
-        for door in names & self._doors.keys():
-            free &= ~self._neck(self._doors[door], (rows, columns))
+        doors = [door for door in self._situation.rooms.doors if door.name in names]
+        free &= ~neck_squares(doors, self._situation.model.labels.shape, margin)
         for actor in actors:
             free &= ~self._situation.region_kept_off(actor, margin)
         x, y = (int(v) + margin for v in state.robot)
@@ -363,11 +360,6 @@ class CarryOracle:
             node: Node = self._problem.nodes[name]
             return np.pad(model.mask(node.patch), margin)
         return squares(Translate(margin, margin).carry(lying.outline), shape[1], shape[0])
-
-    def _neck(self, door: Door, shape: tuple[int, int]) -> Bools:
-        """Return the squares on the neck of a door."""
-        line = Translate(self.floors.margin, self.floors.margin).carry(shapely.LineString([door.a, door.b]))
-        return squares(line.buffer(NECK_WIDTH), shape[1], shape[0])
 
 
 def _key(state: TableState) -> Any:
