@@ -27,11 +27,31 @@ MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view fo
 
 
 class Certainty(StrEnum):
-    """The kinds of answers of the oracle."""
+    """The kinds of answers of the oracle: a sure way, a way over floor that is hoped to be free, or none."""
 
     SURE = "sure"
     HOPED = "hoped"
     REFUTED = "refuted"
+
+
+class FloorKind(StrEnum):
+    """The floors on which a way is looked for, the surest first.
+
+    Attributes
+    ----------
+    SURE : squares that are surely free.
+    LIKELY : those, and the ones that optimistic planning assumes to be free.
+    POSSIBLE : all squares that are not known to be occupied.
+    """
+
+    SURE = "sure"
+    LIKELY = "likely"
+    POSSIBLE = "possible"
+
+    @property
+    def certainty(self) -> Certainty:
+        """The certainty of a way over this floor."""
+        return Certainty.SURE if self == FloorKind.SURE else Certainty.HOPED
 
 
 class OracleAnswer(NamedTuple):
@@ -64,15 +84,15 @@ class _Carrying(NamedTuple):
 
 @dataclass(frozen=True)
 class Floors:
-    """The squares that may be used, without any thing of the problem, by certainty; all with a margin.
+    """The squares that may be used, without any thing of the problem, by the kind of floor; all with a margin.
 
     Attributes
     ----------
-    by_certainty : (rows, columns) bool each.
+    by_kind : (rows, columns) bool each.
     margin : squares that were added on each side of the arrays of the view.
     """
 
-    by_certainty: Mapping[Certainty, Bools]
+    by_kind: Mapping[FloorKind, Bools]
     margin: int
 
 
@@ -89,11 +109,10 @@ def floors_of(problem: TaskProblem, situation: Situation) -> Floors:
     for node in problem.nodes.values():
         covered |= model.mask(node.patch)
     margin = max(UNSEEN_MARGIN, _margin_needed(problem, covered.shape))
-    unseen = np.pad(situation.cost_maps.free(UNSEEN_LEVEL) | covered, margin, constant_values=True)
-    wider = margin - UNSEEN_MARGIN
-    hoped = np.pad(optimistic_floor(situation), wider) | np.pad(covered, margin)
     sure = np.pad(situation.cost_maps.free(0) | covered, margin)
-    return Floors({Certainty.SURE: sure, Certainty.HOPED: hoped | sure, Certainty.REFUTED: unseen | hoped}, margin)
+    likely = np.pad(optimistic_floor(situation), margin - UNSEEN_MARGIN) | np.pad(covered, margin) | sure
+    possible = np.pad(situation.cost_maps.free(UNSEEN_LEVEL) | covered, margin, constant_values=True) | likely
+    return Floors({FloorKind.SURE: sure, FloorKind.LIKELY: likely, FloorKind.POSSIBLE: possible}, margin)
 
 
 def _margin_needed(problem: TaskProblem, shape: tuple[int, ...]) -> int:
@@ -154,7 +173,7 @@ class CarryOracle:
         ----------
         state, name, end, shut : as for `bring`.
         """
-        return self._plan(state, name, end, Certainty.REFUTED, shut, anywhere=True).status != "found"
+        return self._plan(state, name, end, FloorKind.POSSIBLE, shut, anywhere=True).status != "found"
 
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
@@ -185,48 +204,45 @@ class CarryOracle:
         """
         columns = self._situation.model.labels.shape[1]
         rows_of, columns_of = np.divmod(stand, columns)
-        for certainty in Certainty:
-            free = self._free(state, None, certainty, shut)
+        for kind in FloorKind:
+            free = self._free(state, None, kind, shut)
             x, y = (int(v) + self.floors.margin for v in state.robot)
             far = reach(free, x, y)[rows_of + self.floors.margin, columns_of + self.floors.margin]
             if (far != GEODESIC_UNREACHED).any():
                 best = int(np.flatnonzero(far == far[far != GEODESIC_UNREACHED].min())[0])
                 robot = float(columns_of[best]) + 0.5, float(rows_of[best]) + 0.5
-                sure = Certainty.SURE if certainty == Certainty.SURE else Certainty.HOPED
-                return OracleAnswer(sure, 1, replace(state, robot=robot, held=None))
+                return OracleAnswer(kind.certainty, 1, replace(state, robot=robot, held=None))
         return OracleAnswer(Certainty.REFUTED)
 
     def _bring(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> OracleAnswer:
         """Return the answer of geometry; the surest way counts."""
-        sure = self._free_handed(state, name, end, Certainty.SURE, shut)
+        sure = self._free_handed(state, name, end, FloorKind.SURE, shut)
         if sure.plan.status == "found":
             return self._found(state, name, place, Certainty.SURE, sure)
-        most = self._free_handed(state, name, end, Certainty.REFUTED, shut)  # over all that is not known to be occupied
-        if most.plan.status != "found":
+        possible = self._free_handed(state, name, end, FloorKind.POSSIBLE, shut)  # where this fails, all floors do
+        if possible.plan.status != "found":
             return OracleAnswer(Certainty.REFUTED)
-        likely = self._free_handed(state, name, end, Certainty.HOPED, shut)
-        return self._found(state, name, place, Certainty.HOPED, likely if likely.plan.status == "found" else most)
+        likely = self._free_handed(state, name, end, FloorKind.LIKELY, shut)
+        return self._found(state, name, place, Certainty.HOPED, likely if likely.plan.status == "found" else possible)
 
     def _found(self, state: TableState, name: str, place: str, certainty: Certainty, found: _Carrying) -> OracleAnswer:
         """Return the answer for a plan that was found."""
         after = self._after(state, name, found.plan, place)
         return OracleAnswer(certainty, found.plan.commands, after, plan=found.plan, avoid=found.avoid)
 
-    def _free_handed(
-        self, state: TableState, name: str, end: End, certainty: Certainty, shut: frozenset[str]
-    ) -> _Carrying:
+    def _free_handed(self, state: TableState, name: str, end: End, kind: FloorKind, shut: frozenset[str]) -> _Carrying:
         """Return a plan after which the object does not shut the robot in; any plan where there is no such plan.
 
         A robot that pulls a thing into a dead end stands behind it at last.
         """
-        plan = self._plan(state, name, end, certainty, shut)
+        plan = self._plan(state, name, end, kind, shut)
         if not plan.legs:
             return _Carrying(plan)
         after = self._after(state, name, plan, "")
-        inner = self._inner_grasps(after, name, plan, certainty, shut)
+        inner = self._inner_grasps(after, name, plan, kind, shut)
         if not inner:
             return _Carrying(plan)
-        other = self._plan(state, name, end, certainty, shut, inner)
+        other = self._plan(state, name, end, kind, shut, inner)
         return _Carrying(other, inner) if other.legs else _Carrying(plan)
 
     def _inner_grasps(
@@ -234,7 +250,7 @@ class CarryOracle:
         after: TableState,
         name: str,
         plan: CarryingPlan,
-        certainty: Certainty,
+        kind: FloorKind,
         shut: frozenset[str],
     ) -> tuple[XY, ...]:
         """Return the grasps of an object from where most of the floor cannot be reached, once it lies; () if it can.
@@ -246,10 +262,10 @@ class CarryOracle:
         after : the state after the plan.
         name : the object.
         plan : the plan.
-        certainty, shut : the floor on which the robot walks.
+        kind, shut : the floor on which the robot walks.
         """
         margin = self.floors.margin
-        walk = self._free(after, None, certainty, shut)
+        walk = self._free(after, None, kind, shut)
         far = reach(walk, int(after.robot[0]) + margin, int(after.robot[1]) + margin)
         outside = walk & (far == GEODESIC_UNREACHED)
         if 2 * outside.sum() < walk.sum():  # most of the floor can be reached
@@ -266,25 +282,25 @@ class CarryOracle:
         state: TableState,
         name: str,
         end: End,
-        certainty: Certainty,
+        kind: FloorKind,
         shut: frozenset[str],
         inner: tuple[XY, ...] = (),
         anywhere: bool = False,
     ) -> CarryingPlan:
-        """Return what geometry finds over the squares of a certainty without some grasps, in the frame with the margin.
+        """Return what geometry finds over a kind of floor without some grasps, in the frame with the margin.
 
-        Floors of two certainties may be the same squares; geometry is asked once for them.
+        Two kinds of floor may be the same squares; geometry is asked once for them.
 
         inner : further grasps that are not used.
         anywhere : whether the robot may come to the object wherever it stands.
         """
         lying, margin = state.things[name], self.floors.margin
         outline = Translate(margin, margin).carry(lying.outline)
-        free = self._free(state, name, certainty, shut)
+        free = self._free(state, name, kind, shut)
         free |= squares(outline, free.shape[1], free.shape[0])
         goal, held = moved(lying.reach(end), margin, margin), state.held == name
         where = goal.polygon.wkb if isinstance(goal, Inside) else goal
-        walk = np.ones_like(free) if anywhere else self._free(state, name, certainty, shut, alone=True)
+        walk = np.ones_like(free) if anywhere else self._free(state, name, kind, shut, alone=True)
         key = (outline.wkb, free.tobytes(), walk.tobytes(), where, state.robot, held, inner)
         if key not in self._plans:
             self.asked += 1
@@ -324,7 +340,7 @@ class CarryOracle:
         return state.after(name, Lying(back.polygon, pose, place), robot)
 
     def _free(
-        self, state: TableState, name: str | None, certainty: Certainty, shut: frozenset[str], alone: bool = False
+        self, state: TableState, name: str | None, kind: FloorKind, shut: frozenset[str], alone: bool = False
     ) -> Bools:
         """Return the squares that other things of a state, shut doors and forbidden regions leave free.
 
@@ -332,11 +348,11 @@ class CarryOracle:
         ----------
         state : how everything lies.
         name : the thing that is carried; None for none.
-        certainty : how sure the squares are.
+        kind : the floor.
         shut : the names of doors that are not passed.
         alone : whether the squares are those for the robot without the thing.
         """
-        free = self.floors.by_certainty[certainty].copy()
+        free = self.floors.by_kind[kind].copy()
         rows, columns = free.shape
         margin = self.floors.margin
         for other, lying in state.things.items():

@@ -13,7 +13,7 @@ from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
-from planner.oracles.carry import Certainty, Floors
+from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import SPOT_SLACK, covered_by, spots
 
@@ -63,7 +63,7 @@ class Offers:
             for rules may want it there. None for places anywhere.
         """
         self._rooms = None if rooms is None else np.pad(rooms, floors.margin)
-        sure = floors.by_certainty[Certainty.SURE]
+        sure = floors.by_kind[FloorKind.SURE]
         self.aside: list[tuple[str, str]] = []
         self.spots: set[tuple[str, str]] = set()
         self.fresh = False
@@ -111,7 +111,7 @@ class Offers:
 
         Those to which it can be pushed past the other things; where there are none, those that need others moved first.
         """
-        floor = self._floors.by_certainty[Certainty.SURE]
+        floor = self._floors.by_kind[FloorKind.SURE]
         others = [self._carry(one.outline) for other, one in problem.state.things.items() if other != name]
         open_floor = floor & ~covered_by(others, self.shape)
         found = self._spots_over(name, problem, open_floor, open_floor, floor)
@@ -131,7 +131,7 @@ class Offers:
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
         """Return places within the region of a goal."""
-        floor = self._floors.by_certainty[Certainty.HOPED]
+        floor = self._floors.by_kind[FloorKind.LIKELY]
         inside = squares(self._carry(region.polygon), self.shape[1], self.shape[0])
         return self._spots(name, problem, floor & inside, floor)
 
