@@ -1,9 +1,9 @@
 """The facts of planner/asp/task.lp: things, places, goals and rooms of a problem, and what geometry said so far."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -40,11 +40,30 @@ class Answers:
     refutations: tuple[RefutedStep, ...] = ()
 
 
+class Overlap(NamedTuple):
+    """Two places of two things that overlap.
+
+    Attributes
+    ----------
+    thing, place : one thing and its place.
+    other, other_place : the other thing, later by name, and its place.
+    """
+
+    thing: str
+    place: str
+    other: str
+    other_place: str
+
+    def __str__(self) -> str:
+        """Return the overlap as a fact without full stop."""
+        return f"overlap({self.thing},{self.place},{self.other},{self.other_place})"
+
+
 def problem_facts(
     problem: TaskProblem,
     aside: Sequence[tuple[str, str]],
     situation: Situation,
-    spots: AbstractSet[tuple[str, str]] = frozenset(),
+    overlaps: Iterable[Overlap],
 ) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops.
 
@@ -53,7 +72,7 @@ def problem_facts(
     problem : things, places and goals.
     aside : by object and place: the places where an object is out of the way.
     situation : what is believed: world model, rooms, doors, corners and track.
-    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
+    overlaps : the places of two things that overlap.
     """
     facts = [f"place({ROBOT},{HERE})"]
     facts += [fact for name in problem.nodes for fact in (f"thing({name})", f"place({name},{HERE})")]
@@ -68,7 +87,7 @@ def problem_facts(
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
-    facts += _overlaps(problem, spots)
+    facts += map(str, overlaps)
     return (*facts, *_room_facts(problem, situation), *_world_facts(situation))
 
 
@@ -102,8 +121,14 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
             yield f"lies({name},{place},r{room})"
 
 
-def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[str]:
-    """Yield which exact places of two things overlap: where they lie now, poses and spots; regions do not count."""
+def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = frozenset()) -> Iterator[Overlap]:
+    """Yield the exact places of two things that overlap: where they lie now, poses and spots; regions do not count.
+
+    Parameters
+    ----------
+    problem : things, places and goals.
+    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
+    """
     names, outlines = [], []
     for name, lying in problem.state.things.items():
         names.append((name, HERE))
@@ -124,18 +149,17 @@ def _overlaps(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iter
     for one, other in sorted(zip(*(column.tolist() for column in tree.query(outlines, "intersects")), strict=True)):
         (x, p), (y, q) = names[one], names[other]
         if x < y and (p, q) != (HERE, HERE):
-            yield f"overlap({x},{p},{y},{q})"
+            yield Overlap(x, p, y, q)
 
 
-def things_in_way(facts: Iterable[str]) -> list[str]:
-    """Return the things that lie now where another thing may have to lie, by facts `overlap`, each once.
+def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
+    """Return the things that lie now where another thing may have to lie, each once.
 
     Parameters
     ----------
-    facts : facts of the encoding, without full stops.
+    overlaps : the places of two things that overlap.
     """
-    pairs = [re.fullmatch(r"overlap\((\w+),(\w+),(\w+),(\w+)\)", fact) for fact in facts]
-    found = [match[1] if match[2] == HERE else match[3] for match in pairs if match and HERE in (match[2], match[4])]
+    found = [one.thing if one.place == HERE else one.other for one in overlaps if HERE in (one.place, one.other_place)]
     return list(dict.fromkeys(found))
 
 

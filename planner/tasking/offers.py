@@ -51,7 +51,6 @@ class Offers:
     ----------
     aside : by object and place: the offered places where an object is out of the way.
     spots : by object and place: all offered places.
-    fresh : whether places were offered since this was set to False.
     shape : (rows, columns) of the floors.
     """
 
@@ -66,7 +65,6 @@ class Offers:
         sure = floors.by_kind[FloorKind.SURE]
         self.aside: list[tuple[str, str]] = []
         self.spots: set[tuple[str, str]] = set()
-        self.fresh = False
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
@@ -94,7 +92,6 @@ class Offers:
         fulfils = dict(problem.fulfils)
         for name in [name for name in self._in_way if name not in self._offered]:
             self._offered.add(name)
-            self.fresh = True
             for number, end in enumerate(self._spots_aside(name, problem), 1):
                 new[name, f"spot{number}"] = end
                 self.aside.append((name, f"spot{number}"))

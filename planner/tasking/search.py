@@ -22,7 +22,7 @@ from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
 from planner.oracles.problem import ANYWHERE, HERE, ROBOT, TableState, TaskProblem
 from planner.situation import Situation
-from planner.tasking.facts import Answers, answer_facts, problem_facts, things_in_way
+from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts, things_in_way
 from planner.tasking.offers import Offers, with_returns
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
@@ -93,9 +93,10 @@ class PlanSearch:
         self._answers = Answers(refutations=tuple(tried))
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
         self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
-        self._facts = problem_facts(problem, (), situation)
+        overlaps = tuple(overlaps_of(problem))
+        self._facts = problem_facts(problem, (), situation, overlaps)
         self._cut = False  # whether a search of clingo was cut off by its limit
-        self._offers.note_in_way(things_in_way(self._facts))
+        self._offers.note_in_way(things_in_way(overlaps))
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
@@ -111,9 +112,10 @@ class PlanSearch:
                 break
             number += 1
             proposal = self._propose(horizon)
-            if proposal.unmet and best is None and (self._offer(proposal.unmet) or horizon < most):
-                horizon += not self._offers.fresh
-                self._offers.fresh = False
+            if proposal.unmet and best is None and self._offer(proposal.unmet):
+                continue
+            if proposal.unmet and best is None and horizon < most:
+                horizon += 1
                 continue
             if proposal.unmet:
                 best, proved = best or TaskPlan(proposal.errands, proposal.unmet), True
@@ -174,7 +176,8 @@ class PlanSearch:
         if offered is None:
             return False
         self._problem = offered
-        self._facts = problem_facts(offered, self._offers.aside, self._situation, self._offers.spots)
+        overlaps = overlaps_of(offered, self._offers.spots)
+        self._facts = problem_facts(offered, self._offers.aside, self._situation, overlaps)
         return True
 
     def _estimated(self, errands: Sequence[Errand]) -> int:
