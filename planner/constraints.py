@@ -18,7 +18,6 @@ from kb.language.wkt import parse_wkt
 from kb.perception.frame import Frame
 from kb.task.task import Task
 
-ROBOT_ACTOR = "utak"  # the robot as the first argument of a goal
 AVOID = "avoid"
 CARRY_NOTHING_THROUGH = "carry_nothing_through"
 MIN_COVERED = 1e-9  # squares squared: a square covered by less is only touched, as in geometry.raster.rasterize

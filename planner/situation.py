@@ -10,6 +10,7 @@ import shapely
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.rasterize import squares
+from kb.language.vocabulary import ROBOT
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
@@ -19,7 +20,6 @@ from planner.constraints import (
     CARRY_NOTHING_THROUGH,
     MAX_KEPT_SPREAD,
     OBJECT_DISTANCE,
-    ROBOT_ACTOR,
     avoidances,
     in_view_frame,
     region_of,
@@ -180,10 +180,10 @@ class Situation:
         goals = constraints(self.task)
         meant = {str(goal.args[0]) for goal in goals if goal.name == "not_through"}
         meant = {self.binding.get(name, name) for name in meant}
-        nothing = actor != ROBOT_ACTOR and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
+        nothing = actor != ROBOT and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
         if actor not in meant and not nothing:
             return ()
-        if actor == ROBOT_ACTOR:
+        if actor == ROBOT:
             return self.avoided[:1] or self.rooms.doors
         return tuple(door for door in self.rooms.doors if door.likely)
 
@@ -222,7 +222,7 @@ class Situation:
 
     def within_shut_doors(self) -> "Situation":
         """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
-        kept_off = neck_squares(self.shut(ROBOT_ACTOR), self.model.labels.shape)
+        kept_off = neck_squares(self.shut(ROBOT), self.model.labels.shape)
         if self.cost_maps.kept_off is not None:
             kept_off = kept_off | self.cost_maps.kept_off
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))
@@ -279,7 +279,7 @@ def regions_kept_off(
         if binding.get(name, name) != actor:
             continue
         region = in_view_frame(region_of(fact), model.frame, model.view.west, model.view.south)
-        if not lenient and actor != ROBOT_ACTOR:
+        if not lenient and actor != ROBOT:
             far = float(region_of(fact).hausdorff_distance(shapely.Point(0.0, 0.0)))
             distance = OBJECT_DISTANCE + min(model.spread, MAX_KEPT_SPREAD) * far
             region = region.buffer(distance, join_style="mitre")

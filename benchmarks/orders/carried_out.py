@@ -10,12 +10,13 @@ from shapely import Point
 
 from benchmarks.orders.search import Carry
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.several.tasks import WALKER, SeveralWorld, stages_reached
+from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
 from geometry.kernels.arrays import XY
 from geometry.manipulation.legs import Leg
 from geometry.motion.se2 import Translate
 from geometry.screen import Screen
 from kb.body import DIRECTIONS, Command, Grasp, Move, Push, Release, Turn
+from kb.language.vocabulary import ROBOT
 from simulator.run.embodiment import Embodiment
 from simulator.world.physics import Tabletop
 from simulator.world.world import Thing, World
@@ -95,7 +96,7 @@ class _Performer:
         self.track.append(self._state())
 
     def _state(self) -> dict[str, Any]:
-        return {WALKER: Point(self._table.utak), **self._table.polygons}
+        return {ROBOT: Point(self._table.utak), **self._table.polygons}
 
     def _turned(self, dx: float, dy: float) -> tuple[float, float]:
         """Return a way of the table frame in the robot's frame."""

@@ -27,7 +27,8 @@ from benchmarks.orders.row import (
 from benchmarks.orders.search import search
 from benchmarks.worlds.scenes import write
 from benchmarks.worlds.several.kinds import several_world
-from benchmarks.worlds.several.tasks import WALKER, SeveralWorld, stages_reached
+from benchmarks.worlds.several.tasks import SeveralWorld, stages_reached
+from kb.language.vocabulary import ROBOT
 from simulator.episode.episode import EpisodeLog
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
@@ -169,7 +170,7 @@ def _processor_limit(seconds: float) -> Iterator[None]:
 def _track(episode: Path) -> Iterator[dict[str, Any]]:
     """Yield how everything lay at each step of an episode, by name, squares, table frame; nothing without a file."""
     for entry in _steps(episode):
-        yield {WALKER: Point(entry["utak"]), **{name: Polygon(ring) for name, ring in entry["objects"].items()}}
+        yield {ROBOT: Point(entry["utak"]), **{name: Polygon(ring) for name, ring in entry["objects"].items()}}
 
 
 def _steps(episode: Path) -> Iterator[dict[str, Any]]:

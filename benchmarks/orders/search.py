@@ -23,7 +23,7 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
 from benchmarks.worlds.floorplans import convex_corners
 from benchmarks.worlds.placing import digital
-from benchmarks.worlds.several.tasks import WALKER, SeveralWorld, Want, moved_polygon
+from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon
 from benchmarks.worlds.walking import corner_box
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside
@@ -31,6 +31,7 @@ from geometry.manipulation.legs import Leg
 from geometry.manipulation.plan_carrying import plan_carrying
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.components import components
+from kb.language.vocabulary import ROBOT
 
 FOUND, EXHAUSTED, SEARCH_LIMIT = "found", "exhausted", "limit"
 MAX_DETOURS = 3  # carries to places that nothing wants, at most; a convention, for time
@@ -151,9 +152,9 @@ class _Search:
         """Return a layout after all stages that are reached by walking alone."""
         while layout.stage < len(self._world.stages):
             wants = self._world.stages[layout.stage]
-            if any(want.subject != WALKER and not self._holds(want, layout) for want in wants):
+            if any(want.subject != ROBOT and not self._holds(want, layout) for want in wants):
                 break
-            place = self._place_to_go(layout, [want for want in wants if want.subject == WALKER])
+            place = self._place_to_go(layout, [want for want in wants if want.subject == ROBOT])
             if place is None:
                 break
             way = layout.way if place == layout.utak else (*layout.way, place)
@@ -165,7 +166,7 @@ class _Search:
 
     def _place_to_go(self, layout: Layout, wants: list[Want]) -> XY | None:
         """Return where the robot can walk so that wants about it hold; None for nowhere."""
-        if all(want.holds({WALKER: shapely.Point(layout.utak)}) for want in wants):
+        if all(want.holds({ROBOT: shapely.Point(layout.utak)}) for want in wants):
             return layout.utak
         labels = components(self._free(layout)).labels
         column, row = (math.floor(v) for v in layout.utak)
@@ -190,7 +191,7 @@ class _Search:
         left, before = 0, dict[str, Any]()
         for stage in self._world.stages[layout.stage :]:
             for want in stage:
-                if want.subject == WALKER:
+                if want.subject == ROBOT:
                     continue
                 earlier = before.get(want.subject)
                 left += not self._holds(want, layout) if earlier is None else not earlier.intersects(want.region)
@@ -199,7 +200,7 @@ class _Search:
 
     def _in_the_way(self, layout: Layout) -> set[int]:
         """Return the numbers of the things that nothing is wanted of now, but lie in the way of what is wanted."""
-        wants = [want for want in self._world.stages[layout.stage] if want.subject != WALKER]
+        wants = [want for want in self._world.stages[layout.stage] if want.subject != ROBOT]
         wanted = {self._numbers[want.subject] for want in wants}
         others = [k for k, thing in enumerate(self._world.things) if k not in wanted and not thing.fixed]
         found = set[int]()
@@ -221,7 +222,7 @@ class _Search:
 
     def _choices(self, layout: Layout) -> Iterator[tuple[int, End, int]]:
         """Yield (thing, where it is carried, 1 if that is a detour): what is wanted now, and places out of the way."""
-        wants = {want.subject: want for want in self._world.stages[layout.stage] if want.subject != WALKER}
+        wants = {want.subject: want for want in self._world.stages[layout.stage] if want.subject != ROBOT}
         for number, thing in enumerate(self._world.things):
             want = wants.get(thing.name)
             if want is not None and not self._holds(want, layout):

@@ -17,11 +17,9 @@ from kb.evidence.witness import (
 )
 from kb.language.atoms import atom_parts
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan, did_you_mean
-from kb.language.vocabulary import thing_positions
+from kb.language.vocabulary import ROBOT, thing_positions
 from kb.tracing.decisions import SolverCall
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
-
-ROBOT_ALIAS = "utak"  # its name in questions
 
 
 class AnswerProver(Protocol):
@@ -269,7 +267,5 @@ def plain_fact(fact: str) -> str:
     """
     name, arguments = atom_parts(fact.strip())
     things = thing_positions((name, len(arguments)))
-    named = [
-        ROOT_NODE if at in things and argument == ROBOT_ALIAS else argument for at, argument in enumerate(arguments)
-    ]
+    named = [ROOT_NODE if at in things and argument == ROBOT else argument for at, argument in enumerate(arguments)]
     return f"{name}({','.join(named)})" if named else name

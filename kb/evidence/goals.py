@@ -4,11 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from kb.evidence.beliefs import ROBOT_ALIAS, FactExplainer
+from kb.evidence.beliefs import FactExplainer
 from kb.evidence.plans import plan_step_reasons
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.language.atoms import atom_parts
+from kb.language.vocabulary import ROBOT
 from kb.task.task import WRAPPING_GOALS
 from kb.tracing.decisions import SolverCall
 from kb.world.model import ROOT_NODE
@@ -129,7 +130,7 @@ def _facts_about(beliefs: FactExplainer, name: str, arguments: Sequence[str], st
 
 def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
     """Return the node, or the name of the corner, that an argument of a goal means; '' for none."""
-    if argument == ROBOT_ALIAS:
+    if argument == ROBOT:
         return ROOT_NODE
     name, parts = atom_parts(argument) if argument else ("", ())
     if name == "corner" and parts:

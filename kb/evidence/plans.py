@@ -7,13 +7,12 @@ from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
 from kb.language.atoms import atom_parts
-from kb.language.vocabulary import PLAN_PREDICATES
+from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
 from kb.tracing.decisions import SolverCall
 from kb.world.stated_plan import stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
-PLANNED_ROBOT = "utak"  # the robot among what a plan brings
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
 
 
@@ -132,7 +131,7 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
 def _brought(planned: str) -> str:
     """Return the name of what a step of the plan brings; that of the robot for its own way."""
     action, arguments = atom_parts(planned)
-    return arguments[0] if action in ("carry", "clear") else PLANNED_ROBOT
+    return arguments[0] if action in ("carry", "clear") else ROBOT
 
 
 def _place(refuted: str) -> str:

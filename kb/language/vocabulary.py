@@ -26,8 +26,9 @@ Vocabulary = Mapping[str, tuple[ArgumentType, ...]]  # argument types by predica
 # The shape classes of objects (docs/files.md).
 SHAPE_CLASSES = ("square", "brick", "rectangle", "l_shape", "t_shape", "u_shape", "triangle", "disc", "polygon")
 CORNER_NAMES = ("northeast", "northwest", "southeast", "southwest")  # in Utak's frame (docs/files.md)
+ROBOT = "utak"  # the robot in tasks, in plans and in questions
 # Words of goals that cannot name parameters.
-RESERVED_PARAMETER_NAMES = frozenset({"utak", "start", "next", "corner", "room", "verge", *CORNER_NAMES})
+RESERVED_PARAMETER_NAMES = frozenset({ROBOT, "start", "next", "corner", "room", "verge", *CORNER_NAMES})
 DEGREES_ARGUMENT = integer_argument("an angle in degrees", -36000, 36000)  # counter-clockwise positive
 MAX_TABLE_SIDE = 4096  # squares along each side of a table (docs/files.md)
 

@@ -19,13 +19,13 @@ from geometry.manipulation.goals import End, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
+from kb.language.vocabulary import ROBOT
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.objects.held_object import is_grid_aligned
 from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
-from planner.constraints import ROBOT_ACTOR
 from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor, with_unseen_margin
 from planner.goals.placement import (
     CERTAIN_OBJECT,
@@ -345,9 +345,7 @@ def _may_use_other_ways(node: Node, situation: Situation) -> bool:
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     own = situation.forbidden(node.name)
-    kept_off = not situation.lenient and any(
-        situation.region_kept_off(actor).any() for actor in (ROBOT_ACTOR, node.name)
-    )
+    kept_off = not situation.lenient and any(situation.region_kept_off(actor).any() for actor in (ROBOT, node.name))
     return bool(kept_off or len(own) > 1 or (not own and situation.forbidden("utak")))
 
 

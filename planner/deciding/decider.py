@@ -13,7 +13,7 @@ import numpy as np
 from geometry.kernels.arrays import XY
 from kb.body import Grasp, Release
 from kb.language.terms import Fact
-from kb.language.vocabulary import TRACK_GOALS
+from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.task.binding import Reconciliation, reconcile
 from kb.task.task import Task
 from kb.tracing.decisions import record_decisions
@@ -22,7 +22,6 @@ from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.carrying.open_facts import qualify, verdict_if_not_found
 from planner.carrying.plan_executor import PlanExecutor
-from planner.constraints import ROBOT_ACTOR
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
 from planner.deciding.feeling import feeling_scope
@@ -497,7 +496,7 @@ class Decider:
         """
         wished = [goal for stage in self.stages for goal, _ in stage.wishes]
         goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
-        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT_ACTOR})
+        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT})
         known = costs_to_objects(cost_maps)
         reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
         self.bound = reconciled.binding

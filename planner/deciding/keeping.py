@@ -15,18 +15,11 @@ import shapely
 from geometry.kernels.arrays import XY
 from kb.body import Command, Move, Push
 from kb.language.terms import Fact
+from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import went_through
-from planner.constraints import (
-    CARRY_NOTHING_THROUGH,
-    ROBOT_ACTOR,
-    SAME_PLACE,
-    avoidances,
-    in_robot_frame,
-    region_of,
-    swept_region,
-)
+from planner.constraints import CARRY_NOTHING_THROUGH, SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import mask_to_polygon
 from planner.situation import Situation
@@ -74,7 +67,7 @@ class ConstraintKeeper:
         ----------
         model : what is believed.
         """
-        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT_ACTOR]
+        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT]
         if not about_things and not self._nothing_through:
             return
         for node in model.objects:
@@ -91,7 +84,7 @@ class ConstraintKeeper:
         model = situation.model
         for name, fact in avoidances(self.task):
             region = region_of(fact)
-            if name == ROBOT_ACTOR and region.intersects(shapely.Point(0.0, 0.0)):
+            if name == ROBOT and region.intersects(shapely.Point(0.0, 0.0)):
                 why = f"{fact} cannot hold: the robot wakes in that region"
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
             node = model.object(situation.binding.get(name, ""))
@@ -129,7 +122,7 @@ class ConstraintKeeper:
     def _doubts(self, situation: Situation) -> Iterator[str]:
         """Yield a reason for each constraint of which it cannot be told that it was kept."""
         for name, fact in avoidances(self.task):
-            doubt = _robot_doubt(fact, situation) if name == ROBOT_ACTOR else self._thing_doubt(fact, name, situation)
+            doubt = _robot_doubt(fact, situation) if name == ROBOT else self._thing_doubt(fact, name, situation)
             if doubt:
                 yield doubt
         if self._nothing_through:
@@ -214,7 +207,7 @@ def _way_of(command: Command | None, name: str, situation: Situation) -> Any:
     if not isinstance(command, Move | Push):
         return None
     x, y = model.frame.place_to_utak(*model.place)
-    if name == ROBOT_ACTOR:
+    if name == ROBOT:
         return _line([(x, y), (x + command.east, y + command.north)])
     held = model.object(model.held or "")
     if held is None or held.polygon is None or situation.binding.get(name) != held.name:

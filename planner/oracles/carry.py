@@ -17,9 +17,10 @@ from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
+from kb.language.vocabulary import ROBOT
 from kb.world.model import Node
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
-from planner.oracles.problem import ROBOT, Lying, TableState, TaskProblem
+from planner.oracles.problem import Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import Situation, neck_squares
 

@@ -15,7 +15,6 @@ from kb.world.model import Node
 
 HERE = "here"  # the place of everything where it is now
 ANYWHERE = "anywhere"  # in place of an origin: a way that was refuted from two places counts as refuted from all
-ROBOT = "utak"  # the robot among the things of a plan
 UNMOVED = Pose(0.0, 0.0, 0.0)
 
 

@@ -11,10 +11,11 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
 from geometry.raster.rasterize import squares
+from kb.language.vocabulary import ROBOT
 from kb.world.facts import FELT_COLOUR_CONFIDENCE
 from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
-from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import SPOT_SLACK
 from planner.situation import Situation
 from planner.tasking.task_plan import RefutedStep

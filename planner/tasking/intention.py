@@ -10,11 +10,12 @@ import numpy as np
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, moved
 from kb.language.terms import Fact
+from kb.language.vocabulary import ROBOT
 from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from planner.goals.placement import meets_end
 from planner.oracles.carry import CarryOracle
-from planner.oracles.problem import HERE, ROBOT, TaskProblem
+from planner.oracles.problem import HERE, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage

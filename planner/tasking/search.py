@@ -14,13 +14,14 @@ import numpy as np
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Translate
+from kb.language.vocabulary import ROBOT
 from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach
 from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
 from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
-from planner.oracles.problem import ANYWHERE, HERE, ROBOT, TableState, TaskProblem
+from planner.oracles.problem import ANYWHERE, HERE, TableState, TaskProblem
 from planner.situation import Situation
 from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts, things_in_way
 from planner.tasking.offers import Offers, with_returns

@@ -10,14 +10,14 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Pose
 from kb.language.terms import Fact
-from kb.language.vocabulary import TRACK_GOALS
+from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.objects.held_object import is_grid_aligned
 from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import Destination, robot_stands_on
-from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
+from planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
 

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from geometry.kernels.arrays import XY
+from kb.language.vocabulary import ROBOT
 from planner.oracles.carry import Certainty
-from planner.oracles.problem import ANYWHERE, ROBOT, PlacedGoal
+from planner.oracles.problem import ANYWHERE, PlacedGoal
 
 GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place where a goal holds
 

@@ -12,8 +12,8 @@ from shapely.geometry.base import BaseGeometry
 from benchmarks.worlds.floorplans import FloorPlan
 from benchmarks.worlds.scenes import PlacedThing, TaskTexts, wkt, world_text
 from benchmarks.worlds.walking import corner_box, furthest_corner
+from kb.language.vocabulary import ROBOT
 
-WALKER = "utak"  # how files name the robot
 PARAMETERS = "xyzw"  # of the first, second, ... thing of a task
 TRUTH_TOLERANCE = 1e-3  # squares; the same as for expect.lp
 # Squares by which a region of expect.lp is larger than what the goal says: a robot that misses it was wrong.
@@ -158,14 +158,14 @@ def moved_polygon(polygon: Polygon, move: tuple[float, float, float]) -> Polygon
 def robot_to_corner(plan: FloorPlan, compass: str, heading: int) -> Want | None:
     """Return the want that the robot is at a corner of its frame; None when two corners are nearly as far out."""
     corner = furthest_corner(plan.floor, compass, heading)
-    return corner and Want(WALKER, f"at(utak, corner({compass}))", corner_box(corner, ROBOT_CORNER_SIDE))
+    return corner and Want(ROBOT, f"at(utak, corner({compass}))", corner_box(corner, ROBOT_CORNER_SIDE))
 
 
 def robot_to_thing(parameter: str, lying: BaseGeometry) -> Want:
     """Return the want that the robot is at a thing. lying : the region that holds the thing at that time."""
-    return Want(WALKER, f"at(utak, {parameter})", lying.buffer(AT_SLACK, join_style="mitre"))
+    return Want(ROBOT, f"at(utak, {parameter})", lying.buffer(AT_SLACK, join_style="mitre"))
 
 
 def robot_back(utak: Point) -> Want:
     """Return the want that the robot is where it woke."""
-    return Want(WALKER, "at(utak, start)", box(*utak.buffer(START_SLACK).bounds))
+    return Want(ROBOT, "at(utak, start)", box(*utak.buffer(START_SLACK).bounds))

@@ -17,15 +17,8 @@ from benchmarks.worlds.floorplans import FloorPlan, PlanRoom
 from benchmarks.worlds.furniture import rectangle
 from benchmarks.worlds.scenes import PlacedThing, write
 from benchmarks.worlds.several.kinds import SEVERAL_KINDS, main, several_kinds, several_world
-from benchmarks.worlds.several.tasks import (
-    WALKER,
-    SeveralWorld,
-    Want,
-    moved_polygon,
-    stages_reached,
-    to_corner,
-    to_pose,
-)
+from benchmarks.worlds.several.tasks import SeveralWorld, Want, moved_polygon, stages_reached, to_corner, to_pose
+from kb.language.vocabulary import ROBOT
 from simulator.scenario.expectation import Snapshot, unmet
 from simulator.scenario.scenario import read_scenario
 
@@ -92,7 +85,7 @@ def test_regions_of_things_can_hold_them_on_the_floor(kind: str) -> None:
                 assert world.plan.floor.covers(place)
                 assert want.holds({want.subject: place})
                 assert not want.holds({want.subject: translate(place, 1.0, 0.0)})
-            elif want.subject == WALKER:
+            elif want.subject == ROBOT:
                 assert want.region.intersection(world.plan.floor).area >= 1
             else:
                 assert want.region.area >= polygons[want.subject].area
@@ -174,11 +167,11 @@ def test_a_pose_is_told_in_the_robots_frame(heading: int, east: int, north: int)
 
 
 def test_stages_count_in_order_and_the_last_one_at_the_end() -> None:
-    here, there, third = (Want(WALKER, "", Point(x, 0).buffer(0.5)) for x in (0, 10, 20))
+    here, there, third = (Want(ROBOT, "", Point(x, 0).buffer(0.5)) for x in (0, 10, 20))
     stages = [[here], [there], [third]]
 
     def track(*places: int) -> list[dict[str, Point]]:
-        return [{WALKER: Point(x, 0)} for x in places]
+        return [{ROBOT: Point(x, 0)} for x in places]
 
     assert stages_reached(stages, track(0, 10, 20)) == 3
     assert stages_reached(stages, track(5, 0, 3, 10, 0, 20)) == 3

@@ -5,10 +5,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
-from kb.language.vocabulary import PLAN_PREDICATES
+from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
 from kb.world.stated_plan import StatedPlan, stated_plan
 from planner.oracles.carry import Certainty
-from planner.oracles.problem import HERE, ROBOT, PlacedGoal
+from planner.oracles.problem import HERE, PlacedGoal
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 GOALS = (

@@ -8,9 +8,10 @@ import shapely
 
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose
+from kb.language.vocabulary import ROBOT
 from planner.goals.placement import to_view_frame
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.problem import ROBOT, Lying, PlacedGoal, TableState, TaskProblem
+from planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.task_plan import RefutedStep

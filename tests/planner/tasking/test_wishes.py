@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from kb.language.reader import facts_from_text
+from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from planner.goals.object_goals import goal_placement
 from planner.goals.robot_goals import destination
 from planner.oracles.carry import CarryOracle
-from planner.oracles.problem import ROBOT
 from planner.situation import Situation
 from planner.stages import Stage, stages
 from planner.tasking.intention import Intention
