@@ -24,6 +24,11 @@ OBJECT_RULE = "object(N) :- kind(N, object, C)."  # the meaning of object(N) in 
 QUERY_PARTS = (ProgramPart("queries", 1, OBJECT_RULE),)
 
 
+# Requests that may take any time without users' rules, too: where facts may change, clingo grounds a sum for each set
+# of them, and nothing stops it. They go to a process that can be killed.
+UNBOUNDED_TASKS = ("change",)
+
+
 class ExplanationError(Exception):
     """Says that nothing can be explained: there is no such encoding, or the decision is not one of its answers."""
 
@@ -54,7 +59,7 @@ class DecisionProgram:
     ----------
     encoding : the name of the encoding without `.lp`.
     rule_files : the paths of files with users' rules.
-    seconds : the limit of wall-clock time for each request where users' rules take part.
+    seconds : the limit of wall-clock time for each request where users' rules take part, and for UNBOUNDED_TASKS.
 
     Attributes
     ----------
@@ -91,7 +96,7 @@ class DecisionProgram:
     def ask(self, request: JsonValues) -> JsonValues:
         """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
         whole = {**request, "parts": [list(part) for part in self.parts]}
-        if self._users:
+        if self._users or request["task"] in UNBOUNDED_TASKS:
             found = rules_worker().exchange({"trace": whole}, self._seconds)
             if "limit" in found:
                 raise ExplanationError(f"the explanation was given up: {found['limit']}")
