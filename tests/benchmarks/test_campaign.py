@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import pytest
 
@@ -21,47 +20,14 @@ from benchmarks.harness.tally import narrowness as told_right
 from benchmarks.harness.trial import CampaignTrial, Conditions, run_trial, trial_of, trial_of_outcome, trial_task
 from benchmarks.worlds.makers import scenario, seeds
 from benchmarks.worlds.scenes import RandomScenario
-from kb.body import Body, Command, Impression, Move
+from kb.body import Body, Command, Move
 from kb.perception.frame import turned
 from kb.task.task import Task
+from planner.cycle import Verdict
 from simulator.scenario.settings import Settings
 from simulator.sweep.executors.in_process import run_in_this_process
 from simulator.sweep.executors.tasks import TaskOutcome, WorkerTask
-
-
-class Report(NamedTuple):
-    """The report of a step."""
-
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
-
-
-class Verdict(NamedTuple):
-    """The verdict of a robot."""
-
-    believed: bool
-    verdict: str
-    reason: str
-
-
-class Scripted:
-    """A robot that gives the commands of a list and then a verdict."""
-
-    def __init__(self, body: Body, commands: list[Command], verdict: Verdict) -> None:
-        self._body, self._commands, self.verdict = body, list(commands), verdict
-
-    def wake(self) -> Report:
-        return Report(None, self._body.wake(), {}, "woke")
-
-    def step(self) -> Report:
-        command = self._commands.pop(0)
-        return Report(command, self._body.act(command), {}, "as told")
-
-    @property
-    def finished(self) -> bool:
-        return not self._commands
+from tests.scripted import Scripted
 
 
 def maker(commands: list[Command], verdict: Verdict) -> Callable[[Body, Task, Settings], Scripted]:

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import pytest
 from shapely import Polygon, box
@@ -18,42 +17,14 @@ from benchmarks.claims.run import Limits, run_child, run_world
 from benchmarks.claims.table import table
 from benchmarks.worlds.odd.kinds import odd_world
 from benchmarks.worlds.odd.tasks import NO, YES
-from kb.body import Body, Command, Impression
+from kb.body import Body
 from kb.task.task import Task
+from planner.cycle import Verdict
 from simulator.scenario.settings import Settings
+from tests.scripted import Scripted
 
 LIMITS = Limits(search=5)
 ABLE, UNABLE = Asked("plugged", 0), Asked("plugged", 5)
-
-
-class Report(NamedTuple):
-    """The report of a step."""
-
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
-
-
-class Verdict(NamedTuple):
-    """The verdict of a robot."""
-
-    believed: bool
-    verdict: str
-    reason: str
-
-
-class Claimant:
-    """A robot that wakes and claims something at once."""
-
-    def __init__(self, body: Body, verdict: Verdict) -> None:
-        self._body, self.verdict, self.finished = body, verdict, True
-
-    def wake(self) -> Report:
-        return Report(None, self._body.wake(), {}, "woke")
-
-    def step(self) -> Report:
-        raise AssertionError("it is finished")
 
 
 @pytest.fixture
@@ -61,8 +32,8 @@ def claiming(tmp_path: Path) -> Callable[[Asked, str], ClaimRow]:
     """Return a function that runs a robot with a verdict in a world."""
 
     def ran(asked: Asked, verdict: str) -> ClaimRow:
-        def make(body: Body, told: Task, settings: Settings) -> Claimant:
-            return Claimant(body, Verdict(verdict == "done", verdict, "so it is"))
+        def make(body: Body, told: Task, settings: Settings) -> Scripted:
+            return Scripted(body, [], Verdict(verdict == "done", verdict, "so it is"))
 
         def runner(place: Path, limits: Limits) -> str:
             child.run(place, limits.noise, limits.noise_seed, limits.max_steps, make)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,58 +27,25 @@ from geometry.manipulation.goals import Inside
 from geometry.manipulation.legs import Leg
 from geometry.manipulation.plan_carrying import plan_carrying
 from geometry.motion.se2 import Rotate, Translate
-from kb.body import Body, Command, Impression, Move
+from kb.body import Body, Command, Move
 from kb.task.task import Task
+from planner.cycle import Verdict
 from simulator.run.session import RobotMaker
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 from simulator.sweep.executors.in_process import run_in_this_process
 from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
+from tests.scripted import Scripted
 
 BOUNDS = RunBounds(max_steps=20, seconds=20, search=10)
 PLUG = AskedRun("plug", "0")
 
 
-class Report(NamedTuple):
-    """The report of a step."""
-
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
-
-
-class Verdict(NamedTuple):
-    """The verdict of a robot."""
-
-    believed: bool
-    verdict: str
-    reason: str
-
-
-class Obedient:
-    """A robot that gives the commands of a list and then a verdict."""
-
-    def __init__(self, body: Body, commands: Sequence[Command], verdict: Verdict) -> None:
-        self._body, self._commands, self.verdict = body, list(commands), verdict
-
-    def wake(self) -> Report:
-        return Report(None, self._body.wake(), {}, "woke")
-
-    def step(self) -> Report:
-        command = self._commands.pop(0)
-        return Report(command, self._body.act(command), {}, "as told")
-
-    @property
-    def finished(self) -> bool:
-        return not self._commands
-
-
 def obedient(commands: Sequence[Command], verdict: str) -> RobotMaker:
     """Return a maker of robots that give commands and then a verdict."""
 
-    def make(body: Body, told: Task, settings: Settings) -> Obedient:
-        return Obedient(body, commands, Verdict(verdict == "done", verdict, "so it is"))
+    def make(body: Body, told: Task, settings: Settings) -> Scripted:
+        return Scripted(body, commands, Verdict(verdict == "done", verdict, "so it is"))
 
     return make
 
@@ -181,8 +148,8 @@ def test_a_sequence_whose_end_alone_is_so_is_not_achieved(tmp_path: Path) -> Non
 
 
 def test_a_run_that_takes_too_long_is_cut_off(tmp_path: Path) -> None:
-    def make(body: Body, told: Task, settings: Settings) -> Obedient:
-        return Obedient(body, Endless(), Verdict(False, "limit", "no"))
+    def make(body: Body, told: Task, settings: Settings) -> Scripted:
+        return Scripted(body, Endless(), Verdict(False, "limit", "no"))
 
     row = run_order(PLUG, replace(BOUNDS, seconds=1), tmp_path, make)
     assert (row.verdict, row.achieved, row.faulty) == ("time", False, False)
@@ -191,7 +158,7 @@ def test_a_run_that_takes_too_long_is_cut_off(tmp_path: Path) -> None:
 
 
 def test_a_robot_that_breaks_is_a_row_with_what_was_known(tmp_path: Path) -> None:
-    def make(body: Body, told: Task, settings: Settings) -> Obedient:
+    def make(body: Body, told: Task, settings: Settings) -> Scripted:
         raise KeyError("o7")
 
     row = run_order(PLUG, BOUNDS, tmp_path, make)

@@ -5,13 +5,14 @@ done. Whether it is, the table itself decides, by expect.lp. So a run takes mill
 """
 
 from itertools import chain, combinations, product
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 import shapely
 
-from kb.body import Body, Command, Grasp, Impression, Push
+from kb.body import Body, Command, Grasp, Push
 from kb.task.task import Task
+from planner.cycle import StepReport, Verdict
 from simulator.episode.episode import Episode
 from simulator.explaining.fixing.changes import (
     Away,
@@ -36,19 +37,6 @@ WAY = 9.0  # squares that the machine pushes
 START = {"objects": {}, "held": "t", "utak": [3.5, 4.5]}
 
 
-class Report(NamedTuple):
-    command: Command | None
-    impression: Impression
-    belief: dict[str, Any]
-    why: str
-
-
-class Verdict(NamedTuple):
-    believed: bool
-    verdict: str
-    reason: str
-
-
 class Machine:
     """A robot that grasps, pushes east in a number of commands, and says that it is done."""
 
@@ -57,15 +45,15 @@ class Machine:
         self._allowed = settings.max_steps
         self._given = 0
 
-    def wake(self) -> Report:
-        return Report(None, self._body.wake(), {"facts": []}, "wakes")
+    def wake(self) -> StepReport:
+        return StepReport(None, self._body.wake(), {"facts": []}, "wakes")
 
-    def step(self) -> Report:
+    def step(self) -> StepReport:
         return self.follow(self._left.pop(0), "")
 
-    def follow(self, command: Command, why: str) -> Report:
+    def follow(self, command: Command, why: str) -> StepReport:
         self._given += 1
-        return Report(command, self._body.act(command), {"facts": []}, "as it was built")
+        return StepReport(command, self._body.act(command), {"facts": []}, "as it was built")
 
     @property
     def finished(self) -> bool:
