@@ -6,12 +6,13 @@ from itertools import pairwise
 import pytest
 import shapely
 
+from benchmarks.worlds.drawn import drawn_problem
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose
 from kb.language.vocabulary import ROBOT
 from planner.goals.placement import to_view_frame
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
+from planner.oracles.problem import PlacedGoal, TaskProblem
 from planner.situation import Situation
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.task_plan import RefutedStep
@@ -64,20 +65,10 @@ def moved(dx: float, dy: float) -> At:
     return At(Pose(dx, dy, 0.0))
 
 
-def problem_for(situation: Situation, ends: Mapping[str, End]) -> TaskProblem:
-    """Return the problem that each of some things is brought to its one end."""
-    nodes = {node.name: node for node in situation.model.objects}
-    things = {name: Lying(to_view_frame(node.polygon, situation), Pose(0.0, 0.0, 0.0)) for name, node in nodes.items()}
-    goals = tuple(PlacedGoal(f"g{n}", f"pose({x})", x, False) for n, x in enumerate(ends, 1))
-    places = {(goal.subject, f"{goal.name}_pose"): ends[goal.subject] for goal in goals}
-    fulfils = {(goal.subject, f"{goal.name}_pose"): (goal.name,) for goal in goals}
-    return TaskProblem(nodes, goals, places, fulfils, {}, TableState(things, situation.model.place_on_view))
-
-
 def planned(rows: list[str], ends: Mapping[str, End], pull: bool = True) -> tuple[MadePlan, TaskProblem, Situation]:
     """Return the plan in a drawn world, with its problem and situation."""
     situation = known_situation(rows)
-    problem = problem_for(situation, ends)
+    problem = drawn_problem(situation, ends)
     return make_plan(problem, situation, CarryOracle(problem, situation, pull)), problem, situation
 
 
@@ -186,7 +177,7 @@ def test_a_place_within_a_region_is_chosen_so_that_others_pass() -> None:
 
 def test_the_robot_itself_goes_last() -> None:
     situation = known_situation(SWAPPED)
-    problem = problem_for(situation, {"g": moved(0, 2)})
+    problem = drawn_problem(situation, {"g": moved(0, 2)})
     row, column = situation.model.view.locate(*situation.model.place)
     stand = [row * situation.model.labels.shape[1] + column + 3]
     goals = (PlacedGoal("g2", "at(utak,start)", ROBOT, False), *problem.goals)
