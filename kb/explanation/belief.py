@@ -22,6 +22,7 @@ from kb.reasoning.query import request_entries
 from kb.reasoning.rulebook import Statement
 from kb.reasoning.sentences import fill
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
+from kb.tracing.syntax import JsonValues
 
 OBJECT_TEXT = RuleText("queries", 1, 1, OBJECT_RULE, "rule", "{N} is believed to be an object, with {C} percent.")
 
@@ -62,6 +63,34 @@ def certain_atoms(facts: Sequence[str], rule_files: Sequence[str] = ()) -> tuple
     return tuple(sorted(_trees(canonical(facts), files, texts_of(files))[1]))
 
 
+def query_response(
+    facts: Sequence[str], rule_files: tuple[str, ...], request: JsonValues
+) -> tuple[JsonValues, tuple[Statement, ...]]:
+    """Return what the process for queries answers to a request, and the users' rules that took part.
+
+    Parameters
+    ----------
+    facts : the world model, atoms as text without full stops.
+    rule_files : the paths of files with users' rules.
+    request : what is asked besides facts and rules, as kb.reasoning.query_worker reads it.
+
+    Raises
+    ------
+    ExplanationError : the answer took too much time, or there is none.
+    BadInputError, CannotOpenError : users' rules have errors or cannot be read.
+    """
+    rules = read_rules(rule_files).query_rules if rule_files else ()
+    whole = {**request, "facts": request_entries(facts), "rules": [one.written for one in rules]}
+    found = rules_worker().exchange(whole, MAX_RULE_SECONDS)
+    if "limit" in found:
+        raise ExplanationError(f"the explanation was given up: {found['limit']}")
+    if "rule" in found:
+        raise BadInputError([rules[found["rule"]].problem(found["error"], hint=found["hint"])])
+    if "error" in found:
+        raise ExplanationError(found["error"])
+    return found, rules
+
+
 @lru_cache(maxsize=16)
 def _trees(
     facts: tuple[str, ...], rule_files: tuple[str, ...], _texts: tuple[str, ...]
@@ -70,15 +99,7 @@ def _trees(
 
     _texts : the texts of the files; when one changes, nothing that was kept counts.
     """
-    rules = read_rules(rule_files).query_rules if rule_files else ()
-    request = {"justify": True, "facts": request_entries(facts), "rules": [one.written for one in rules]}
-    found = rules_worker().exchange(request, MAX_RULE_SECONDS)
-    if "limit" in found:
-        raise ExplanationError(f"the explanation was given up: {found['limit']}")
-    if "rule" in found:
-        raise BadInputError([rules[found["rule"]].problem(found["error"], hint=found["hint"])])
-    if "error" in found:
-        raise ExplanationError(found["error"])
+    found, rules = query_response(facts, rule_files, {"justify": True})
     sentences, words = words_of_users(rules)
     units = [_unit(entry, rules, sentences) for entry in found["units"]]
     supports = supports_of(found, units)

@@ -2,13 +2,10 @@
 
 from collections.abc import Sequence
 
-from kb.explanation.belief import explain_query_atom
+from kb.explanation.belief import explain_query_atom, query_response
 from kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
 from kb.explanation.values import Absence, Proof
 from kb.explanation.whynot import change_in_words, is_sensible
-from kb.language.diagnostics import BadInputError
-from kb.reasoning.query import request_entries
-from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker
 
 
 def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Absence:
@@ -60,15 +57,7 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
 
 def _answer(facts: Sequence[str], atom: str, rule_files: tuple[str, ...]) -> str:
     """Return what queries answer to an atom: yes, no or don't know."""
-    rules = read_rules(rule_files).query_rules if rule_files else ()
-    request = {"facts": request_entries(facts), "rules": [one.written for one in rules], "query": atom}
-    found = rules_worker().exchange({**request, "max_rows": 1, "number": 0}, MAX_RULE_SECONDS)
-    if "limit" in found:
-        raise ExplanationError(f"the explanation was given up: {found['limit']}")
-    if "rule" in found:
-        raise BadInputError([rules[found["rule"]].problem(found["error"], hint=found["hint"])])
-    if "error" in found:
-        raise ExplanationError(found["error"])
+    found, _ = query_response(facts, rule_files, {"query": atom, "max_rows": 1, "number": 0})
     return str(found["answer"])
 
 
