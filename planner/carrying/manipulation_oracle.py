@@ -165,6 +165,12 @@ class ManipulationOracle:
         self._answers: dict[tuple[Any, ...], CarryingPlan] = {}
         self._found_nothing = False  # whether the last request had no plan
 
+    def __deepcopy__(self, _memo: dict[int, Any]) -> "ManipulationOracle":
+        """Return a copy that remembers the same answers: these are frozen, so that they need not be copied."""
+        copied = ManipulationOracle(self._pull)
+        copied._answers, copied._found_nothing = dict(self._answers), self._found_nothing
+        return copied
+
     def find(
         self, request: Request, situation: Situation, hoped: EndsFunction = dict
     ) -> ManipulationPlan | Infeasibility:
