@@ -194,6 +194,18 @@ def _square_confidence(model: WorldModel) -> Longs:
     return np.where(model.certain, 100, SETTLED_CONFIDENCE * (model.view.state != OPEN))
 
 
+def appearance_facts(node: Node) -> Iterator[str]:
+    """Yield shape/3 for each class that an object may have, and colour/3 where it was felt; without full stops.
+
+    Parameters
+    ----------
+    node : the object.
+    """
+    yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
+    if node.colour is not None:
+        yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
+
+
 def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
     """Yield the facts of one object, its outline apart, without full stops.
 
@@ -209,10 +221,7 @@ def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:
         yield f"kind({name},verge,{model.kinds.of(node.region, 'verge')})"
     east, north = model.frame.place_to_utak(*node.patch.centre)
     yield f"offset({name},{hundredths(east)},{hundredths(north)})"
-    for shape, confidence in sorted(node.shape.items()):
-        yield f"shape({name},{shape},{confidence})"
-    if node.colour is not None:
-        yield f"colour({name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
+    yield from appearance_facts(node)
     yield f"movable({name},{node.movable if node.confidence >= MIN_OBJECT_CONFIDENCE else 0})"
     row, column = model.view.locate(*node.patch.centre)
     room = rooms.labels[row, column]

@@ -12,7 +12,7 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, InCorner, Inside, shape_at_pose
 from geometry.raster.rasterize import squares
 from kb.language.vocabulary import ROBOT
-from kb.world.facts import FELT_COLOUR_CONFIDENCE
+from kb.world.facts import appearance_facts
 from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
 from planner.oracles.problem import HERE, TaskProblem
@@ -170,10 +170,8 @@ def _world_facts(situation: Situation) -> Iterator[str]:
         if situation.model.object(name) is not None:
             yield f"bound({parameter},{name})"
     for node in situation.model.objects:
-        yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
+        yield from appearance_facts(node)
         yield f"size({node.name},{int(node.patch.mask.sum())})"
-        if node.colour is not None:
-            yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)
 
 
