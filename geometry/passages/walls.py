@@ -2,8 +2,8 @@
 
 Points are (x, y) in squares from the screen's south-west corner; widths are in squares.
 
-# Strategy: a circle among the walls is locally largest when corners of walls hold it on all sides: it is the
-circumcircle of a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall
+# Strategy: a circle among the walls is locally largest when corners of walls hold it on all sides: it is about the
+circumcentre of a triangle of the Delaunay triangulation of these corners that is not obtuse. A line from wall to wall
 is shorter than all lines beside it when no corner lies in the circle over it: it is an edge with acute angles on both
 sides (Gabriel's condition). All of this is decided with whole numbers, so that it is the same however the floor is
 turned, mirrored or moved. Where several corners lie on one circle, any triangulation of them gives the same.
@@ -78,7 +78,7 @@ def find_walls(free: Bools) -> Walls:
     ends = corners[edges]
     acute = [_dot(ends[:, 0] - tip, ends[:, 1] - tip) > 0 for tip in (corners[opposite[:, n]] for n in (0, 1))]
     length = _dot(ends[:, 1] - ends[:, 0], ends[:, 1] - ends[:, 0])
-    return Walls(corners, triangles, _widths(corners[triangles]), edges, sides, length, acute[0] & acute[1])
+    return Walls(corners, triangles, _widths(corners[triangles], floor), edges, sides, length, acute[0] & acute[1])
 
 
 def _triangulate(floor: Bools) -> tuple[Longs, Longs]:
@@ -119,22 +119,48 @@ def _shared(triangles: Longs) -> tuple[Longs, Longs, Longs]:
     return ends[first], owner[pair], tip[pair]
 
 
-def _widths(points: Longs) -> Floats:
+def _widths(points: Longs, floor: Bools) -> Floats:
     """Return the squared width of the floor about triangles, (m,) float64, in square squares; 0 about obtuse ones.
 
-    They are squared diameters of the circles through the triangles' corners, less 1. For walls go straight on between
-    corners that are one square apart, so they come nearer to the centre than these corners by what such a chord cuts
-    off: 1 is subtracted from four times the squared radius. `points` (m, 3, 2) int64 are the corners (x, y), in
-    squares.
+    They are squared diameters of the largest free circles about the centres of the circles through the triangles'
+    corners. No corner of a wall lies in the circle through a triangle's corners, so only the side of a wall may come
+    nearer to its centre: straight to the west, east, south or north of it.
+
+    Parameters
+    ----------
+    points : (m, 3, 2) int64, the corners (x, y) of each triangle, in squares from the south-west corner.
+    floor : (rows + 2, columns + 2) bool, the free squares in a blocked frame.
     """
     a, b, c = (points[:, k] for k in range(3))
     u, v, w = b - a, c - b, a - c
+    sharp = np.flatnonzero((_dot(u, -w) >= 0) & (_dot(v, -u) >= 0) & (_dot(w, -v) >= 0))
+    a, u, v, w = a[sharp], u[sharp], v[sharp], w[sharp]
+    uu, vv, ww = (_dot(side, side) for side in (u, v, w))
     twice = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]  # the area
-    sharp = (_dot(u, -w) >= 0) & (_dot(v, -u) >= 0) & (_dot(w, -v) >= 0)
-    lengths = [_dot(side, side).astype(np.float64) for side in (u, v, w)]
-    four_squared_radii = lengths[0] * lengths[1] * lengths[2] / twice.astype(np.float64) ** 2
-    widths: Floats = np.where(sharp, four_squared_radii - 1, 0.0)
+    # Twice the way from a to the centre, times `twice`, so that x and y are whole numbers.
+    to_centre = np.stack([-u[:, 1] * ww - w[:, 1] * uu, u[:, 0] * ww + w[:, 0] * uu], axis=1)
+    column, row = (a + np.floor_divide(to_centre, 2 * twice[:, None])).T + 1  # of the centre's square, on `floor`
+    west, east = (runs[row, column] for runs in _free_runs(floor))
+    south, north = (runs[column, row] for runs in _free_runs(floor.T))
+    found = uu.astype(np.float64) * vv * ww / twice.astype(np.float64) ** 2
+    for axis, side in ((0, west), (0, east), (1, south), (1, north)):
+        to_side = 2 * (side - 1 - a[:, axis]) * twice - to_centre[:, axis]
+        found = np.minimum(found, (to_side / twice) ** 2)
+    widths = np.zeros(len(points))
+    widths[sharp] = found
     return widths
+
+
+def _free_runs(floor: Bools) -> tuple[Longs, Longs]:
+    """Return where the run of free squares begins and ends in which a square lies, along its row.
+
+    Both are (rows, columns) int64, columns: of the first free square, and of the first blocked one after it. They have
+    no meaning at blocked squares. `floor` is (rows, columns) bool, blocked at its edge.
+    """
+    columns = np.broadcast_to(np.arange(floor.shape[1]), floor.shape)
+    begin = np.maximum.accumulate(np.where(floor, 0, columns + 1), axis=1)
+    end = np.minimum.accumulate(np.where(floor, floor.shape[1], columns)[:, ::-1], axis=1)[:, ::-1]
+    return begin, end
 
 
 def _dot(u: Longs, v: Longs) -> Longs:

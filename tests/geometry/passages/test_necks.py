@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from benchmarks import doorways
 from geometry import Screen
+from geometry.passages.walls import find_walls
 from tests.geometry import oracles
 
 TWO_ROOMS = """
@@ -212,6 +213,7 @@ BULGE = """
 #......######......#
 #......##..##......#
 #..................#
+#..................#
 #......######......#
 #......######......#
 ####################
@@ -240,4 +242,31 @@ def test_two_necks_with_nothing_wide_between_them_are_one_doorway():
     (door,) = screen.passages()
     assert {mouth[0][0] for mouth in door.mouths} == {7.0, 13.0}
     assert screen.parts([door]).max() == 2
-    assert not screen.parts([door])[3:5, 9:11].any()
+    assert not screen.parts([door])[3:6, 9:11].any()
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    ("width", "offset"), [(width, offset) for width in (2, 3, 4, 5) for offset in range(width + 1)]
+)
+def test_a_door_exactly_half_as_wide_as_the_room_is_a_door_wherever_it_is(width, offset, mirrored):
+    room = 2 * width
+    free = np.zeros((room + 24, 24), bool)
+    free[2 : 2 + room, 2 : 2 + room] = free[room + 4 : room + 22, 2:22] = True
+    free[2 + room : 4 + room, 2 + offset : 2 + offset + width] = True
+    (door,) = doors(Screen(free.T if mirrored else free))
+    assert door.width == width
+    assert 2 * min(door.sides) == room
+    assert not Screen(free).passages(2.01)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_the_widest_floor_is_about_as_wide_as_the_largest_free_disc_and_never_wider(seed):
+    free = doorways.random_floor(np.random.default_rng(seed))
+    rows, columns = np.nonzero(free)
+    floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
+    largest = 2 * max(shapely.maximum_inscribed_circle(part, 0.001).length for part in shapely.get_parts(floor))
+    widest = math.sqrt(find_walls(free).room.max())
+    assert largest**2 - 1 <= widest**2
+    assert widest <= largest + 0.002
