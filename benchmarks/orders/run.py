@@ -2,6 +2,7 @@
 
 import json
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -153,18 +154,27 @@ def _ran(scenario: Path, episode: Path, bounds: RunBounds, maker: RobotMaker) ->
 
 @contextmanager
 def _processor_limit(seconds: float) -> Iterator[None]:
-    """Raise RunTooLongError within the context when this process has used so many seconds of the processor."""
+    """Raise RunTooLongError within the context when this process has used so many seconds of the processor.
+
+    Where Python drops all exceptions, such as in a callback of its garbage collector, the next alarm raises it.
+    """
 
     def ring(number: int, frame: object) -> None:
         raise RunTooLongError(f"more than {seconds} s of processor time")
 
-    before = signal.signal(signal.SIGPROF, ring)
+    def drop(lost: "sys.UnraisableHookArgs") -> None:
+        if not issubclass(lost.exc_type, RunTooLongError):
+            dropped_before(lost)
+
+    alarm_before, dropped_before = signal.signal(signal.SIGPROF, ring), sys.unraisablehook
+    sys.unraisablehook = drop
     signal.setitimer(signal.ITIMER_PROF, seconds, SECONDS_BETWEEN_ALARMS)
     try:
         yield
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
+        signal.signal(signal.SIGPROF, alarm_before)
+        sys.unraisablehook = dropped_before
 
 
 def _track(episode: Path) -> Iterator[dict[str, Any]]:

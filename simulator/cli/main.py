@@ -67,10 +67,13 @@ class _Interrupts:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def _again(self, lost: "sys.UnraisableHookArgs") -> None:
-        """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import."""
+        """Interrupt once more after an interrupt where Python drops all exceptions, such as the end of an import.
+
+        Objects whose making was interrupted may fail when Python deletes them. That is no bug, so nothing is said.
+        """
         if issubclass(lost.exc_type, KeyboardInterrupt):
             repeat_soon()
-        else:
+        elif not self.seen:
             sys.__unraisablehook__(lost)
 
     def _note(self, number: int, frame: FrameType | None) -> None:

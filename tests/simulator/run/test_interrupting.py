@@ -231,3 +231,24 @@ def test_an_import_that_is_under_way_ends_before_the_interrupt(tmp_path: Path) -
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=15, check=True)
     assert found.stdout.split() == ["whole", "interrupted"]
     assert found.stderr == ""
+
+
+def test_objects_whose_making_was_interrupted_leave_no_traceback() -> None:
+    code = (
+        f"import os, signal, sys; sys.path[:0] = [{str(ROOT)!r}]\n"
+        "from simulator.cli.main import _Interrupts\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "_Interrupts().take()\n"
+        "class Handle:\n"
+        "    def __init__(self):\n"
+        "        if sys.argv[1] == 'interrupted': os.kill(os.getpid(), signal.SIGINT)\n"
+        "    def __del__(self):\n        self.opened\n"
+        "try:\n    Handle()\n"
+        "except KeyboardInterrupt:\n    print('interrupted', flush=True)\n"
+    )
+
+    def run(how: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "-c", code, how], capture_output=True, text=True, timeout=15, check=True)
+
+    assert (run("interrupted").stdout, run("interrupted").stderr) == ("interrupted\n", "")
+    assert "AttributeError" in run("whole").stderr  # without an interrupt it is a bug, and told
