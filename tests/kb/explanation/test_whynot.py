@@ -101,7 +101,7 @@ def test_a_search_for_a_change_that_does_not_end_is_given_up() -> None:
     began = time.monotonic()
     with pytest.raises(ExplanationError, match="the explanation was given up"):
         program.ask({**request, "task": "change", "candidates": candidates})
-    assert time.monotonic() - began < 10
+    assert time.monotonic() - began < 60
     again = program.ask({**request, "task": "candidates", "known": facts})  # the next request is answered as before
     assert again == candidates
 

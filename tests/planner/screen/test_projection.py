@@ -3,6 +3,7 @@
 import itertools
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -29,7 +30,10 @@ from planner.sights import frontiers
 from tests.kb.drawings import known_model, walked
 from tests.kb.eyes import random_room
 
+WALKS = st.integers(0, 19)  # seeds of random walks: so few, since each takes a while and serves several tests
 
+
+@cache
 def random_walk(seed: int) -> WorldModel:
     """Return the world model after two or three observations in a random room."""
     rng = np.random.default_rng(seed)
@@ -47,7 +51,7 @@ def random_walk(seed: int) -> WorldModel:
 
 
 @settings(max_examples=12, deadline=None)
-@given(st.integers(0, 2**32 - 1))
+@given(WALKS)
 def test_the_projection_is_monotone(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
     for level in range(UNSEEN_LEVEL):
@@ -60,7 +64,7 @@ def test_the_projection_is_monotone(seed: int) -> None:
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.integers(0, 2**32 - 1))
+@given(WALKS)
 def test_safe_squares_are_settled_or_far_from_doubt(seed: int) -> None:
     model = random_walk(seed)
     safe, view = CostMaps(model).safe, model.view
@@ -116,7 +120,7 @@ def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.integers(0, 2**32 - 1))
+@given(WALKS)
 def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
     model = random_walk(seed)
     cost_maps = CostMaps(model)
@@ -271,7 +275,7 @@ def test_the_pivot_lies_within_the_object() -> None:
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.integers(0, 2**32 - 1))
+@given(WALKS)
 def test_odd_boundaries_are_part_of_the_unsettled_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
 
@@ -345,7 +349,7 @@ def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_b
 
 
 @settings(max_examples=20, deadline=None)
-@given(st.integers(0, 2**32 - 1))
+@given(WALKS)
 def test_bold_moves_go_up_to_unsettled_squares_but_not_to_unseen_ones(seed: int) -> None:
     cost_maps = CostMaps(random_walk(seed))
     view = cost_maps.model.view

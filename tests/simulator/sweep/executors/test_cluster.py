@@ -102,7 +102,7 @@ def test_a_scheduler_without_workers_is_not_waited_for_for_ever(tmp_path: Path) 
         begun = time.monotonic()
         with pytest.raises(CannotOpenError, match=r"had no workers for 0\.5 s"):
             list(run_on_dask([TASK], address, max_workerless_seconds=0.5))
-        assert time.monotonic() - begun < 15
+        assert time.monotonic() - begun < 60
 
 
 def test_a_scheduler_that_is_lost_ends_the_sweep_with_a_reason(tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_an_address_without_a_scheduler_is_refused_soon(address: str, reason: st
     begun = time.monotonic()
     with pytest.raises(CannotOpenError) as caught:
         list(run_on_dask([TASK], address, max_connecting_seconds=0.5))
-    assert reason in str(caught.value) and time.monotonic() - begun < 15
+    assert reason in str(caught.value) and time.monotonic() - begun < 60
 
 
 def test_without_the_library_it_is_said_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
