@@ -11,7 +11,7 @@ from math import prod
 from typing import NamedTuple
 
 import clingo
-from clingo.ast import AST, ASTType
+from clingo.ast import AST, AggregateFunction, ASTType
 
 from kb.language.vocabulary import Signature
 from kb.tracing.domains import Domains, arguments_of, atom_name, atoms_in, stated_by
@@ -20,6 +20,7 @@ from kb.tracing.syntax import ParsedProgram, Unit, global_variables_of
 MAX_FACTS_OF_ATOM = 200  # candidates for one atom of a rule; a convention
 MAX_CANDIDATES = 3_000  # candidates in all; a convention
 MAX_CANDIDATES_OF_CHOICE = 300  # candidates in all where costs decide, which is dear to check; a convention
+MAX_CANDIDATES_OF_SUM = 8  # candidates in all where facts are summed up: a sum of n has up to 2**n values; a convention
 MAX_COMPARED = 40  # given facts of a predicate with which a candidate is compared; a convention
 FREE_ARGUMENT, ANY_ARGUMENT = (
     "free",
@@ -88,12 +89,23 @@ def candidate_facts(
             if symbol not in given:
                 found[symbol] = None
     ordered = _nearest_first(list(found), facts)
-    if by_choice and len(ordered) > MAX_CANDIDATES_OF_CHOICE:
+    most = (
+        MAX_CANDIDATES_OF_SUM if any(_sums_up(program.units[number]) for number in units) else MAX_CANDIDATES_OF_CHOICE
+    )
+    if by_choice and len(ordered) > most:
         about = set(wanted.arguments)
         ordered.sort(key=lambda fact: bool(fact.arguments) and not about.intersection(fact.arguments))
-        ordered, cut = ordered[:MAX_CANDIDATES_OF_CHOICE], True
+        ordered, cut = ordered[:most], True
     removable = tuple(str(fact) for fact in facts if any(_matches(fact, one) for one in patterns))
     return CandidateFacts(tuple(map(str, ordered)), removable, by_choice, cut)
+
+
+def _sums_up(unit: Unit) -> bool:
+    """Return whether a unit has a sum of facts in its body."""
+    body = getattr(unit.node, "body", ())
+    sums = (AggregateFunction.Sum, AggregateFunction.SumPlus)
+    atoms = [part.atom for part in body if part.ast_type == ASTType.Literal]
+    return any(atom.ast_type == ASTType.BodyAggregate and atom.function in sums for atom in atoms)
 
 
 def _matches(fact: clingo.Symbol, pattern: AtomPattern) -> bool:
