@@ -36,8 +36,9 @@ from benchmarks.malformations.mutate import spoil
 from benchmarks.malformations.outcomes import HANG_SECONDS, came_out
 from geometry.io.movingai import MapError, parse_map
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
+from kb.reasoning.encodings import KB_ENCODINGS
 from kb.reasoning.query import QueryEngine
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.solver import solve
 from kb.reasoning.user_rules import read_tested_rules
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.world.physics import Tabletop

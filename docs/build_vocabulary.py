@@ -36,9 +36,11 @@ class Entry(NamedTuple):
 
 
 def encodings() -> list[Path]:
-    """Return all encodings, the world model's own vocabulary first."""
-    paths = [*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "asp").glob("*.lp")]
-    return sorted(paths, key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
+    """Return all encodings, each a file or a folder of files; the world model's own vocabulary first."""
+    sys.path.insert(0, str(ROOT))
+    from kb.reasoning.encodings import all_encodings
+
+    return sorted(all_encodings(), key=lambda path: (path.stem != FIRST, path.parent.parent.name, path.stem))
 
 
 def entries(text: str) -> list[Entry]:
@@ -82,9 +84,14 @@ def undocumented(text: str) -> set[tuple[str, int]]:
 
 
 def section(path: Path) -> str:
-    """Return one encoding's part of the page."""
+    """Return one encoding's part of the page: a part for each file of a folder."""
+    if path.is_dir():
+        files = sorted(path.glob("*.lp"))
+        lines = [f"## {path.relative_to(ROOT)}", "", f"One encoding in {len(files)} files.", ""]
+        return "\n".join([*lines, *map(section, files)])
     text = path.read_text()
-    lines = [f"## {path.relative_to(ROOT)}", "", title(text), ""]
+    mark = "###" if path.parent.name != "asp" else "##"
+    lines = [f"{mark} {path.relative_to(ROOT)}", "", title(text), ""]
     for entry in entries(text):
         role = f" **{entry.role}**" if entry.role else ""
         lines.append(f"- `{entry.form}`{role} {entry.text}")
@@ -170,7 +177,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="only say whether the page is as it must be")
     check = parser.parse_args(arguments).check
-    missing = {str(path.relative_to(ROOT)): sorted(undocumented(path.read_text())) for path in encodings()}
+    missing = {
+        str(file.relative_to(ROOT)): sorted(undocumented(file.read_text()))
+        for path in encodings()
+        for file in (sorted(path.glob("*.lp")) if path.is_dir() else [path])
+    }
     for name, signatures in missing.items():
         for predicate, arity in signatures:
             print(f"{name}: {predicate}/{arity} is not documented", file=sys.stderr)

@@ -1,6 +1,7 @@
 """Small cases for the encodings: facts, and the atoms that hold in every, in some, or in no optimal answer.
 
-A file `cases/NAME.lp` beside the tests of a package belongs to `PACKAGE/asp/NAME.lp`. In it `%% TITLE` begins a case;
+A file `cases/NAME.lp` beside the tests of a package belongs to the encoding `PACKAGE/asp/NAME.lp`, or to the folder
+`PACKAGE/asp/NAME`. In it `%% TITLE` begins a case;
 facts stand as they are; `%every`, `%some` and `%never` are followed by shown atoms, and `%none` says that there is no
 answer.
 """
@@ -12,8 +13,10 @@ from typing import NamedTuple
 import clingo
 import clingo.ast
 
+from kb.reasoning.encodings import all_encodings, encoding_files
+
 ROOT = Path(__file__).resolve().parent.parent
-ENCODINGS = sorted([*(ROOT / "kb" / "asp").glob("*.lp"), *(ROOT / "planner" / "asp").glob("*.lp")])
+ENCODINGS = all_encodings()
 
 
 class Case(NamedTuple):
@@ -29,7 +32,7 @@ class Case(NamedTuple):
 
 def case_file(encoding: Path) -> Path:
     """Return the file with the cases of an encoding."""
-    return ROOT / "tests" / encoding.parent.parent.name / "cases" / encoding.name
+    return ROOT / "tests" / encoding.parent.parent.name / "cases" / f"{encoding.stem}.lp"
 
 
 def cases_of(encoding: Path) -> list[Case]:
@@ -57,14 +60,14 @@ def _atoms(texts: Iterable[str]) -> frozenset[str]:
 def statements(encoding: Path) -> list[clingo.ast.AST]:
     """Return the rules and optimisation statements of an encoding."""
     found: list[clingo.ast.AST] = []
-    clingo.ast.parse_files([str(encoding)], found.append)
+    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), found.append)
     return [s for s in found if s.ast_type in (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize)]
 
 
 def without(encoding: Path, dropped: clingo.ast.AST) -> str:
     """Return the text of an encoding with one statement left out; what only it derived stays declared."""
     found: list[clingo.ast.AST] = []
-    clingo.ast.parse_files([str(encoding)], found.append)
+    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), found.append)
     return "\n".join(str(s) for s in found if s.location != dropped.location)
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from kb.language.diagnostics import BadInputError
+from kb.reasoning.encodings import encoding_text
 from kb.reasoning.solver import solve
 from tests.encoding_cases import ENCODINGS, Case, cases_of, disagreement, optimal_answers, statements, without
 
@@ -15,7 +16,7 @@ def name(encoding: Path) -> str:
 
 CASES = [pytest.param(e, case, id=f"{name(e)}: {case.title}") for e in ENCODINGS for case in cases_of(e)]
 STATEMENTS = [
-    pytest.param(e, s, id=f"{name(e)}:{s.location.begin.line}")
+    pytest.param(e, s, id=f"{name(e)}:{Path(s.location.begin.filename).stem}:{s.location.begin.line}")
     for e in ENCODINGS
     for s in statements(e)
     if not str(s).startswith("#false.") and str(s) != "#program base."
@@ -24,7 +25,7 @@ STATEMENTS = [
 
 @pytest.mark.parametrize(("encoding", "case"), CASES)
 def test_case(encoding: Path, case: Case) -> None:
-    assert not disagreement(case, optimal_answers(encoding.read_text(), case.facts))
+    assert not disagreement(case, optimal_answers(encoding_text(encoding), case.facts))
 
 
 @pytest.mark.parametrize(("encoding", "statement"), STATEMENTS)

@@ -7,6 +7,7 @@ from typing import Any
 import clingo
 import pytest
 
+from kb.reasoning.encodings import all_encodings, encoding_text
 from simulator.cli.main import main
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -80,7 +81,7 @@ def test_places_grow_by_the_newest_unless_all_are_given_anew(steps: list[Line]) 
 
 def test_every_decision_is_what_plain_clingo_finds(steps: list[Line]) -> None:
     written: dict[tuple[int, int], list[Any]] = {}
-    texts = {path.stem: path.read_text() for path in ROOT.glob("*/asp/*.lp")}
+    texts = {path.stem: encoding_text(path) for path in all_encodings()}
     for line in steps:
         for index, entry in enumerate(line["belief"]["solved"]):
             if len(entry) == 2:

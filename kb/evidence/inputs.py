@@ -17,7 +17,7 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
-WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # task.lp is given these as facts
+WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # given to `task` as facts
 
 
 class Given(NamedTuple):
@@ -172,7 +172,7 @@ def _plan_reasons(
     arguments: tuple[str, ...],
     fact_reason: Callable[[str, int], Reason | None],
 ) -> list[Reason]:
-    """Return the reasons of what task.lp is given: facts of the world model; [] for what geometry measured."""
+    """Return the reasons of a fact that `task` is given: facts of the world model; [] for what geometry measured."""
     facts: list[str] = []
     if name in WORLD_INPUTS:
         facts = [given.atom]

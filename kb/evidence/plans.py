@@ -1,4 +1,4 @@
-"""Reasons for the facts of the task plan: the decision of task.lp, what the task wants, and what geometry said."""
+"""Reasons for the facts of the task plan: the decision that made it, what the task wants, and what geometry said."""
 
 from collections.abc import Iterator, Sequence
 from typing import Protocol
@@ -31,8 +31,8 @@ class PlanExplainer(Protocol):
 def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     """Return the reason of a fact of the task plan at a step.
 
-    A step of the plan rests on the decision of task.lp, on the goals that it serves, and on the refutations that
-    concern what it brings. What the task states, and what geometry said, are leaves.
+    A step of the plan rests on the decision of the encoding `task`, on the goals that it serves, and on the refutations
+    that concern what it brings. What the task states, and what geometry said, are leaves.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step:
 
 
 def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> Iterator[Reason]:
-    """Yield why task.lp chose a step of the plan; nothing when the record does not tell.
+    """Yield why the encoding `task` chose a step of the plan; nothing when the record does not tell.
 
     number : the number of the plan's step, 0 for the present one. planned : the step, or go(D) for a door on its way.
     """
@@ -161,7 +161,7 @@ def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> It
 
 
 def planned_choice(record: Record, number: str, planned: str, step: int) -> Iterator[tuple[SolverCall, str]]:
-    """Yield the decision of the plan of a step, with the atom by which task.lp says that the plan has some step.
+    """Yield the decision of the plan of a step, with the atom that says there that the plan has some step.
 
     Nothing when the step of the run has no plan.
 
@@ -182,7 +182,7 @@ def planned_choice(record: Record, number: str, planned: str, step: int) -> Iter
 
 
 def _decision(record: Record, step: int) -> tuple[int, SolverCall] | None:
-    """Return the newest decision of task.lp up to a step, with its step; None when there is none."""
+    """Return the newest decision of the encoding `task` up to a step, with its step; None when there is none."""
     for number in range(step, -1, -1):
         for call in reversed(record.decisions(number)):
             if call.encoding == PLAN_ENCODING and call.answer is not None:

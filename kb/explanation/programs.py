@@ -11,9 +11,9 @@ from typing import NamedTuple
 from kb.explanation.values import RuleInstance, RuleText
 from kb.language.reader import facts_from_text
 from kb.language.source_text import Source, read_source, source_from_bytes
+from kb.reasoning.encodings import all_encodings, encoding_files, encoding_path
 from kb.reasoning.rulebook import Statement
-from kb.reasoning.sentences import PredicateWords, fill, read_sentences
-from kb.reasoning.solver import ENCODING_FOLDERS
+from kb.reasoning.sentences import PredicateWords, RuleWords, fill, read_sentences
 from kb.reasoning.user_rules import MAX_RULE_SECONDS, read_rules, rules_worker, words_of_rules
 from kb.tracing.requests import respond
 from kb.tracing.syntax import JsonValues, ProgramPart
@@ -83,10 +83,9 @@ class DecisionProgram:
             book = read_rules(rule_files)
             self._users = book.query_rules if encoding == BELIEF else book.rules_reaching(encoding)
         _refuse_helping_names([atom.name for one in self._users for atom in (*one.heads, *one.body)])
-        text = path.read_text(encoding="utf-8")
-        own = ProgramPart(f"{path.parent.parent.name}/asp/{path.name}", 1, text)
+        own = _parts_of(path)
         written = [ProgramPart(one.source.file, one.at[0], one.written) for one in self._users]
-        self.parts: tuple[ProgramPart, ...] = (*written, own, *(QUERY_PARTS if encoding == BELIEF else ()))
+        self.parts: tuple[ProgramPart, ...] = (*written, *own, *(QUERY_PARTS if encoding == BELIEF else ()))
         found = self.ask({"task": "statements"})
         rules, self.words = _rules_with_words(found["statements"], self._users, own)
         self.units = tuple(_unit(one, rules, found["statements"]) for one in found["units"])
@@ -159,7 +158,7 @@ def _refuse_helping_names(names: Sequence[str]) -> None:
 
 def encoding_names() -> tuple[str, ...]:
     """Return the names of all encodings, sorted."""
-    return tuple(sorted(path.stem for folder in ENCODING_FOLDERS for path in folder.glob("*.lp")))
+    return tuple(path.stem for path in all_encodings())
 
 
 def rules_of(encoding: str) -> tuple[RuleText, ...]:
@@ -169,27 +168,38 @@ def rules_of(encoding: str) -> tuple[RuleText, ...]:
 
 
 def _path_of(encoding: str) -> Path:
-    """Return the path of an encoding; ExplanationError when there is none of that name."""
-    for folder in ENCODING_FOLDERS:
-        path = folder / f"{encoding}.lp"
-        if path.parent == folder and path.is_file():
-            return path
-    raise ExplanationError(f"there is no encoding {encoding}; there are {', '.join(encoding_names())}")
+    """Return the path of an encoding, a file or a folder; ExplanationError when there is none of that name."""
+    try:
+        return encoding_path(encoding)
+    except FileNotFoundError as error:
+        raise ExplanationError(f"{error}; there are {', '.join(encoding_names())}") from None
+
+
+def _parts_of(encoding: Path) -> list[ProgramPart]:
+    """Return the files of an encoding as parts of a program, each named from the folder of our packages on."""
+    root = encoding.parents[2]
+    return [
+        ProgramPart(path.relative_to(root).as_posix(), 1, path.read_text(encoding="utf-8"))
+        for path in encoding_files(encoding)
+    ]
 
 
 def _rules_with_words(
-    statements: Sequence[JsonValues], users: Sequence[Statement], own: ProgramPart
+    statements: Sequence[JsonValues], users: Sequence[Statement], own: Sequence[ProgramPart]
 ) -> tuple[list[RuleText], Mapping[tuple[str, int], PredicateWords]]:
     """Return the rules of a program with their sentences, and how predicates read.
 
-    statements : the rules as kb.tracing found them, those of users first. users : the users' rules. own : the encoding.
+    statements : the rules as kb.tracing found them, those of users first. users : the users' rules. own : the files of
+        the encoding.
     """
     ours = statements[len(users) :]  # and, for queries, QUERY_PARTS
-    source = source_from_bytes(own.file, own.text.encode("utf-8"))
-    places = [((one["line"], one["column"]), one["variables"]) for one in ours if one["file"] == own.file]
-    found, problems = read_sentences(source, places)
-    if problems:
-        raise ExplanationError(str(problems[0]))
+    found: dict[str, RuleWords] = {}
+    for part in own:
+        source = source_from_bytes(part.file, part.text.encode("utf-8"))
+        places = [((one["line"], one["column"]), one["variables"]) for one in ours if one["file"] == part.file]
+        found[part.file], problems = read_sentences(source, places)
+        if problems:
+            raise ExplanationError(str(problems[0]))
     sentences, words = words_of_users(users)
     rules = [
         RuleText(one.source.file, *one.at, " ".join(one.written.split()), entry["kind"], sentence)
@@ -197,9 +207,11 @@ def _rules_with_words(
     ]
     for entry in ours:
         at = (entry["line"], entry["column"])
-        sentence = found.sentences.get(at, "") if entry["file"] == own.file else ""
+        sentence = found[entry["file"]].sentences.get(at, "") if entry["file"] in found else ""
         rules.append(RuleText(entry["file"], *at, entry["text"], entry["kind"], sentence))
-    return rules, {**words, **found.predicates}
+    for one in found.values():
+        words |= one.predicates
+    return rules, words
 
 
 def words_of_users(users: Sequence[Statement]) -> tuple[list[str], dict[tuple[str, int], PredicateWords]]:

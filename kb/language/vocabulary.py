@@ -214,7 +214,7 @@ GOAL_NAME_ARGUMENT = ArgumentType("name of a goal", NAME_ARGUMENT.check)
 TASK_GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
 # A place of the task plan: `here`, a place where a goal holds (g1_...), or a spot that the planner chose.
 PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
-# The steps of the task plan (planner/asp/task.lp).
+# The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from kb.perception.regions import Percept
-from kb.reasoning.encoding_constants import encoding_constant
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
+from kb.reasoning.solver import solve
 
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
 SHORTEST_WALL = encoding_constant(INTERPRETATION, "shortest_wall")  # squares: what is so long is surely verge

@@ -2,8 +2,8 @@
 
 Modules in reading order:
 
+encodings     where encodings lie, their files, text and constants
 solver        one answer of our encodings to facts, or none
-encoding_constants  constants that an encoding states, for Python to use the same number
 sentences     the plain sentences of rules, in comments before them
 worker        a separate process for programs of users; can be killed
 query         queries over the facts of the world model

@@ -1,4 +1,4 @@
-"""The single place where encodings meet clingo: files by absolute path, facts as text, every message an error.
+"""The single place where encodings meet clingo: encodings by absolute path, facts as text, every message an error.
 
 Facts come from our own values, never as raw text of a user. With rules of a user (`--kb`) everything is solved in a
 separate process, by kb.reasoning.user_rules.
@@ -11,22 +11,8 @@ from typing import Any, NamedTuple
 
 import clingo
 
+from kb.reasoning.encodings import ENCODING_FOLDERS, encoding_files
 from kb.tracing.decisions import note_answer
-
-KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
-ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
-
-
-def encoding_path(name: str) -> Path:
-    """Return the path of one of our encodings; FileNotFoundError when there is none of that name.
-
-    name : without `.lp`.
-    """
-    found = next((path for folder in ENCODING_FOLDERS if (path := folder / f"{name}.lp").is_file()), None)
-    if found is None:
-        raise FileNotFoundError(f"there is no encoding {name}")
-    return found
-
 
 MAX_BOUNDED_SECONDS = 600.0  # of wall-clock time; against a search that hangs, never reached within the conflicts
 
@@ -45,7 +31,8 @@ def solve(
 
     Parameters
     ----------
-    files : paths of encodings, and of files with users' rules: these are all files outside of ENCODING_FOLDERS.
+    files : paths of encodings (kb.reasoning.encodings), and of files with users' rules: these are all files outside of
+        ENCODING_FOLDERS.
     facts : atoms as text, without a full stop.
     seconds : the limit of wall-clock time of the search, after which the best answer so far is returned. With users'
         rules the limits of kb.reasoning.user_rules count instead.
@@ -124,7 +111,8 @@ def _answer(files: tuple[Path, ...], facts: tuple[str, ...], seconds: float, con
     control = clingo.Control(["--stats=0"], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:
         for path in files:
-            control.load(str(path.resolve()))
+            for file in encoding_files(path) or (path,):
+                control.load(str(file.resolve()))
         control.add("base", [], "".join(f"{fact}.\n" for fact in facts))
         control.ground([("base", [])])
     except RuntimeError as error:

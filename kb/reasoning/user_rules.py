@@ -22,10 +22,10 @@ from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
 from kb.language.tokens import Token, tokenize
 from kb.language.vocabulary import Signature
+from kb.reasoning.encodings import encoding_path, encoding_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
 from kb.reasoning.sentences import RuleWords, read_sentences
-from kb.reasoning.solver import encoding_path
 from kb.reasoning.worker import Worker
 
 MAX_RULE_SECONDS = 10.0  # seconds of wall-clock time to read rules, or to solve one encoding with them; a convention
@@ -108,8 +108,8 @@ def read_tested_sources(sources: Sequence[Source], limits: RuleLimits = RULE_LIM
         _solved_by_worker("", "", rules.self_contained, limits)
     for name in USER_RULE_INTERFACES:
         if reaching := rules.rules_reaching(name):
-            encoding = encoding_path(name).read_text()
-            _solved_by_worker(f"{name}.lp", encoding, reaching, limits._replace(conflicts=0))
+            encoding = encoding_path(name)
+            _solved_by_worker(encoding.name, encoding_text(encoding), reaching, limits._replace(conflicts=0))
     if rules.query_rules:
         asked = {"facts": [], "query": "#true", "rules": [one.written for one in rules.query_rules], "number": 0}
         found = rules_worker().exchange(asked, limits.seconds)
@@ -272,7 +272,7 @@ def _solved(
     encoding: Path, reaching: Sequence[Statement], facts: Sequence[str], limits: RuleLimits
 ) -> list[clingo.Symbol]:
     """Return the shown atoms of the best answer set of an encoding with some rules; errors as solve_with_user_rules."""
-    program = "\n".join([encoding.read_text(), *(f"{fact}." for fact in facts)])
+    program = "\n".join([encoding_text(encoding), *(f"{fact}." for fact in facts)])
     found = _solved_by_worker(encoding.name, program, reaching, limits)
     given: dict[Signature, list[Fact]] = {}
     for fact in facts_from_text("".join(f"{fact}.\n" for fact in facts)):

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from kb.language.terms import Symbol
 from kb.objects.proportions import possible_rectangle_shapes
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.encodings import KB_ENCODINGS
+from kb.reasoning.solver import solve
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 

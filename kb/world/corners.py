@@ -14,7 +14,8 @@ from geometry.kernels.arrays import XY, Bools, Square
 from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import patch_of_polygon
 from kb.perception.regions import label_of
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.encodings import KB_ENCODINGS
+from kb.reasoning.solver import solve
 from kb.world.model import WorldModel, hundredths
 
 WALL_SAMPLE_LENGTH = 8.0  # squares: a wall is followed so far; if it leaves its row of squares within, it lies askew

@@ -19,8 +19,7 @@ from geometry.raster.components import components
 from kb.perception.interpretation import SHORTEST_WALL
 from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.perception.regions import extents
-from kb.reasoning.encoding_constants import encoding_constant
-from kb.reasoning.solver import KB_ENCODINGS
+from kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
 from kb.world.model import WorldModel
 
 Indices = tuple[Longs, Longs]  # the rows and the columns of some squares

@@ -18,7 +18,8 @@ from geometry import Passage, Screen
 from geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
 from geometry.passages.necks import Segment
 from geometry.raster.winding import crossing_number
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.encodings import KB_ENCODINGS
+from kb.reasoning.solver import solve
 from kb.world.doors import DoorwayNeck, find_necks
 from kb.world.model import FACT_UNITS_PER_SQUARE, WorldModel
 

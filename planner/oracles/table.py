@@ -27,7 +27,7 @@ class OracleEntry(NamedTuple):
     name : a word.
     question : what it is asked.
     module : where it is computed.
-    facts : the facts of planner/asp/task.lp that hold its answers.
+    facts : the facts of planner/asp/task that hold its answers.
     certifies : what an answer guarantees.
     cost : when it is asked.
     """

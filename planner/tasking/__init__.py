@@ -1,4 +1,4 @@
-"""The task plan: what is brought where, in which order; chosen by planner/asp/task.lp, verified by geometry.
+"""The task plan: what is brought where, in which order; chosen by planner/asp/task, verified by geometry.
 
 setting       problem_of: the problem of a stage, from what is believed
 task_plan     TaskPlan, Errand, RefutedStep: the values

@@ -1,4 +1,4 @@
-"""The facts of planner/asp/task.lp: things, places, goals and rooms of a problem, and what geometry said so far."""
+"""The facts of planner/asp/task: things, places, goals and rooms of a problem, and what geometry said so far."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet

@@ -27,7 +27,7 @@ from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_fa
 from planner.tasking.offers import Offers, with_returns
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
-TASK_ENCODING = PLANNER_ASP / "task.lp"
+TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon

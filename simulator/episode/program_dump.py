@@ -16,7 +16,7 @@ from typing import Any
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.reader import parse_facts
 from kb.language.source_text import source_from_bytes
-from kb.reasoning.solver import ENCODING_FOLDERS
+from kb.reasoning.encodings import encoding_path, encoding_text
 from kb.reasoning.user_rules import read_rules
 from simulator.episode.episode import Episode, EpisodeLine
 from simulator.episode.record import rules_sum
@@ -92,17 +92,17 @@ class ProgramDump:
         self, step: int, number: int, encoding: str, facts: Sequence[str], answer: Sequence[str] | None
     ) -> EpisodeLine:
         """Write the program of one decision, and return its entry of the index."""
-        found = [folder / f"{encoding}.lp" for folder in ENCODING_FOLDERS]
-        path = next((path for path in found if encoding.isidentifier() and path.exists()), None)
-        if path is None:
-            raise self._damaged(step, f"decision {number} is of an encoding that utak does not have")
+        try:
+            path = encoding_path(encoding)
+        except FileNotFoundError:
+            raise self._damaged(step, f"decision {number} is of an encoding that utak does not have") from None
         self._check_facts(step, number, facts)
         given = self._rule_files(step)
         rules = read_rules(given).rules_reaching(encoding) if given else ()
         answered = "there is no answer" if answer is None else f"{len(answer)} atoms, see {INDEX_NAME}"
         parts = [f"% Decision {number} of step {step}: {path.name}. What the robot decided: {answered}."]
         program = [RULES_HEAD, *(one.written for one in rules)] if rules else []
-        parts.append(without_anonymous_negation("\n".join([*program, path.read_text().rstrip()])))
+        parts.append(without_anonymous_negation("\n".join([*program, encoding_text(path).rstrip()])))
         parts += ["% The facts of this decision.", *(f"{fact}." for fact in facts)]
         name = f"{step:04d}-{encoding}-{number}.lp"
         (self._folder / name).unlink(missing_ok=True)  # a link is replaced, not followed

@@ -10,7 +10,8 @@ from kb.localisation.hypotheses.frames import FrameHypothesis, Position
 from kb.localisation.hypotheses.reestimation import ReestimatedWalk
 from kb.objects.held_object import HeldObject, Square
 from kb.perception.frame import CENTRE, Frame
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.encodings import KB_ENCODINGS
+from kb.reasoning.solver import solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
 MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import clingo
 import clingo.ast
 
-from kb.explanation.values import ProofNode, RivalChoice
+from kb.explanation.values import ProofNode, RivalChoice, RuleText
+from kb.reasoning.encodings import encoding_files, encoding_text
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 
@@ -31,7 +32,7 @@ class Decision(NamedTuple):
 
 def best_decisions(encoding: Path, facts: str) -> list[Decision]:
     """Return all best answers of an encoding."""
-    control = _control(f"{encoding.read_text()}\n{facts}", ["--opt-mode=optN", "0"])
+    control = _control(f"{encoding_text(encoding)}\n{facts}", ["--opt-mode=optN", "0"])
     found: list[Decision] = []
 
     def keep(model: clingo.Model) -> None:
@@ -86,7 +87,7 @@ def _faults_of_node(decision: Decision, node: ProofNode) -> Iterator[str]:
 
 def _faults_of_rule(decision: Decision, node: ProofNode) -> Iterator[str]:
     assert node.instance is not None
-    rule = _rule_at(decision.encoding, node.instance.rule.line)
+    rule = _rule_at(decision.encoding, _place(node.instance.rule))
     if node.claim not in decision.atoms:
         yield f"{node.claim} does not hold"
     below = {one.claim for child in node.children for one in _claims(child)}
@@ -115,17 +116,15 @@ def faults_of_rivals(decision: Decision, node: ProofNode) -> list[str]:
 
 def _faults_of_rival(decision: Decision, rival: RivalChoice, heads: set[str]) -> Iterator[str]:
     force = f":- not {rival.atom}." if rival.atom else " ".join(f":- {head}." for head in sorted(heads))
-    cost = _best_cost(decision.encoding.read_text(), f"{decision.facts}\n{force}")
+    cost = _best_cost(encoding_text(decision.encoding), f"{decision.facts}\n{force}")
     if rival.verdict == "forbidden":
         if cost is not None:
             yield f"{rival.atom} is possible at {cost}"
         if rival.forbidden_by:
-            lines = {one.rule.line for one in rival.forbidden_by}
-            rest = "\n".join(
-                str(part) for part in _statements(decision.encoding) if part.location.begin.line not in lines
-            )
+            places = {_place(one.rule) for one in rival.forbidden_by}
+            rest = "\n".join(str(part) for part in _statements(decision.encoding) if _begin(part) not in places)
             if _best_cost(rest, f"{decision.facts}\n{force}") is None:
-                yield f"{rival.atom} is forbidden by other rules than lines {sorted(lines)}"
+                yield f"{rival.atom} is forbidden by other rules than {sorted(places)}"
         return
     if cost is None:
         yield f"{rival.atom} is impossible"
@@ -151,7 +150,7 @@ def _faults_of_rival(decision: Decision, rival: RivalChoice, heads: set[str]) ->
 
 def holds_somewhere(encoding: Path, facts: str, atom: str) -> bool:
     """Return whether some best answer of an encoding holds an atom, by cost: with it an answer costs no more."""
-    text = encoding.read_text()
+    text = encoding_text(encoding)
     with_atom = _best_cost(text, f"{facts}\n:- not {atom}.")
     return with_atom is not None and with_atom == _best_cost(text, facts)
 
@@ -181,15 +180,26 @@ def _control(program: str, options: list[str]) -> clingo.Control:
 @cache
 def _statements(encoding: Path) -> tuple[clingo.ast.AST, ...]:
     found: list[clingo.ast.AST] = []
-    clingo.ast.parse_files([str(encoding)], found.append)
+    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), found.append)
     return tuple(found)
 
 
+def _place(rule: RuleText) -> tuple[str, int]:
+    """Return the name of the file in which a rule stands, and the line in which it begins."""
+    return Path(rule.file).name, rule.line
+
+
+def _begin(statement: clingo.ast.AST) -> tuple[str, int]:
+    """Return the same of a statement of clingo's."""
+    begin = statement.location.begin
+    return Path(begin.filename).name, begin.line
+
+
 @cache
-def _rule_at(encoding: Path, line: int) -> str:
-    """Return the statement of an encoding that begins in a line, as text."""
+def _rule_at(encoding: Path, place: tuple[str, int]) -> str:
+    """Return the statement of an encoding that begins in a line of a file, as text."""
     kinds = (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize)
-    (found,) = (s for s in _statements(encoding) if s.location.begin.line == line and s.ast_type in kinds)
+    (found,) = (s for s in _statements(encoding) if _begin(s) == place and s.ast_type in kinds)
     return str(found)
 
 

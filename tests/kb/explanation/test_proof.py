@@ -14,6 +14,7 @@ from kb.explanation.proof import explain_decision
 from kb.explanation.values import ProofNode
 from kb.language.diagnostics import BadInputError
 from kb.language.reader import facts_from_text
+from kb.reasoning.encodings import encoding_text
 from tests.encoding_cases import ENCODINGS, Case, cases_of
 from tests.kb.explanation.proof_checker import Decision, best_decisions, faults, faults_of_rivals
 from tests.kb.explanation.random_facts import INPUTS, encoding_path, random_facts
@@ -172,4 +173,4 @@ def test_the_checker_finds_a_wrong_cost() -> None:
 
 def test_no_proof_says_false() -> None:
     for encoding in ENCODINGS:
-        assert not re.search(r'%! .*"[^"]*\bfalse\b', encoding.read_text())
+        assert not re.search(r'%! .*"[^"]*\bfalse\b', encoding_text(encoding))

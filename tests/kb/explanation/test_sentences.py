@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from kb.explanation.programs import decision_program, encoding_names, rules_of
 from kb.language.source_text import source_from_bytes
+from kb.reasoning.encodings import encoding_files
 from kb.reasoning.sentences import fill, placeholders, read_sentences
-from tests.encoding_cases import ENCODINGS, statements
+from tests.encoding_cases import ENCODINGS, ROOT, statements
 
 NAMES = [encoding.stem for encoding in ENCODINGS]
 
@@ -27,7 +28,7 @@ def predicates(encoding: Path) -> set[tuple[str, int]]:
             return node
 
     parts: list[clingo.ast.AST] = []
-    clingo.ast.parse_files([str(encoding)], parts.append)
+    clingo.ast.parse_files(list(map(str, encoding_files(encoding))), parts.append)
     for part in parts:
         if part.ast_type in (clingo.ast.ASTType.Rule, clingo.ast.ASTType.Minimize):
             Collector().visit(part)
@@ -40,18 +41,24 @@ def test_there_are_thirteen_encodings() -> None:
     assert encoding_names() == tuple(sorted(NAMES)) and len(NAMES) == 13
 
 
+def place_of(statement: clingo.ast.AST) -> tuple[str, int, int]:
+    """Return file, line and column at which a statement of an encoding begins."""
+    begin = statement.location.begin
+    return Path(begin.filename).relative_to(ROOT).as_posix(), begin.line, begin.column
+
+
 @pytest.mark.parametrize("encoding", ENCODINGS, ids=lambda path: path.stem)
 def test_every_rule_has_a_sentence_about_its_own_variables(encoding: Path) -> None:
-    rules = {(rule.line, rule.column): rule for rule in rules_of(encoding.stem)}
-    shipped = {(s.location.begin.line, s.location.begin.column): s for s in statements(encoding)}
+    rules = {(rule.file, rule.line, rule.column): rule for rule in rules_of(encoding.stem)}
+    shipped = {place_of(s): s for s in statements(encoding)}
     written = {at: s for at, s in shipped.items() if str(s) != "#false."}
     assert rules.keys() == written.keys()
     for at, rule in rules.items():
         assert rule.sentence.endswith("."), (at, rule.sentence)
         assert rule.sentence[0].isupper() or rule.sentence[0] == "{", (at, rule.sentence)
         assert set(placeholders(rule.sentence)) <= set(re.findall(r"\b[A-Z]\w*", str(written[at]))), at
-        line = encoding.read_text().splitlines()[rule.line - 2]
-        assert line.startswith("%!"), f"{encoding.name}:{rule.line}: the sentence stands directly before the rule"
+        line = (ROOT / rule.file).read_text().splitlines()[rule.line - 2]
+        assert line.startswith("%!"), f"{rule.file}:{rule.line}: the sentence stands directly before the rule"
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS, ids=lambda path: path.stem)

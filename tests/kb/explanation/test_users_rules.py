@@ -9,8 +9,9 @@ from kb.explanation.programs import DecisionProgram, ExplanationError
 from kb.explanation.proof import explain_decision
 from kb.explanation.whynot import explain_absence
 from kb.language.diagnostics import BadInputError
+from kb.reasoning.encodings import KB_ENCODINGS
 from kb.reasoning.query import QueryEngine
-from kb.reasoning.solver import KB_ENCODINGS, solve
+from kb.reasoning.solver import solve
 from kb.reasoning.user_rules import read_rules
 
 HEAVY = """\

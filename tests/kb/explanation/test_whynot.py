@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from kb.explanation.programs import DecisionProgram, ExplanationError
 from kb.explanation.values import Absence
 from kb.explanation.whynot import explain_absence
+from kb.reasoning.encodings import encoding_text
 from tests.kb.explanation.proof_checker import best_decisions, faults, holds_somewhere
 from tests.kb.explanation.random_facts import ANSWERS, INPUTS, atoms_over, encoding_path, random_facts
 
@@ -52,7 +53,7 @@ def smaller_changes(name: str, facts: list[str], atom: str, size: int) -> list[t
 
     Names may stand in the facts, the atom or the encoding; numbers at the same place of a fact, or first in the atom.
     """
-    names = set(re.findall(r"[a-z]\w*", " ".join([*facts, atom, encoding_path(name).read_text()])))
+    names = set(re.findall(r"[a-z]\w*", " ".join([*facts, atom, encoding_text(encoding_path(name))])))
     numbers = {(fact.split("(")[0], at, one) for fact in facts for at, one in enumerate(arguments_of(fact))}
 
     def is_known(fact: str) -> bool:

@@ -9,10 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
+from kb.reasoning.encodings import KB_ENCODINGS, encoding_path, encoding_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.query import QueryEngine
 from kb.reasoning.rulebook import INTERNAL_PREDICATES
-from kb.reasoning.solver import KB_ENCODINGS, encoding_path, solve
+from kb.reasoning.solver import solve
 from kb.reasoning.user_rules import RULE_LIMITS, RuleLimits, read_rules, read_tested_rules, solve_with_user_rules
 from tests.encoding_cases import ENCODINGS, case_file
 
@@ -235,7 +236,7 @@ def test_the_interface_tables_agree_with_the_encodings() -> None:
     spec.loader.exec_module(build)
     unreached: dict[tuple[str, int], set[str]] = {}
     for path in ENCODINGS:
-        entries = build.entries(path.read_text())
+        entries = build.entries(encoding_text(path))
         interface = {entry.signature for entry in entries if entry.role}
         if path.stem in USER_RULE_INTERFACES:
             table = set(USER_RULE_INTERFACES[path.stem])

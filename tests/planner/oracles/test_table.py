@@ -4,7 +4,9 @@ import importlib
 import re
 from pathlib import Path
 
+from kb.reasoning.encodings import encoding_text
 from planner.oracles.table import ORACLES
+from planner.tasking.search import TASK_ENCODING
 
 ROOT = Path(__file__).resolve().parents[3]
 # Inputs of the encoding that do not come from geometry, but from the task and from what is believed; or questions.
@@ -13,7 +15,7 @@ FROM_ELSEWHERE |= {"wish/2", "size/2"}
 
 
 def test_each_input_of_the_encoding_comes_from_one_place() -> None:
-    text = (ROOT / "planner" / "asp" / "task.lp").read_text()
+    text = encoding_text(TASK_ENCODING)
     inputs = set(re.findall(r"^#defined (\w+/\d+)\.", text, re.MULTILINE))
     answers = {fact for oracle in ORACLES for fact in oracle.facts}
     assert answers | FROM_ELSEWHERE == inputs

@@ -1,0 +1,90 @@
+"""The encodings: where they lie, which files each consists of, their text, and the constants that they state.
+
+An encoding is a file `NAME.lp`, or a folder `NAME` of such files that stand for one program, in the order of their
+names. Rules, records and dumps know it by its name alone.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import clingo
+
+KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
+ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
+SUFFIX = ".lp"  # of the files of encodings
+
+
+def all_encodings() -> tuple[Path, ...]:
+    """Return the paths of all our encodings, each a file or a folder, sorted by name."""
+    found = [path for folder in ENCODING_FOLDERS for path in folder.iterdir() if encoding_files(path)]
+    return tuple(sorted(found, key=lambda path: path.stem))
+
+
+def encoding_path(name: str) -> Path:
+    """Return the path of one of our encodings, a file or a folder.
+
+    Parameters
+    ----------
+    name : its name, without `.lp`.
+
+    Raises
+    ------
+    FileNotFoundError : there is none of that name.
+    """
+    found = next((path for path in all_encodings() if path.stem == name), None)  # any text may be asked for
+    if found is None:
+        raise FileNotFoundError(f"there is no encoding {name}")
+    return found
+
+
+def encoding_files(encoding: Path) -> tuple[Path, ...]:
+    """Return the files of an encoding, sorted by name.
+
+    A path that is no folder is returned itself if it ends in `.lp`; () for what is no encoding.
+
+    Parameters
+    ----------
+    encoding : a file or a folder of files.
+    """
+    if encoding.is_dir():
+        return tuple(sorted(encoding.glob(f"*{SUFFIX}")))
+    return (encoding,) if encoding.suffix == SUFFIX and encoding.is_file() else ()
+
+
+def encoding_text(encoding: Path) -> str:
+    """Return the text of an encoding: that of its files, one after the other.
+
+    Parameters
+    ----------
+    encoding : a file, or a folder of files.
+
+    Raises
+    ------
+    OSError : a file cannot be read.
+    """
+    files = encoding_files(encoding) or (encoding,)
+    return "\n".join(path.read_text(encoding="utf-8") for path in files)
+
+
+@cache
+def encoding_constant(encoding: Path, name: str) -> int:
+    """Return the whole number that an encoding defines with `#const`.
+
+    Parameters
+    ----------
+    encoding : Path
+        The encoding's file or folder; one that does not exist raises OSError.
+    name : str
+        The constant's name, as in `#const name = 13.`
+
+    Raises
+    ------
+    KeyError
+        The encoding defines no such constant.
+    """
+    control = clingo.Control()
+    control.add("base", [], encoding_text(encoding))
+    symbol = control.get_const(name)
+    if symbol is None:
+        raise KeyError(f"{encoding.name} defines no constant {name}")
+    return symbol.number
