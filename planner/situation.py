@@ -1,7 +1,7 @@
 """The situation: all that the meaning of a goal depends on, and what follows from it for doors and rooms."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -71,6 +71,7 @@ class Situation:
     lenient : whether regions that the task forbids count only where a whole square lies within them, and for those
         alone whom they are forbidden to. Then what is not possible is proved not to be, and what is possible may not
         be.
+    as_well : by parameter of the task: other nodes that match it as well as the one that it is bound to.
     """
 
     model: WorldModel
@@ -83,6 +84,7 @@ class Situation:
     track: tuple[XY, ...] = ()
     closed: frozenset[str] = frozenset()
     lenient: bool = False
+    as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @cached_property
     def rooms_by_sure_walls(self) -> Rooms:

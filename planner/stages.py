@@ -7,7 +7,7 @@ as one stage.
 
 from dataclasses import dataclass, replace
 
-from kb.language.terms import Fact, Number, Symbol
+from kb.language.terms import Fact, Number, Symbol, Term
 from kb.language.vocabulary import CONSTRAINT_GOALS, TRACK_GOALS
 from kb.task.task import WRAPPING_GOALS, Task
 
@@ -89,6 +89,33 @@ def constraints(task: Task) -> tuple[Fact, ...]:
     task : the goals and constraints, as the task file gives them.
     """
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
+
+
+def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:
+    """Return the parameters of a task that a plan must not give another meaning.
+
+    These are parameters that the task names otherwise than as what is brought somewhere: in constraints, as the second
+    argument of a goal, or as what the robot goes round; and those of stages that are attained.
+
+    Parameters
+    ----------
+    task : the goals and constraints, as the task file gives them.
+    attained : how many of its stages are attained.
+    """
+    found = {str(term) for fact in constraints(task) for term in fact.args}
+    every = stages(task)
+    for stage in every:
+        goals = (*stage.goals, *(wish for wish, _ in stage.wishes))
+        found |= {word for goal in goals for term in goal.args[1:] for word in _words(term)}
+    found |= {str(goal.args[0]) for stage in every[:attained] for goal in stage.goals}
+    return frozenset(found & set(task.parameters))
+
+
+def _words(term: Term) -> set[str]:
+    """Return the names in a term: its own, and those of its arguments."""
+    if not isinstance(term, Symbol):
+        return set()
+    return {term.name}.union(*map(_words, term.args))
 
 
 def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:

@@ -2,14 +2,18 @@
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from kb.language.terms import Symbol
 from kb.objects.proportions import possible_rectangle_shapes
 from kb.reasoning.encodings import KB_ENCODINGS
 from kb.reasoning.solver import solve
+from kb.reasoning.user_rules import rules_reach
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
+
+NO_MEANINGS: Mapping[str, str] = MappingProxyType({})
 
 
 class Reconciliation(NamedTuple):
@@ -25,6 +29,9 @@ class Reconciliation(NamedTuple):
     contradicted : (parameter, node, property) where the best match contradicts a claim; property is shape or colour.
     unmovable : (parameter, node) pairs that match, but the task moves the parameter and the node cannot be moved.
     measurable : (parameter, node) pairs that may match, which a better estimate of the node's size decides.
+    as_well : (parameter, node) pairs where the node matches as well as the one that the parameter is bound to, the
+        parameter is carried, and neither node was moved: a plan may mean either. () where users' rules take part, which
+        then decide alone.
     """
 
     binding: Mapping[str, str]
@@ -33,6 +40,7 @@ class Reconciliation(NamedTuple):
     contradicted: tuple[tuple[str, str, str], ...]
     unmovable: tuple[tuple[str, str], ...] = ()
     measurable: tuple[tuple[str, str], ...] = ()
+    as_well: tuple[tuple[str, str], ...] = ()
 
 
 def reconcile(
@@ -42,6 +50,9 @@ def reconcile(
     before: Mapping[str, str],
     rules: tuple[Path, ...] = (),
     carried: Iterable[str] = (),
+    planned: Mapping[str, str] = NO_MEANINGS,
+    kept: Iterable[str] = (),
+    given_up: Iterable[tuple[str, str]] = (),
 ) -> Reconciliation:
     """Return the best match of the task's object parameters with objects of the world model.
 
@@ -53,12 +64,17 @@ def reconcile(
     before : parameter -> node, the binding up to now; it is kept unless another one is clearly better.
     rules : files with users' rules, solved together with kb/asp/reconciliation.lp.
     carried : the names of the parameters that the goals move.
+    planned : parameter -> node, as the task plan under way means them; kept while no other node matches better.
+    kept : the names of the parameters that may mean nothing but what they are bound to, in every plan.
+    given_up : (parameter, node) pairs where what is asked cannot be done with the node as far as is known; others that
+        match equally well are preferred.
 
     Returns
     -------
     The binding, parameter -> node, and what is open about it, all by name: parameters of goals that match nothing seen
     so far, and pairs (parameter, node) that need another observation, contradict a claim, cannot be moved, or that a
-    better estimate of the node's size decides. All are empty when the encodings have no answer.
+    better estimate of the node's size decides, or that match
+    as well as what is bound. All are empty when the encodings have no answer.
 
     Raises
     ------
@@ -68,6 +84,9 @@ def reconcile(
     facts += [fact for node in model.objects for fact in _node_facts(node)]
     facts += [f"distance({name},{round(way)})" for name, way in sorted(distances.items())]
     facts += [f"bound_before({x},{node})" for x, node in sorted(before.items())]
+    facts += [f"planned({x},{node})" for x, node in sorted(planned.items())]
+    facts += [f"kept({x})" for x in sorted(kept)]
+    facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
     found: dict[str, list[tuple[str, ...]]] = {}
     for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))
@@ -78,7 +97,16 @@ def reconcile(
         tuple((x, node, p) for x, node, p in found.get("contradicted", ())),
         tuple((x, node) for x, node in found.get("unmovable", ())),
         tuple((x, node) for x, node in found.get("measurable", ())),
+        () if rules_reach("reconciliation", rules) else tuple((x, node) for x, node in found.get("as_well", ())),
     )
+
+
+def as_well_by_parameter(reconciled: Reconciliation) -> Mapping[str, tuple[str, ...]]:
+    """Return, by parameter, the nodes that match it as well as the one that it is bound to."""
+    found: dict[str, tuple[str, ...]] = {}
+    for parameter, node in reconciled.as_well:
+        found[parameter] = (*found.get(parameter, ()), node)
+    return found
 
 
 def _task_facts(task: Task) -> Iterable[str]:

@@ -14,7 +14,7 @@ from geometry.kernels.arrays import XY
 from kb.body import Grasp, Release
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from kb.task.binding import Reconciliation, reconcile
+from kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
 from kb.task.task import Task
 from kb.tracing.decisions import record_decisions
 from kb.world.corners import Corner, corners
@@ -42,7 +42,7 @@ from planner.screen.projection import CostMaps, costs_to_objects
 from planner.sights.viewpoints import TO_REACH
 from planner.situation import Situation, regions_kept_off
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS, Stage, stages
+from planner.stages import ORIGIN_GOALS, Stage, parameters_that_keep_meaning, stages
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.task_plan import TaskPlan
 
@@ -104,6 +104,7 @@ class Decider:
         self._into_corner = IntoCorner()
         self._keeper = ConstraintKeeper(task)
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
+        self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
         self._turn = 0  # the sign of the turn that was begun about an object
 
     @property
@@ -162,7 +163,7 @@ class Decider:
             return Decision(Release(), why)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
-        situation = replace(situation, lenient=self._lenient)
+        situation = replace(situation, lenient=self._lenient, as_well=as_well_by_parameter(reconciled))
         broken = self._keeper.broken_at_start(situation)
         if broken is not None:
             return qualify(broken, situation)
@@ -172,6 +173,8 @@ class Decider:
             decision = decision or self._towards(stage, situation, reconciled, track)
             decision = decision or self.pursuer.pursue_look(self._doubt(stage, situation), stage, situation)
             if decision is not None:
+                if decision.verdict is not None and self._gave_up_meaning(stage, situation):
+                    return self._decided(model, track)  # the same is tried with another thing that is meant as well
                 if isinstance(decision.command, Grasp) and self._errands.blamed_so_far:  # not against rules
                     why = f"{stage} cannot be attained as far as is known"
                     decision = Decision(None, why, TaskVerdict.LIMIT)
@@ -270,6 +273,9 @@ class Decider:
         if conflict is not None:
             return self._clearer.open_walls(conflict, stage.carried, stage, situation, self._tools)
         situation = self._errands.update(stage, situation, self._transporter, self._tools)
+        if situation.binding != self.bound:  # the plan chose what parameters mean
+            self.bound = situation.binding
+            reconciled = self._reconcile(situation.cost_maps)
         if self._errands.is_shut_out:
             why = f"{stage} cannot be attained: {self._errands.blamed}"
             return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
@@ -484,6 +490,24 @@ class Decider:
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
+    def _gave_up_meaning(self, stage: Stage, situation: Situation) -> bool:
+        """Note that a stage cannot be attained with what one parameter means, where it may mean something else as well.
+
+        Returns False when there is nothing else to try.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        for parameter in (str(goal.args[0]) for goal in stage.carried):
+            others = {(parameter, name) for name in situation.as_well.get(parameter, ())}
+            meant = parameter, self.bound.get(parameter, "")
+            if others - self._given_up and meant not in self._given_up:
+                self._given_up |= {meant}
+                return True
+        return False
+
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
         """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
 
@@ -498,6 +522,17 @@ class Decider:
         goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
         carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT})
         known = costs_to_objects(cost_maps)
-        reconciled = reconcile(self.task, cost_maps.model, known, self.bound, self.rules, carried)
+        kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
+        reconciled = reconcile(
+            self.task,
+            cost_maps.model,
+            known,
+            self.bound,
+            self.rules,
+            carried,
+            self._errands.meanings,
+            kept,
+            self._given_up,
+        )
         self.bound = reconciled.binding
         return reconciled

@@ -4,6 +4,7 @@ A thing that is brought to a place of its own goal is led by planner.deciding.tr
 end. A thing that is moved aside, or to a spot that the plan chose, is brought there by the plan executor.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from kb.language.terms import Fact
@@ -37,6 +38,11 @@ class ErrandRunner:
     def plan(self) -> TaskPlan | None:
         """The plan under way, from its present errand on; None for none."""
         return self._intention.plan
+
+    @property
+    def meanings(self) -> Mapping[str, str]:
+        """The object that each parameter of the task means in the plan under way, where it chose among several."""
+        return self._intention.meanings
 
     @property
     def attempt(self) -> TaskPlan | None:

@@ -5,7 +5,7 @@ All geometry is in squares, in the view frame: that of the arrays of the view, (
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from geometry.kernels.arrays import XY
@@ -89,9 +89,11 @@ class PlacedGoal:
     ----------
     name : g1, g2, ... in the order of the task; w1, w2, ... for wishes.
     words : the goal as the task states it; those of the robot joined by "and".
-    subject : the object that it is about, or ROBOT.
+    subject : the object that it is about as the parameters are bound, or ROBOT.
     holds : whether it holds now.
     weight : about how many commands it may cost, for a wish; None for a goal that must hold.
+    parameter : the parameter of the task that it is about, whose meaning is part of the plan; "" where `subject` is
+        what it is about, whatever else may be meant.
     """
 
     name: str
@@ -99,6 +101,7 @@ class PlacedGoal:
     subject: str
     holds: bool
     weight: int | None = None
+    parameter: str = ""
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -115,11 +118,14 @@ class TaskProblem:
     nodes : the objects that may be carried, by name, in the order of the model; their outlines are known.
     goals : the goals of the stage, in the order of the task, and then its wishes.
     places : by object and name of a place: the end there, meant for the object as it lies now. ROBOT has none here.
-    fulfils : by object (or ROBOT) and name of a place: the names of the goals that hold there.
+    fulfils : by object (or ROBOT) and name of a place: the names of the goals that hold there, if they are about that
+        object.
     stands : by the name of a place of the robot: flat indices of squares (row * columns + column) on the arrays of the
         view.
     state : how everything is now.
     open : whether it is open where exactly some goal holds, so that it may hold elsewhere, too.
+    meanings : by parameter of the task, where a plan may choose: the objects that it may mean, the one that it is bound
+        to first.
     """
 
     nodes: Mapping[str, Node]
@@ -129,6 +135,17 @@ class TaskProblem:
     stands: Mapping[str, Any]
     state: TableState
     open: bool = False
+    meanings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def places_meant(self, meanings: Mapping[str, str]) -> frozenset[tuple[str, str]]:
+        """Return the places of goals, by object and name, of what the goals are about.
+
+        Parameters
+        ----------
+        meanings : the object that each parameter of the task means; what it is bound to where it is missing.
+        """
+        about = {goal.name: meanings.get(goal.parameter, goal.subject) for goal in self.goals}
+        return frozenset(key for key in self.places if key[0] in {about[goal] for goal in self.fulfils.get(key, ())})
 
     def with_places(self, places: Mapping[tuple[str, str], End]) -> "TaskProblem":
         """Return the problem with further places: ends by object and name of a place."""

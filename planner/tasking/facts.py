@@ -81,15 +81,21 @@ def problem_facts(
     facts += [f"place({ROBOT},{place})" for place in problem.stands]
     facts += [f"aside({name},{place})" for name, place in aside]
     ranks: dict[str, int] = {}
+    orders: dict[str, int] = {}
     for number, goal in enumerate(problem.goals):
-        ranks.setdefault(goal.subject, number)
+        if goal.parameter:
+            orders.setdefault(goal.parameter, number)
+            facts.append(f"about({goal.name},{goal.parameter})")
+        else:
+            ranks.setdefault(goal.subject, number)
         facts.append(f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})")
         if goal.holds:
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]
+    facts += [f"order({parameter},{number})" for parameter, number in orders.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
     facts += map(str, overlaps)
-    return (*facts, *_room_facts(problem, situation), *_world_facts(situation))
+    return (*facts, *_room_facts(problem, situation), *_world_facts(problem, situation))
 
 
 def answer_facts(answers: Answers) -> Iterator[str]:
@@ -164,11 +170,12 @@ def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def _world_facts(situation: Situation) -> Iterator[str]:
+def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
     """Yield what is believed of the objects and of what the task calls them, for users' rules."""
     for parameter, name in sorted(situation.binding.items()):
         if situation.model.object(name) is not None:
             yield f"bound({parameter},{name})"
+            yield from (f"may_mean({parameter},{other})" for other in problem.meanings.get(parameter, (name,)))
     for node in situation.model.objects:
         yield from appearance_facts(node)
         yield f"size({node.name},{int(node.patch.mask.sum())})"

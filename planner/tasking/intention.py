@@ -86,6 +86,11 @@ class _Kept:
     led_round: tuple[tuple[XY, ...], ...] = ()
     number: int = 0
 
+    def means_what_is_bound(self, problem: TaskProblem) -> bool:
+        """Return whether each parameter still means in a problem what it means in the plan."""
+        meanings = dict(self.plan.meanings)
+        return all(meanings.get(goal.parameter, goal.subject) == goal.subject for goal in problem.goals)
+
 
 class Intention:
     """Owns the task plan under way, and what was tried in vain.
@@ -109,6 +114,7 @@ class Intention:
         self._problem: TaskProblem | None = None  # of the present situation
         self._stage: Stage | None = None  # for which `_tried` counts
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
+        self._meant: Mapping[str, str] = {}  # the object that the last plan meant by each parameter of the task
         self.rules = RuleEffects()
 
     @property
@@ -154,7 +160,16 @@ class Intention:
             self._kept = self._kept_still(stage, self._problem, situation)
             if self._kept is None:
                 self._kept = self._made(stage, self._problem, situation, avoid, turn)
+        meant = self.meanings
+        if any(situation.binding.get(parameter) != name for parameter, name in meant.items()):
+            situation = with_meanings(situation, meant)
+            self._problem = problem_of(stage, situation, place, origin, self._where)
         return replace(situation, closed=self.rules.names_of_closed(situation))
+
+    @property
+    def meanings(self) -> Mapping[str, str]:
+        """The object that each parameter of the task means in the plan under way, where it chose among several."""
+        return {} if self._kept is None else dict(self._kept.plan.meanings)
 
     def next_errand(
         self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction
@@ -238,7 +253,7 @@ class Intention:
         kept = self._kept
         if kept is None or kept.stage != stage or kept.names != tuple(problem.nodes):
             return None
-        if kept.places != frozenset(problem.places):
+        if kept.places != problem.places_meant({}) or not kept.means_what_is_bound(problem):
             return None
         while kept.number < len(kept.plan.errands):
             errand = kept.plan.errands[kept.number]
@@ -290,7 +305,7 @@ class Intention:
         tried = [refutation for where, refutation in self._tried if where == lying]
         for on_lattice in (True, False):  # ways by whole squares are found fast, and mostly they do
             oracle = CarryOracle(problem, situation, self._pull, avoid, turn, on_lattice)
-            made = make_plan(problem, situation, oracle, tried)
+            made = make_plan(problem, situation, oracle, tried, self._meant)
             if not made.plan.unmet:
                 break
         self.rules = effects_of_rules(made, situation)
@@ -307,9 +322,27 @@ class Intention:
         )
         ways = tuple(_squares_of(way, west - made.margin, south - made.margin) for way in made.ways)
         turned = {name: node.turned for name, node in problem.nodes.items()}
-        names, places = tuple(problem.nodes), frozenset(problem.places)
+        chosen = tuple(pair for pair in made.plan.meanings if pair[0] in problem.meanings)
+        self._meant, plan = dict(chosen), replace(made.plan, meanings=chosen)
+        names, places = tuple(problem.nodes), problem.places_meant(self._meant)
         led_round = doors_led_round(made, situation)
-        return _Kept(made.plan, stage, names, places, spots, bounds, ways, turned, led_round)
+        return _Kept(plan, stage, names, places, spots, bounds, ways, turned, led_round)
+
+
+def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situation:
+    """Return a situation whose parameters mean what a plan means by them; what they meant before may be meant, too.
+
+    Parameters
+    ----------
+    situation : what is believed: world model, rooms, doors, corners and track.
+    meanings : the object that each parameter of the task means.
+    """
+    binding = {**situation.binding, **meanings}
+    as_well = {
+        parameter: tuple(name for name in (situation.binding[parameter], *others) if name != binding[parameter])
+        for parameter, others in situation.as_well.items()
+    }
+    return replace(situation, binding=binding, as_well=as_well)
 
 
 def _goal_of(

@@ -26,6 +26,7 @@ def with_returns(problem: TaskProblem) -> TaskProblem:
     problem : things, places and goals.
     """
     there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
+    there += [name for name, place in problem.fulfils if place == HERE and name in problem.nodes]
     ends = {(name, HERE): end_about(problem.state.things[name].outline) for name in there}
     return replace(problem, places={**problem.places, **ends})
 

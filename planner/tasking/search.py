@@ -15,8 +15,10 @@ from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import End
 from geometry.motion.se2 import Translate
 from kb.language.vocabulary import ROBOT
+from kb.reasoning.encodings import encoding_constant
 from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach
+from kb.task.binding import NO_MEANINGS
 from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
 from planner.navigation.subgoals import PLANNER_ASP
@@ -34,6 +36,8 @@ MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its pla
 MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
 MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
+MAX_MEANING_QUESTIONS = 12  # to geometry before the first plan, about things that parameters may mean; likewise
+CHANGE_OF_MEANING = encoding_constant(TASK_ENCODING, "change_of_meaning")  # commands
 LEAST_WALK = 1  # commands of a walk of which nothing is known, as in the encoding
 
 
@@ -67,19 +71,26 @@ class Proposal(NamedTuple):
     unmet : the goals that do not hold after them.
     facts : what the encoding was given.
     missed : the wishes that do not hold after them, each with the commands that it may cost.
+    meanings : the object that each parameter of the task means: (parameter, object), sorted.
     """
 
     errands: tuple[Errand, ...]
     unmet: tuple[str, ...]
     facts: tuple[str, ...]
     missed: Mapping[str, int]
+    meanings: tuple[tuple[str, str], ...] = ()
 
 
 class PlanSearch:
     """Searches a plan for one problem; owns what geometry said so far."""
 
     def __init__(
-        self, problem: TaskProblem, situation: Situation, oracle: CarryOracle, tried: Sequence[RefutedStep] = ()
+        self,
+        problem: TaskProblem,
+        situation: Situation,
+        oracle: CarryOracle,
+        tried: Sequence[RefutedStep] = (),
+        meant: Mapping[str, str] = NO_MEANINGS,
     ) -> None:
         """Make a search that knows nothing but what was tried.
 
@@ -89,7 +100,9 @@ class PlanSearch:
         situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
         oracle : verifies the steps.
         tried : steps that failed when they were carried out, as refutations.
+        meant : the object that the plan before meant by each parameter of the task.
         """
+        self._meant = dict(meant)
         self._problem, self._situation, self._oracle = with_returns(problem), situation, oracle
         self._answers = Answers(refutations=tuple(tried))
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
@@ -101,6 +114,7 @@ class PlanSearch:
 
     def run(self) -> MadePlan:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
+        self._ask_about_meanings()
         goals = self._problem.goals  # a wish that holds may not hold any more when something else was brought
         out_of_place = {goal.subject for goal in goals if not goal.holds or goal.weight is not None}
         horizon = max(1, len(out_of_place))
@@ -119,7 +133,7 @@ class PlanSearch:
                 horizon += 1
                 continue
             if proposal.unmet:
-                best, proved = best or TaskPlan(proposal.errands, proposal.unmet), True
+                best, proved = best or TaskPlan(proposal.errands, proposal.unmet, meanings=proposal.meanings), True
                 facts = facts or proposal.facts
                 continue
             least = least or self._estimated(proposal.errands)
@@ -129,9 +143,10 @@ class PlanSearch:
             better += 1
             proved = best is not None and verified == best.errands  # no proposal is cheaper by what geometry answered
             cost = sum(errand.commands for errand in verified)
-            price = cost + sum(proposal.missed.values())
-            if best is None or price < best_price or proved:
-                best, facts = TaskPlan(verified, (), cost, missed=tuple(proposal.missed)), proposal.facts
+            price = cost + sum(proposal.missed.values()) + self._price_of_meanings(proposal.meanings)
+            if best is None or price <= best_price or proved:
+                best = TaskPlan(verified, (), cost, missed=tuple(proposal.missed), meanings=proposal.meanings)
+                facts = proposal.facts
                 best_price = price
         if best is None:
             best = TaskPlan(
@@ -146,7 +161,8 @@ class PlanSearch:
 
     def _propose(self, horizon: int) -> Proposal:
         """Return the plan of the encoding with at most `horizon` errands."""
-        facts = (f"horizon({horizon})", *self._facts, *answer_facts(self._answers))
+        before = [f"meant_before({parameter},{name})" for parameter, name in sorted(self._meant.items())]
+        facts = (f"horizon({horizon})", *self._facts, *before, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
             answer = solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS)
         atoms, self._cut = answer.atoms or (), self._cut or not answer.proved
@@ -162,7 +178,28 @@ class PlanSearch:
                 found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
         errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
         missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
-        return Proposal(errands, unmet, facts, missed)
+        pairs = [(str(atom.arguments[0]), str(atom.arguments[1])) for atom in atoms if atom.name == "meaning"]
+        return Proposal(errands, unmet, facts, missed, tuple(sorted(pairs)))
+
+    def _ask_about_meanings(self) -> None:
+        """Ask geometry about the ways of things among which parameters may choose, to compare them at once."""
+        several = {name for names in self._problem.meanings.values() if len(names) > 1 for name in names}
+        asked = [(name, place) for name, place in self._problem.places if name in several and place != HERE]
+        commands, hoped = dict(self._answers.commands), set(self._answers.hoped)
+        for name, place in asked[:MAX_MEANING_QUESTIONS]:
+            errand = Errand("carry", name, place)
+            if self._shut(errand):
+                break  # with users' rules the way of an errand is that of its doors
+            answer = self._ask(self._problem.state, errand, frozenset())
+            if answer.after is not None:
+                commands[name, HERE, place] = answer.commands
+                hoped |= {(name, HERE, place)} if answer.certainty == Certainty.HOPED else set()
+        self._answers = replace(self._answers, commands=commands, hoped=frozenset(hoped))
+
+    def _price_of_meanings(self, meanings: Sequence[tuple[str, str]]) -> int:
+        """Return the commands for which the encoding takes parameters that mean something else than before."""
+        changed = sum(self._meant.get(parameter, name) != name for parameter, name in meanings)
+        return CHANGE_OF_MEANING * changed
 
     def _offer(self, unmet: Sequence[str]) -> bool:
         """Offer places for things that are in the way; return whether any is new.
@@ -293,7 +330,11 @@ class PlanSearch:
 
 
 def make_plan(
-    problem: TaskProblem, situation: Situation, oracle: CarryOracle, tried: Sequence[RefutedStep] = ()
+    problem: TaskProblem,
+    situation: Situation,
+    oracle: CarryOracle,
+    tried: Sequence[RefutedStep] = (),
+    meant: Mapping[str, str] = NO_MEANINGS,
 ) -> MadePlan:
     """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all of them.
 
@@ -303,5 +344,6 @@ def make_plan(
     situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
     oracle : verifies the steps.
     tried : steps that failed when they were carried out, as refutations.
+    meant : the object that the plan before meant by each parameter of the task.
     """
-    return PlanSearch(problem, situation, oracle, tried).run()
+    return PlanSearch(problem, situation, oracle, tried, meant).run()

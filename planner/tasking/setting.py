@@ -17,7 +17,7 @@ from kb.world.model import Node
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
 from planner.goals.robot_goals import Destination, robot_stands_on
-from planner.oracles.problem import Lying, PlacedGoal, TableState, TaskProblem
+from planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
 
@@ -58,6 +58,7 @@ def problem_of(
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
     open_goals: list[str] = []
+    unlike: set[tuple[str, str]] = set()  # parameters with objects for which it is open where a goal holds
     ruled = rules_reach(RULED_ENCODING, situation.rules)
     for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
@@ -68,7 +69,16 @@ def problem_of(
                 return None
             continue  # a wish of which nothing is known yet
         open_goals += [name] * (is_open and weight is None)
-        goals.append(PlacedGoal(name, str(goal), node.name, holds, weight))
+        goals.append(PlacedGoal(name, str(goal), node.name, holds, weight, str(goal.args[0])))
+        for other in _also_meant(goal, things, situation):
+            other_ends, other_open, other_holds = _ends(goal, other, state, situation, place, _where_it_lies)
+            if (other_open and not other_holds) or not (other_ends or other_holds):
+                unlike.add((str(goal.args[0]), other.name))
+                continue
+            fulfils |= {(other.name, HERE): (*fulfils.get((other.name, HERE), ()), name)} if other_holds else {}
+            for end_name, end in other_ends.items():
+                places[other.name, place_name(name, end_name)] = end
+                fulfils[other.name, place_name(name, end_name)] = (name,)
         for end_name, end in ends.items():
             places[node.name, place_name(name, end_name)] = end
             fulfils[node.name, place_name(name, end_name)] = (name,)
@@ -88,7 +98,41 @@ def problem_of(
             parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
             stands |= {place_name(name, room): part for room, part in parts.items()}
             fulfils |= {(ROBOT, place_name(name, room)): names for room in parts}
-    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state, bool(open_goals))
+    meanings = _meanings(things, unlike, situation)
+    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state, bool(open_goals), meanings)
+
+
+def _also_meant(goal: Fact, things: Mapping[str, Node], situation: Situation) -> list[Node]:
+    """Return the things that the parameter of a goal may mean besides the one that it is bound to.
+
+    While a thing is in hand, nothing but that is meant by the parameter that is bound to it.
+    """
+    parameter, held = str(goal.args[0]), situation.model.held
+    if held is not None and situation.binding.get(parameter) == held:
+        return []
+    return [things[name] for name in situation.as_well.get(parameter, ()) if name in things]
+
+
+def _meanings(
+    things: Mapping[str, Node], unlike: set[tuple[str, str]], situation: Situation
+) -> Mapping[str, tuple[str, ...]]:
+    """Return the objects that each parameter may mean where that are several, the one that it is bound to first.
+
+    things : that may be carried, by name. unlike : parameters with things that they do not mean after all.
+    """
+    model = situation.model
+    found: dict[str, tuple[str, ...]] = {}
+    for parameter, bound in sorted(situation.binding.items()):
+        if model.object(bound) is not None:
+            others = () if model.held == bound else situation.as_well.get(parameter, ())
+            also = [name for name in others if name in things and (parameter, name) not in unlike]
+            found |= {parameter: (bound, *also)} if also else {}
+    return found
+
+
+def _where_it_lies(_parameter: str, node: Node, _situation: Situation) -> XY:
+    """Return where a thing that was not moved lay at first: where it lies, the middle (x, y) in squares, map frame."""
+    return float(node.polygon.centroid.x), float(node.polygon.centroid.y)
 
 
 def _numbered(stage: Stage) -> Iterator[tuple[str, Fact, int | None]]:

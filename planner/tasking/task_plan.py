@@ -112,6 +112,7 @@ class TaskPlan:
     rounds : how many plans were made.
     goals : the goals of the stage, in the order of the task, as they were when it was made.
     missed : the wishes that do not hold at its end.
+    meanings : the objects that parameters of the task mean in it: (parameter, object), sorted.
     """
 
     errands: tuple[Errand, ...]
@@ -123,6 +124,7 @@ class TaskPlan:
     rounds: int = 0
     goals: tuple[PlacedGoal, ...] = ()
     missed: tuple[str, ...] = ()
+    meanings: tuple[tuple[str, str], ...] = ()
 
     @property
     def verified(self) -> bool:

@@ -30,6 +30,7 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "candidate": (NODES, (15, 60, 95)), "has": (NODES, PROPERTIES, VALUES, (30, 99)),
         "settled": (NODES, PROPERTIES), "distance": (NODES, (3, 9)), "bound_before": (THINGS, NODES),
         "carried": (THINGS,), "fixed": (NODES,), "moved": (NODES,), "may_be": (NODES, PROPERTIES, VALUES),
+        "planned": (THINGS, NODES), "kept": (THINGS,), "given_up": (THINGS, NODES),
     },
     "rooms": {"neck": (NUMBERS, (50, 100), (100, 150, 300), (100, 300), (0, 90))},
     "shapes": {
@@ -63,6 +64,7 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     },
     "reconciliation": {
         "bind": (THINGS, NODES), "hypothesised": (THINGS,), "doubtful": (THINGS, NODES), "unmovable": (THINGS, NODES),
+        "as_well": (THINGS, NODES),
     },
     "rooms": {"door": (NUMBERS, (90,)), "opening": (NUMBERS,)},
     "shapes": {"shape": (("o1",), (*CLASSES, "polygon"), (2, 30, 62, 74, 98, 99))},
