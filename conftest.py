@@ -1,3 +1,23 @@
-"""Loads the plugin of pytest that collects scenarios, also where Utak is not installed, and the one that tests it."""
+"""Loads the plugin of pytest that collects scenarios, also where Utak is not installed, and the one that tests it.
+
+A module of tests that cannot be imported is an error: pytest would skip it where doctests are collected, too.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
 
 pytest_plugins = ["utak_pytest", "pytester"]
+
+TESTS = Path(__file__).resolve().parent / "tests"
+NOT_IMPORTED = "unable to import module"  # pytest's reason; what lacks an optional library skips itself for another
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Iterator[None]:
+    """Turn the skip of a module of tests that cannot be imported into an error."""
+    report = yield
+    if report.outcome == "skipped" and NOT_IMPORTED in str(report.longrepr) and TESTS in collector.path.parents:
+        report.outcome, report.longrepr = "failed", f"{collector.path} cannot be imported; import it to see why"
+    return report

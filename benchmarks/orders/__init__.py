@@ -11,4 +11,5 @@ run          one run of the robot, judged
 table        the table of results, and why runs failed
 __main__     the program
 planning    task plans in worlds that are known: how near to the best, and how long they take
+strategies  strategies of clingo for the best answer, compared on task plans
 """

@@ -1,12 +1,13 @@
 """Task plans in worlds that are known: how near to the best, and how long they take.
 
     python -m benchmarks.orders.planning optimum [--count 30] [--seed S]
-    python -m benchmarks.orders.planning rooms [--count 12] [--seed S]
+    python -m benchmarks.orders.planning rooms [--count 12] [--seed S] [--rooms 6] [--things 6]
 
 `optimum`: small random rooms with a niche and two or three things that must go to poses, some of which block others.
 The plan is compared with the cheapest sequence of errands that a search over all states finds which has the same places
-and asks the same geometry, but neither the encoding nor its refutations. `rooms`: six rooms with seven doors and six
-things; plans for one, two and three goals, in seconds of the processor, without the work of the first call of a kernel.
+and asks the same geometry, but neither the encoding nor its refutations. `rooms`: rooms in two rows (six of them
+have seven doors) with a thing in some of them; plans for one, two and three goals, in milliseconds of the processor,
+without the work of the first call of a kernel.
 """
 
 import argparse
@@ -27,6 +28,8 @@ from planner.situation import Situation
 from planner.tasking.search import MadePlan, make_plan
 
 ROOM_WIDTH, ROOM_HEIGHT = 11, 10  # squares of each of the six rooms (a convention)
+GOALS = (1, 2, 3)  # goals of the tasks in a house
+NAMES = "ghkmnp"  # of the things in a house
 DOOR_WIDTH = 5  # squares (a convention)
 MAX_ERRANDS = 5  # of the exhaustive search: beyond them no plan of these small worlds is cheaper
 Drawing = list[list[str]]
@@ -38,8 +41,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("what", choices=("optimum", "rooms"))
     parser.add_argument("--count", type=int, default=0, help="worlds (30, or 12 for each number of goals)")
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
+    parser.add_argument("--rooms", type=int, choices=range(2, 13, 2), default=6, help="rooms (%(default)s)")
+    parser.add_argument("--things", type=int, help="things, each in a room of its own (as many as rooms, at most 6)")
     given = parser.parse_args(arguments)
-    return optimum(given.count or 30, given.seed) if given.what == "optimum" else rooms(given.count or 12, given.seed)
+    if given.what == "optimum":
+        return optimum(given.count or 30, given.seed)
+    things = min(given.rooms, len(NAMES)) if given.things is None else given.things
+    if not 1 <= things <= min(given.rooms, len(NAMES)):
+        parser.error(f"there are {things} things, and not 1 to {min(given.rooms, len(NAMES))}")
+    return rooms(given.count or 12, given.seed, given.rooms, things)
 
 
 def optimum(count: int, seed: int) -> int:
@@ -114,13 +124,14 @@ def small_world(rng: np.random.Generator) -> tuple[list[str], dict[str, End]]:
     return ["".join(row) for row in reversed(grid)], ends
 
 
-def rooms(count: int, seed: int) -> int:
-    """Print the processor's milliseconds of plans for one, two and three goals in six rooms; return 0."""
+def rooms(count: int, seed: int, number_of_rooms: int = 6, things: int = 6) -> int:
+    """Print the processor's milliseconds of plans for one, two and three goals in a house; return 0."""
+    print(f"{number_of_rooms} rooms, {things} things")
     print("goals  planned  median ms  95th ms  most ms  proposals  questions")
-    for goals in (1, 2, 3):
+    for goals in GOALS[:things]:
         times, proposals, questions, planned = [], [], [], 0
         for number in range(seed, seed + count):
-            rows, ends = six_rooms(np.random.default_rng([number, goals, 6]), goals)
+            rows, ends = house(np.random.default_rng([number, goals, 6]), goals, number_of_rooms, things)
             situation = drawn_situation(rows)
             problem = drawn_problem(situation, ends)
             for _ in range(2):  # the second time, for the first one may compile a kernel
@@ -142,11 +153,16 @@ def rooms(count: int, seed: int) -> int:
     return 0
 
 
-def six_rooms(rng: np.random.Generator, goals: int) -> tuple[list[str], dict[str, End]]:
-    """Return six rooms in two rows with seven doors, six things, and a pose in another room for some of them."""
-    wide, high = ROOM_WIDTH + 2, ROOM_HEIGHT + 2
-    grid: Drawing = [["b"] * (3 * wide + 2) for _ in range(2 * high + 2)]
-    corners = [(2 + wide * column, 2 + high * row) for row in range(2) for column in range(3)]
+def house(
+    rng: np.random.Generator, goals: int, number_of_rooms: int = 6, things: int = 6
+) -> tuple[list[str], dict[str, End]]:
+    """Return rooms in two rows with doors between neighbours, some things, and poses in other rooms for some of them.
+
+    goals : things that have a pose. number_of_rooms : an even number. things : at most one a room, and at most 6.
+    """
+    wide, high, columns = ROOM_WIDTH + 2, ROOM_HEIGHT + 2, number_of_rooms // 2
+    grid: Drawing = [["b"] * (columns * wide + 2) for _ in range(2 * high + 2)]
+    corners = [(2 + wide * column, 2 + high * row) for row in range(2) for column in range(columns)]
     for x, y in corners:
         _clear(grid, x, y, ROOM_WIDTH, ROOM_HEIGHT)
     for x, y in corners:
@@ -155,14 +171,14 @@ def six_rooms(rng: np.random.Generator, goals: int) -> tuple[list[str], dict[str
         if y > 2:
             _clear(grid, x + int(rng.integers(0, ROOM_WIDTH - DOOR_WIDTH)), y - 2, DOOR_WIDTH, 2)
     ends: dict[str, End] = {}
-    order, shift = list(rng.permutation(6)), int(rng.integers(1, 6))
-    for number, name in enumerate("ghkmnp"):
+    order, shift = list(rng.permutation(number_of_rooms)), int(rng.integers(1, number_of_rooms))
+    for number, name in enumerate(NAMES[:things]):
         x0, y0 = corners[order[number]]
         side = int(rng.integers(2, 5))
         x, y = x0 + int(rng.integers(2, ROOM_WIDTH - side - 1)), y0 + int(rng.integers(2, ROOM_HEIGHT - side - 1))
         _fill(grid, x, y, side, side, name)
         if number < goals:
-            x1, y1 = corners[order[(number + shift) % 6]]
+            x1, y1 = corners[order[(number + shift) % number_of_rooms]]
             ends[name] = At(Pose(float(x1 - x), float(y1 - y), 0.0))
     x0, y0 = corners[order[0]]
     grid[y0][x0 + ROOM_WIDTH - 1] = "U"

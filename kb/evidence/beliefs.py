@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from kb.evidence.inputs import Given, input_reason, squares_reason
-from kb.evidence.plans import TASK_PLAN_NAMES, plan_fact_reason
+from kb.evidence.plans import PLAN_ENCODING, TASK_PLAN_NAMES, plan_fact_reason
 from kb.evidence.proving import words_of
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.record import Record
@@ -93,6 +93,8 @@ class FactExplainer:
 
         def leaf(given: str) -> Reason:
             """Return the reason of an input of the encoding."""
+            if call.encoding == PLAN_ENCODING and given.startswith("may_mean("):
+                return self._possible_meaning(given, step)
             return input_reason(self.record, Given(given, call, step), self.reason)
 
         return self._prove(call, atom, leaf)
@@ -121,11 +123,26 @@ class FactExplainer:
         if name == "adjacent":
             return self._facts([f"offset({ROOT_NODE},", f"rect({arguments[1]},"], step)
         if name == "bound":
-            found = self.decision("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
-            return [found] if found else []
+            return self._meaning_reasons(arguments[0], arguments[1], step)
         if name in ("offset", "in", "rect") and node == ROOT_NODE:
             return [self._pose_reason(step)]
         return self._other_reasons(name, arguments, step)
+
+    def _meaning_reasons(self, parameter: str, node: str, step: int) -> list[Reason]:
+        """Return why a parameter means a node: by reconciliation, and by the task plan where that chose."""
+        atom = f"bind({parameter},{node})"
+        found = [self.decision("reconciliation", atom, step)]
+        bound = self.record.last_answer(step, "reconciliation", atom, 0)
+        if bound is not None and f"planned({parameter},{node})" in bound[1].facts:
+            found.append(self.decision(PLAN_ENCODING, f"meaning({parameter},{node})", step))
+        return [reason for reason in found if reason is not None]
+
+    def _possible_meaning(self, given: str, step: int) -> Reason:
+        """Return why the task plan was told that a parameter may mean a node: by reconciliation."""
+        pair = ",".join(atom_parts(given)[1])
+        found = [self.decision("reconciliation", f"{name}({pair})", step) for name in ("as_well", "bind")]
+        below = tuple(reason for reason in found if reason is not None)[:1]
+        return Reason(given, words_of(PLAN_ENCODING, given), ReasonKind.INPUT, f"step {step}", below)
 
     def _other_reasons(self, name: str, arguments: tuple[str, ...], step: int) -> list[Reason]:
         """Return what facts rest on that geometry measures alone: places, outlines, rooms and the pathgraph."""

@@ -12,11 +12,14 @@ from kb.language.atoms import atom_parts
 from kb.tracing.decisions import SolverCall
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE
 
-TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "not_through"})  # what start.lp and goal.lp say
+TASK_INPUTS = frozenset({"wanted", "named", "claim", "carried", "kept", "not_through"})  # what start.lp and goal.lp say
 NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the fact that says it, as arguments
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
+PARAMETER_INPUTS = frozenset(
+    {"bound_before", "planned", "given_up"}
+)  # of a parameter and a node, from earlier decisions
 WORLD_INPUTS = frozenset({"bound", "shape", "colour", "width", "connects", "goal"})  # given to `task` as facts
 
 
@@ -201,13 +204,13 @@ def _property_reasons(
     fact_reason: Callable[[str, int], Reason | None],
 ) -> list[Reason]:
     """Return the reasons of what reconciliation.lp is given of a node: facts of the world model, or cells."""
-    node = arguments[1] if name == "bound_before" else arguments[0]
+    node = arguments[1] if name in PARAMETER_INPUTS else arguments[0]
     fact = NODE_INPUTS[name].format(*arguments) if name in NODE_INPUTS else ""
     if name == "has":
         fact = f"{arguments[1]}({node},{arguments[2]},{arguments[3]})"
     found = fact_reason(fact, step) if fact else None
     if found is not None:
         return [found]
-    if name == "bound_before" and step > 0:
+    if name in PARAMETER_INPUTS and step > 0:
         return [command_reason(record.steps[step])]
     return [squares_reason(record, step, node)]

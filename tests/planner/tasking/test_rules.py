@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.worlds.drawn import drawn_problem
 from geometry.manipulation.goals import End, Inside
 from kb.body import Grasp
 from kb.language.reader import facts_from_text
@@ -21,7 +22,7 @@ from planner.tasking.setting import problem_of
 from simulator.scenario.settings import Settings
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
-from tests.planner.tasking.test_search import SWAPPED, moved, problem_for
+from tests.planner.tasking.test_search import SWAPPED, moved
 
 RULES = Path(__file__).resolve().parents[3] / "docs" / "rules"
 WALL = "b" * 30
@@ -71,7 +72,7 @@ def made_with(
 ) -> tuple[MadePlan, Situation]:
     """Return the plan with users' rules, and its situation."""
     situation = situation_with(rows, rules, bound)
-    problem = problem_for(situation, ends)
+    problem = drawn_problem(situation, ends)
     return make_plan(problem, situation, CarryOracle(problem, situation)), situation
 
 
