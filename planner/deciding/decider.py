@@ -175,6 +175,8 @@ class Decider:
             if decision is not None:
                 if decision.verdict is not None and self._gave_up_meaning(stage, situation):
                     return self._decided(model, track)  # the same is tried with another thing that is meant as well
+                if decision.verdict is not None and (vain := self._tried_in_vain(stage)):
+                    decision = replace(decision, why=f"{decision.why}; {vain}")
                 if isinstance(decision.command, Grasp) and self._errands.blamed_so_far:  # not against rules
                     why = f"{stage} cannot be attained as far as is known"
                     decision = Decision(None, why, TaskVerdict.LIMIT)
@@ -507,6 +509,14 @@ class Decider:
                 self._given_up |= {meant}
                 return True
         return False
+
+    def _tried_in_vain(self, stage: Stage) -> str:
+        """Return which things were tried in vain that parameters of a stage may mean as well, in words; "" for none."""
+        parameters = dict.fromkeys(str(goal.args[0]) for goal in stage.carried)
+        given_up = sorted(self._given_up)
+        tried = [(x, [n for p, n in given_up if p == x and n != self.bound.get(x)]) for x in parameters]
+        words = (f"{x} may be {' or '.join(names)} as well, and that was no better" for x, names in tried if names)
+        return "; ".join(words)
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
         """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
