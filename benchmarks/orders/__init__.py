@@ -11,5 +11,6 @@ run          one run of the robot, judged
 table        the table of results, and why runs failed
 __main__     the program
 planning    task plans in worlds that are known: how near to the best, and how long they take
+meanings    plans for equal things: what it saves that the plan chooses what parameters mean
 strategies  strategies of clingo for the best answer, compared on task plans
 """

@@ -172,10 +172,10 @@ def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
 
 def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
     """Yield what is believed of the objects and of what the task calls them, for users' rules."""
-    for parameter, name in sorted(situation.binding.items()):
-        if situation.model.object(name) is not None:
-            yield f"bound({parameter},{name})"
-            yield from (f"may_mean({parameter},{other})" for other in problem.meanings.get(parameter, (name,)))
+    bound = [pair for pair in sorted(situation.binding.items()) if situation.model.object(pair[1]) is not None]
+    meanings = {parameter: (name,) for parameter, name in bound} | dict(problem.meanings)
+    yield from (f"bound({parameter},{name})" for parameter, name in bound)
+    yield from (f"may_mean({parameter},{name})" for parameter, names in meanings.items() for name in names)
     for node in situation.model.objects:
         yield from appearance_facts(node)
         yield f"size({node.name},{int(node.patch.mask.sum())})"

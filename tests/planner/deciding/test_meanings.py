@@ -9,17 +9,7 @@ from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict
 from simulator.explaining.fixing.recorded import task_from_texts
 from tests.planner.situations import all_felt, known_situation
-from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, WALL, pose
-
-BOTH_WALLED_IN = [  # the robot comes to neither
-    WALL,
-    *["b................b...............b"] * 2,
-    *["b...hhh...ggg....b...............b"] * 3,
-    *["b................b...............b"] * 2,
-    "b................b.........U.....b",
-    *["b................b...............b"] * 3,
-    WALL,
-]
+from tests.planner.tasking.test_meanings import ACROSS, ACROSS_GOALS, IN_POCKET, POCKET_GOAL, pose
 
 
 def decided(decider: Decider, model: WorldModel) -> tuple[Decision, list[SolverCall]]:
@@ -59,8 +49,9 @@ def test_claims_tell_things_apart_so_that_nothing_is_chosen() -> None:
 
 
 def test_all_that_may_be_meant_is_tried_before_a_verdict() -> None:
-    decider = Decider(task_from_texts("object(x).", pose("x", 25, 3, BOTH_WALLED_IN)))
-    decision, calls = decided(decider, all_felt(known_situation(BOTH_WALLED_IN).model))
+    at_two_places = f"{pose('x', 28, 13, IN_POCKET)} {pose('x', 28, 3, IN_POCKET)}"
+    decider = Decider(task_from_texts("object(x).", at_two_places))
+    decision, calls = decided(decider, all_felt(known_situation(IN_POCKET).model))
     assert decision.command is None and decision.verdict in (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)
     given_up = [fact for fact in calls[-1].facts if fact.startswith("given_up")]
     bound = decider.bound["x"]
