@@ -37,13 +37,16 @@ def drawn_situation(rows: Sequence[str]) -> Situation:
     state = np.where(occupied, OCCUPIED, FREE).astype(np.int8)
     view = MapView(-west, -south, occupied.astype(np.float32), state, seen, np.zeros(marks.shape, np.int16))
     percept, labels = map_regions(occupied, seen, seen)
+    felt = [
+        (f"part{number}", "b") for number in np.unique(labels[marks == "b"])
+    ]  # walls that stand alone are walls, too
     nodes = []
     for letter in sorted(set(marks.ravel()) - set("b.U")):
         low, high = np.argwhere(marks == letter).min(0), np.argwhere(marks == letter).max(0) + 1
         patch = Patch(int(low[1]) - west, int(low[0]) - south, (marks == letter)[low[0] : high[0], low[1] : high[1]])
         box = shapely.box(patch.west, patch.south, patch.west + high[1] - low[1], patch.south + high[0] - low[0])
         nodes.append(Node(str(letter), "object", 100, "part1", patch, 0, polygon=box))
-    model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret_regions(percept), tuple(nodes))
+    model = WorldModel(Frame(), (0.5, 0.5), view, labels, percept, interpret_regions(percept, felt), tuple(nodes))
     return Situation(model, CostMaps(model), {}, rooms_of(model), corners(model), NO_TASK)
 
 
