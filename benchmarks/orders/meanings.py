@@ -30,7 +30,7 @@ from planner.tasking.search import MadePlan, make_plan
 
 WIDTH, HEIGHT, SIDE = 36, 22, 3  # squares of the room and of a thing (a convention)
 LEAST_WALL, MOST_WALL = 8, 13  # squares that the wall reaches into the room
-NAMES = "ghkm"  # of the things
+EQUAL_NAMES = "ghkm"  # of the things
 
 
 class EqualThings(NamedTuple):
@@ -53,7 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=20, help="worlds (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="the first world's seed (%(default)s)")
-    parser.add_argument("--things", type=int, choices=range(1, len(NAMES) + 1), default=2, help="things (%(default)s)")
+    parser.add_argument(
+        "--things", type=int, choices=range(1, len(EQUAL_NAMES) + 1), default=2, help="things (%(default)s)"
+    )
     given = parser.parse_args(arguments)
     chosen, cheapest, first, times = [], [], [], []
     print("world  chosen  cheapest  first  proved   ms  ms of the first")
@@ -100,14 +102,14 @@ def told_apart(world: EqualThings, situation: Situation) -> list[TaskProblem]:
     found = []
     for ends in permutations(world.ends):
         pairs = zip(world.corners, ends, strict=True)
-        by_name = {name: _end(corner, end) for name, (corner, end) in zip(NAMES, pairs, strict=False)}
+        by_name = {name: _end(corner, end) for name, (corner, end) in zip(EQUAL_NAMES, pairs, strict=False)}
         found.append(drawn_problem(situation, by_name))
     return found
 
 
 def problem_with_choice(world: EqualThings, situation: Situation) -> TaskProblem:
     """Return the problem in which each parameter may mean each thing; the first one means the first thing so far."""
-    names = NAMES[: len(world.corners)]
+    names = EQUAL_NAMES[: len(world.corners)]
     problem = told_apart(world, situation)[0]
     goals = tuple(replace(goal, parameter=f"x{number}") for number, goal in enumerate(problem.goals))
     places = {
@@ -150,7 +152,7 @@ def equal_things(rng: np.random.Generator, things: int) -> EqualThings:
     corners = tuple(spot(SIDE) for _ in range(things))
     ends = tuple(spot(SIDE) for _ in range(things))
     robot = spot(1)
-    for name, (x, y) in zip(NAMES, corners, strict=False):
+    for name, (x, y) in zip(EQUAL_NAMES, corners, strict=False):
         for row in grid[int(y) : int(y) + SIDE]:
             row[int(x) : int(x) + SIDE] = name * SIDE
     grid[int(robot[1])][int(robot[0])] = "U"

@@ -30,7 +30,7 @@ from planner.tasking.search import MadePlan, make_plan
 
 ROOM_WIDTH, ROOM_HEIGHT = 11, 10  # squares of each of the six rooms (a convention)
 GOALS = (1, 2, 3)  # goals of the tasks in a house
-NAMES = "ghkmnp"  # of the things in a house
+HOUSE_NAMES = "ghkmnp"  # of the things in a house
 DOOR_WIDTH = 5  # squares (a convention)
 MAX_ERRANDS = 5  # of the exhaustive search: beyond them no plan of these small worlds is cheaper
 Drawing = list[list[str]]
@@ -47,9 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.what == "optimum":
         return optimum(given.count or 30, given.seed)
-    things = min(given.rooms, len(NAMES)) if given.things is None else given.things
-    if not 1 <= things <= min(given.rooms, len(NAMES)):
-        parser.error(f"there are {things} things, and not 1 to {min(given.rooms, len(NAMES))}")
+    things = min(given.rooms, len(HOUSE_NAMES)) if given.things is None else given.things
+    if not 1 <= things <= min(given.rooms, len(HOUSE_NAMES)):
+        parser.error(f"there are {things} things, and not 1 to {min(given.rooms, len(HOUSE_NAMES))}")
     return rooms(given.count or 12, given.seed, given.rooms, things)
 
 
@@ -179,7 +179,7 @@ def house(
             _clear(grid, x + int(rng.integers(0, ROOM_WIDTH - DOOR_WIDTH)), y - 2, DOOR_WIDTH, 2)
     ends: dict[str, End] = {}
     order, shift = list(rng.permutation(number_of_rooms)), int(rng.integers(1, number_of_rooms))
-    for number, name in enumerate(NAMES[:things]):
+    for number, name in enumerate(HOUSE_NAMES[:things]):
         x0, y0 = corners[order[number]]
         side = int(rng.integers(2, 5))
         x, y = x0 + int(rng.integers(2, ROOM_WIDTH - side - 1)), y0 + int(rng.integers(2, ROOM_HEIGHT - side - 1))

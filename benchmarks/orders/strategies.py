@@ -5,8 +5,8 @@
 The decisions are the last ones of plans in the worlds of `benchmarks.orders.planning` (optimum, and rooms with one,
 two, three and six goals), and all decisions `task` that the given episodes record. Each is grounded for each strategy
 and solved by itself in a new solver. The table tells for each strategy the decisions whose optimum was proved within
-MAX_CONFLICTS, how many of these answers were cheaper, dearer or another one of the same cost than that of the first
-strategy, and the sums of conflicts and of processor seconds of solving. Grounding is the same for all and is told once.
+MAX_SEARCH_CONFLICTS, how many of these answers were cheaper, dearer or another one of the same cost than that of the
+first strategy, and the sums of conflicts and of processor seconds of solving. Grounding is the same for all, told once.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from typing import NamedTuple
 import clingo
 import numpy as np
 
-from benchmarks.orders.planning import GOALS, NAMES, house, small_world
+from benchmarks.orders.planning import GOALS, HOUSE_NAMES, house, small_world
 from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import End
 from kb.reasoning.encodings import encoding_text
@@ -28,7 +28,7 @@ from kb.tracing.decisions import record_decisions
 from planner.oracles.carry import CarryOracle
 from planner.tasking.search import TASK_ENCODING, make_plan
 
-MAX_CONFLICTS = 200_000  # of one search; ten times the limit of a plan, so that slow strategies are told apart
+MAX_SEARCH_CONFLICTS = 200_000  # of one search; ten times the limit of a plan, so that slow strategies are told apart
 Facts = tuple[str, ...]
 # By name: the options of clingo. The first one is what the planner uses.
 STRATEGIES: dict[str, tuple[str, ...]] = {
@@ -88,7 +88,7 @@ def planned(count: int, seed: int) -> Iterator[Facts]:
     """Yield the facts of the last decision of each plan in the worlds of benchmarks.orders.planning."""
     for number in range(seed, seed + count):
         yield from _decisions(*small_world(np.random.default_rng([number, 5])))
-        for goals in (*GOALS, len(NAMES)):
+        for goals in (*GOALS, len(HOUSE_NAMES)):
             yield from _decisions(*house(np.random.default_rng([number, goals, 6]), goals))
 
 
@@ -112,7 +112,7 @@ def recorded(episodes: Sequence[Path]) -> Iterator[Facts]:
 
 def solved(facts: Facts, options: Sequence[str]) -> Solved:
     """Return the answer to a decision with some options of clingo."""
-    control = clingo.Control([*options, "--stats=1", f"--solve-limit={MAX_CONFLICTS}"])
+    control = clingo.Control([*options, "--stats=1", f"--solve-limit={MAX_SEARCH_CONFLICTS}"])
     control.add("base", [], encoding_text(TASK_ENCODING) + "".join(f"\n{fact}." for fact in facts))
     begin = time.process_time()
     control.ground([("base", [])])
