@@ -79,8 +79,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     decisions = list(dict.fromkeys([*planned(given.count, given.seed), *recorded(given.episodes)]))
     names = [name for name in STRATEGIES if not given.only or name in given.only.split(";")]
-    found = {name: [solved(facts, STRATEGIES[name]) for facts in decisions] for name in names}
-    print(table(found))
+    first: list[Solved] = []
+    for name in names:
+        answers = [solved(facts, STRATEGIES[name]) for facts in decisions]
+        if not first:
+            first = answers
+            print(heading(first))
+        print(row(name, answers, first), flush=True)
     return 0
 
 
@@ -129,24 +134,24 @@ def solved(facts: Facts, options: Sequence[str]) -> Solved:
     return Solved(*best[-1], bool(result.exhausted), conflicts, took, ground - begin)
 
 
-def table(found: dict[str, list[Solved]]) -> str:
-    """Return the table of strategies."""
-    first = next(iter(found.values()))
-    grounding = 1000 * sum(one.grounding for one in first) / len(first)
-    lines = [f"{len(first)} decisions; grounding takes {grounding:.0f} ms in the mean"]
-    lines.append(
-        "strategy        proved  cheaper  dearer  other answer  conflicts  most conflicts  seconds  most seconds"
+def heading(first: list[Solved]) -> str:
+    """Return the lines above the table, from the answers of the first strategy."""
+    grounding = 1000 * sum(one.grounding for one in first) / max(1, len(first))
+    columns = "proved  cheaper  dearer  other answer  conflicts  most conflicts  seconds  most seconds"
+    return f"{len(first)} decisions; grounding takes {grounding:.0f} ms in the mean\nstrategy        {columns}"
+
+
+def row(name: str, answers: list[Solved], first: list[Solved]) -> str:
+    """Return the line of a strategy, from its answers and those of the first strategy."""
+    pairs = list(zip(answers, first, strict=True))
+    cheaper, dearer = sum(a.cost < b.cost for a, b in pairs), sum(a.cost > b.cost for a, b in pairs)
+    other = sum(a.cost == b.cost and a.atoms != b.atoms for a, b in pairs)
+    conflicts, seconds = [one.conflicts for one in answers], [one.seconds for one in answers]
+    return (
+        f"{name:<14}  {sum(one.proved for one in answers):>6}  {cheaper:>7}  {dearer:>6}  {other:>12}"
+        f"  {sum(conflicts):>9}  {max(conflicts, default=0):>14}"
+        f"  {sum(seconds):>7.2f}  {max(seconds, default=0.0):>12.2f}"
     )
-    for name, answers in found.items():
-        pairs = list(zip(answers, first, strict=True))
-        cheaper, dearer = sum(a.cost < b.cost for a, b in pairs), sum(a.cost > b.cost for a, b in pairs)
-        other = sum(a.cost == b.cost and a.atoms != b.atoms for a, b in pairs)
-        lines.append(
-            f"{name:<14}  {sum(one.proved for one in answers):>6}  {cheaper:>7}  {dearer:>6}  {other:>12}"
-            f"  {sum(one.conflicts for one in answers):>9}  {max(one.conflicts for one in answers):>14}"
-            f"  {sum(one.seconds for one in answers):>7.2f}  {max(one.seconds for one in answers):>12.2f}"
-        )
-    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -143,4 +143,4 @@ def test_two_parameters_get_different_objects() -> None:
 def test_doors_and_rooms_are_not_bound_to_objects() -> None:
     wanted = Task({"d": Parameter("d", "door", NOWHERE)}, (), ())
     found = reconcile(wanted, MODEL, {}, {})
-    assert found == ({}, (), (), (), (), ())
+    assert found == ({}, (), (), (), (), (), ())
