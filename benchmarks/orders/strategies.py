@@ -30,7 +30,7 @@ from planner.tasking.search import TASK_ENCODING, make_plan
 
 MAX_SEARCH_CONFLICTS = 200_000  # of one search; ten times the limit of a plan, so that slow strategies are told apart
 Facts = tuple[str, ...]
-# By name: the options of clingo. The first one is what the planner uses.
+# By name: the options of clingo. The planner uses `usc,oll strat.`, and the first one where that does not end.
 STRATEGIES: dict[str, tuple[str, ...]] = {
     "bb,lin": ("--opt-strategy=bb,lin",),
     "bb,hier": ("--opt-strategy=bb,hier",),

@@ -13,7 +13,7 @@ from kb.perception.interpretation import (
 )
 from kb.perception.regions import Percept, Region
 from kb.reasoning.encodings import all_encodings, encoding_constant, encoding_files, encoding_path, encoding_text
-from kb.reasoning.solver import solve
+from kb.reasoning.solver import solve, solve_within
 
 
 def test_a_folder_of_files_is_one_encoding(tmp_path: Path) -> None:
@@ -70,3 +70,17 @@ def test_constants_agree_with_the_answers_of_the_interpretation(extent: int, ver
     felt = interpret_regions(Percept((region,), frozenset(), frozenset()), [("r", "g")])
     # What is longer than any object is verge, and a thing is in it.
     assert felt.of("r", "object") == (FELT_OBJECT_CONFIDENCE if extent <= LONGEST_OBJECT else 0)
+
+
+def test_a_bounded_search_tells_the_best_so_far_where_it_does_not_end() -> None:
+    things = [f"o{number}" for number in range(1, 6)]
+    facts = ["horizon(7)", "place(utak,here)"]
+    for number, thing in enumerate(things):
+        facts += [f"thing({thing})", f"place({thing},here)", f"place({thing},p)", f"fulfils({thing},p,g{number})"]
+        facts += [f"goal(g{number})", f"rank({thing},{number})", f"estimate({thing},here,p,{5 + number})"]
+        facts += [f"refuted({number},{thing},here,p)", f"given({number},{things[number - 1]},here)"] * (number > 0)
+    cut, whole = (solve_within([encoding_path("task")], facts, conflicts) for conflicts in (1, 100_000))
+    assert not cut.proved and cut.atoms is not None
+    assert whole.proved and [str(atom) for atom in whole.atoms or ()] == [
+        f"occurs(carry({thing},p),{number})" for number, thing in enumerate(things)
+    ]
