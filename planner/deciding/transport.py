@@ -21,7 +21,7 @@ from planner.carrying.plan_executor import Advice
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
 from planner.deciding.verification import look_before_grasp, look_for_more
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, done, nothing_to_do
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
 from planner.goals.joint import OPPOSITE_CORNERS, conflicting_goals
 from planner.goals.object_goals import goal_placement
@@ -98,8 +98,8 @@ class Transporter:
         reconciled: Reconciliation,
         tools: Tools,
         end: str = "",
-    ) -> Decision | None:
-        """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
+    ) -> Decision:
+        """Return the next command towards a goal for an object, or the verdict; done when the goal holds.
 
         A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
         verdict and its reason.
@@ -118,7 +118,7 @@ class Transporter:
         if node is None:
             return self._find(x, stage, situation, reconciled, tools)
         if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
-            return self._press_on(node, stage, situation, tools)
+            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
         look = _look_at(node, stage, situation, tools)
         if look is not None:
             return look
@@ -137,11 +137,12 @@ class Transporter:
                 why = f"{stage} holds, but {node.name} went through a door that is forbidden to it"
                 return Decision(None, why, TaskVerdict.LIMIT)
             self._presser.begin(goal, node, land, situation)
-            return self._press_on(node, stage, situation, tools)
+            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
         advice = self._advice(node, land, situation, tools)
         if isinstance(advice, Infeasibility) and land.loose:
             if meets_any_end(land.loose, to_view_frame(node.polygon, situation)):
-                return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+                led = self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+                return led or done(f"{goal} holds")
             advice = tools.executor.advise(node, land.loose, situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
@@ -164,13 +165,10 @@ class Transporter:
         decision = self._look_for_way(advice, node, land, subgoals, stage, situation, tools)
         return self._check_proof(advice, decision, node, land, stage, situation, tools)
 
-    def conflict_verdict(self, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; None otherwise.
+    def conflict(self, stage: Stage, situation: Situation) -> Decision:
+        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
 
-        None, too, while it is not known where the goals hold.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+        Nothing, too, while it is not known where the goals hold.
 
         Parameters
         ----------
@@ -196,7 +194,7 @@ class Transporter:
                 opposite = {corner_side(one), corner_side(other)} in map(set, OPPOSITE_CORNERS)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
-        return None
+        return nothing_to_do("no two goals are known to contradict each other")
 
     def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when there is none.

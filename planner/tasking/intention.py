@@ -131,8 +131,8 @@ class Intention:
         origin: OriginFunction,
         avoid: Mapping[str, Any],
         turn: float,
-    ) -> Situation:
-        """Make the plan anew where it no longer holds; return the situation with the doors that users' rules close.
+    ) -> None:
+        """Make the plan anew where it no longer holds.
 
         There is no plan while it is open what a goal means or where it holds.
 
@@ -154,7 +154,6 @@ class Intention:
             self._kept = self._kept_still(stage, self._problem, situation)
             if self._kept is None:
                 self._kept = self._made(stage, self._problem, situation, avoid, turn)
-        return replace(situation, closed=self.rules.names_of_closed(situation))
 
     def next_errand(
         self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction

@@ -17,10 +17,10 @@ from geometry.motion.se2 import Translate
 from kb.body import Body, Command, Grasp, Move, Push, Release, Turn
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
+from planner.agenda.decider import Decider
 from planner.carrying.manipulation_oracle import ManipulationPlan
 from planner.carrying.remaining_plan import PlanOperations, safe_prefix
 from planner.cycle import Options, Robot
-from planner.deciding.decider import Decider
 from planner.deciding.pursuit import Pursuer
 from planner.decision import Decision
 from planner.navigation.loop_guard import LoopGuard
