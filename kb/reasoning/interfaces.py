@@ -75,8 +75,8 @@ def _check_step(term: Term) -> Complaint | None:
 STEP_ARGUMENT = ArgumentType("step", _check_step)
 # The activities of the agenda, with their numbers of arguments.
 ACTIVITIES: Mapping[str, int] = {
-    "release": 0, "keep": 0, "resume": 1, "agree": 0, "errand": 0, "carry": 1, "go": 0, "wish": 0, "look": 0,
-    "pull": 1, "clear": 1, "feel": 1, "bare": 1, "blame": 1, "doubt": 1,
+    "release": 0, "keep": 0, "resume": 1, "agree": 0, "errand": 0, "find": 1, "examine": 1, "carry": 1, "go": 0,
+    "wish": 0, "look": 0, "pull": 1, "clear": 1, "feel": 1, "bare": 1, "blame": 1, "doubt": 1,
 }  # fmt: skip
 
 
@@ -194,7 +194,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
     },
     "agenda": {
         ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
-        ("unfound", 1): (GOAL_ARGUMENT,),
+        ("missing", 1): (GOAL_ARGUMENT,),
+        ("unclear", 1): (GOAL_ARGUMENT,),
         ("own_goals", 0): (),
         ("regions_forbidden", 0): (),
         ("stages_attained", 0): (),

@@ -77,8 +77,10 @@ class Activities:
         for number, (name, goal) in enumerate(turn.goals.items(), 1):
             yield f"stage_goal({name},{number})"
             node = model.object(turn.situation.binding.get(str(goal.args[0]), ""))
-            if node is None or node.polygon is None:
-                yield f"unfound({name})"
+            if node is None:
+                yield f"missing({name})"
+            elif node.polygon is None:
+                yield f"unclear({name})"
         yield from (f"begun({activity})" for activity in self._clearer.begun(turn.situation))
         if not turn.stage.goals and self._doubt_of_done(turn.situation):
             yield "constraints_doubtful"
@@ -99,14 +101,16 @@ class Activities:
         """
         stage, situation, tools, clearer = turn.stage, turn.situation, self._tools, self._clearer
         ruled = self.errands.within_rules(situation)
-        goals = turn.goals_of(activity.subject)
+        goals, carried = turn.goals_of(activity.subject), (stage, ruled, turn.reconciled, tools)
         doing: Mapping[str, Callable[[], Decision]] = {
             "release": lambda: _put_down(situation),
             "keep": lambda: self.keeper.broken_at_start(situation),
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
-            "carry": lambda: self._carry(goals[0], turn, ruled),
+            "find": lambda: self._freed(goals[0], turn, self._transporter.find(goals[0], *carried)),
+            "examine": lambda: self._freed(goals[0], turn, self._transporter.examine(goals[0], stage, ruled, tools)),
+            "carry": lambda: self._freed(goals[0], turn, self._transporter.carry(goals[0], *carried)),
             "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
             "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
             "look": lambda: self._own.look(turn, self._transporter, tools),
@@ -126,11 +130,11 @@ class Activities:
         go_on = {"clear": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
         return go_on(turn.stage, turn.situation, self._tools)
 
-    def _carry(self, goal: Fact, turn: StageTurn, ruled: Situation) -> Decision:
-        """Return the next command towards a goal for an object by itself, without the task plan."""
-        decision = self._transporter.towards(goal, turn.stage, ruled, turn.reconciled, self._tools)
-        if decision.verdict == TaskVerdict.DONE:
+    def _freed(self, goal: Fact, turn: StageTurn, decision: Decision) -> Decision:
+        """Return a decision; in its place the push after which another object in hand no longer shuts the robot in."""
+        if decision.command is None and decision.verdict in (None, TaskVerdict.DONE):
             return decision
+        ruled = self.errands.within_rules(turn.situation)
         return self._transporter.free_robot(str(goal.args[0]), turn.stage, ruled, self._tools) or decision
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:

@@ -101,8 +101,7 @@ class Transporter:
     ) -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+        The object is found, looked at, and carried, one after the other.
 
         Parameters
         ----------
@@ -113,10 +112,23 @@ class Transporter:
         tools : executor, pursuer and verifier, with which the decision is worked out.
         end : the name of the one end of the goal to which the object is brought; "" for any.
         """
-        x = str(goal.args[0])
-        node = situation.model.object(situation.binding.get(x, ""))
-        if node is None:
-            return self._find(x, stage, situation, reconciled, tools)
+        if situation.model.object(situation.binding.get(str(goal.args[0]), "")) is None:
+            return self.find(goal, stage, situation, reconciled, tools)
+        examined = self.examine(goal, stage, situation, tools)
+        return self.carry(goal, stage, situation, reconciled, tools, end) if examined.result == "idle" else examined
+
+    def examine(self, goal: Fact, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next look at the object of a goal of which something is not clear; nothing when all is clear.
+
+        What was pressed against walls is not looked at: it is pressed on, or done. The verdict `limit` when the outline
+        of the object cannot be told.
+
+        Parameters
+        ----------
+        goal, stage, situation, tools : as for `towards`; what the object is, is known: else AssertionError.
+        """
+        node = situation.model.object(situation.binding.get(str(goal.args[0]), ""))
+        assert node is not None
         if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
             return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
         look = _look_at(node, stage, situation, tools)
@@ -125,6 +137,27 @@ class Transporter:
         if node.polygon is None:
             why = f"{stage} is not attempted: the outline of {node.name} is not known"
             return Decision(None, why, TaskVerdict.LIMIT)
+        return nothing_to_do(f"{node.name} is clear")
+
+    def carry(
+        self,
+        goal: Fact,
+        stage: Stage,
+        situation: Situation,
+        reconciled: Reconciliation,
+        tools: Tools,
+        end: str = "",
+    ) -> Decision:
+        """Return the next command to carry the object of a goal, or the verdict; done when the goal holds.
+
+        Parameters
+        ----------
+        goal, stage, situation, reconciled, tools, end : as for `towards`; the outline of the object is known: else
+            AssertionError.
+        """
+        x = str(goal.args[0])
+        node = situation.model.object(situation.binding.get(x, ""))
+        assert node is not None and node.polygon is not None
         land = self._place(goal, node, self.origin_of(x, node, situation), situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
@@ -218,22 +251,22 @@ class Transporter:
             None if node is None or held == situation.binding.get(x) else self._lead_out(node, stage, situation, tools)
         )
 
-    def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools) -> Decision:
-        """Return the next command to find what a parameter means, or the verdict when nothing can be that.
+    def find(
+        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools
+    ) -> Decision:
+        """Return the next command to find what the parameter of a goal means, or the verdict when nothing can be that.
 
         Before the verdict, an object that may be it if its size were known better is measured.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
-        x : the parameter of the task.
+        goal : one goal of the stage; its first argument is the parameter.
         stage : of the task: the goals that shall hold now.
         situation : what is believed (world model, rooms, doors, corners, track).
         reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
+        x = str(goal.args[0])
         immovable = dict(reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
