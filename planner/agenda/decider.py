@@ -96,9 +96,6 @@ class Decider:
 
         Stages that are attained are counted as such for good.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         model : what is believed.

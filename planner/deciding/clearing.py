@@ -166,9 +166,6 @@ class ObstacleClearer:
     ) -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         things : the objects in question.
@@ -183,9 +180,6 @@ class ObstacleClearer:
 
     def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
         """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -203,9 +197,6 @@ class ObstacleClearer:
 
 def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------

@@ -235,9 +235,6 @@ class Transporter:
         Returns None, too, when nothing is held, when the held object is the one that parameter x means, or when it does
         not shut the robot in.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         x : the parameter of the task that is pursued next.
@@ -287,9 +284,6 @@ class Transporter:
 
         In a loop the object is released instead.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         advice : the command that the executor advises, and its reason.
@@ -324,9 +318,6 @@ class Transporter:
         Where a door may be is looked at from places where the object would be in the way, and another way is looked for
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -367,9 +358,6 @@ class Transporter:
 
         In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
         object cannot come to where it must be in any case makes any verdict `impossible`.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -435,9 +423,6 @@ class Transporter:
 
         It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -455,9 +440,6 @@ class Transporter:
         self, node: Node, stage: Stage, situation: Situation, tools: Tools, shut_in: bool = False
     ) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
         node : the object, a node of the world model.
@@ -478,9 +460,6 @@ class Transporter:
         """Return the next command to measure an object that seems too large for all ends; None when it surely is.
 
         Returns the verdict `limit` when its size cannot be told.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -505,9 +484,6 @@ class Transporter:
         None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
         that.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -530,9 +506,6 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 
     What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     node : the object, a node of the world model.
@@ -552,9 +525,6 @@ def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situa
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
 
     None when there is nothing to see so, or no such push.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
 
@@ -579,9 +549,6 @@ def _take_along(
 ) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     node : the object.
@@ -602,9 +569,6 @@ def _take_along(
 
 def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the decision to push a held object in order to see something; None when that would close a loop.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------
