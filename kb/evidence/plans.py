@@ -14,6 +14,9 @@ from kb.world.stated_plan import stated_plan
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+# What is said of a step of the plan by its number: when the step before it is done, the same is said by a lower one. So
+# these facts, as they stand, are not those of the step of the run at which the plan was made.
+COUNTED_FROM_PRESENT_STEP = frozenset({"takes", "verified"})
 
 
 class PlanExplainer(Protocol):
@@ -47,7 +50,8 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     below = tuple(_below(beliefs, name, arguments, step))
     if below:
         return Reason(fact, says, ReasonKind.FACT, f"step {step}", below)
-    return Reason(fact, says, ReasonKind.MEASURED, f"step {_made_at(beliefs.record, step)}")
+    at = step if name in COUNTED_FROM_PRESENT_STEP else _made_at(beliefs.record, step)
+    return Reason(fact, says, ReasonKind.MEASURED, f"step {at}")
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
