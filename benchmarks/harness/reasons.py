@@ -176,4 +176,11 @@ def _constants(path: Path) -> str:
     return "\n".join(line for line in path.read_text().splitlines() if line.startswith("#const")) + "\n"
 
 
-NODE_CHECKS = {"fact": _fact, "measured": _measured, "cells": _cells, "touch": _touch, "command": _command, "rule": _rule}
+NODE_CHECKS = {
+    "fact": _fact,
+    "measured": _measured,
+    "cells": _cells,
+    "touch": _touch,
+    "command": _command,
+    "rule": _rule,
+}
