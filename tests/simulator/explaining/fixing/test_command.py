@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from simulator.cli.main import main
+from simulator.episode.episode import EpisodeLog, read_episode
 from simulator.episode.forms import complaints
 from simulator.episode.output_forms import NAMED_FORMS
-from simulator.episode.episode import EpisodeLog, read_episode
 from simulator.explaining.fixing.changes import Led, variant_of
 from simulator.explaining.fixing.leading import Leader, free_squares, move_towards, way_between
 from simulator.explaining.fixing.proving import Budget, VariantProver
