@@ -144,10 +144,13 @@ def _place(refuted: str) -> str:
 
 
 def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
-    """Return a step of the plan, or a refutation, in words; "" for other facts of the plan."""
-    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if name in ("plan", "refuted") else None
+    """Return a step of the plan, a refutation or the cost in words; "" for other facts of the plan."""
+    told = name in ("plan", "refuted", "price")
+    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if told else None
     if plan is None:
         return ""
+    if name == "price":
+        return plan.cost_words
     if name == "plan":
         return next((f"{one.words}; {one.certainty}" for one in plan.steps if str(one.number) == arguments[0]), "")
     return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")

@@ -127,6 +127,15 @@ class StatedPlan:
         """The names of the goals that it does not attain."""
         return tuple(goal.name for goal in self.goals if not goal.attained)
 
+    @property
+    def cost_words(self) -> str:
+        """The cost in words: how many commands, the lower bound, and how the search ended; "" where there is none."""
+        end = "the search ended with it" if self.proved else "best found, not proved"
+        if self.cost:
+            what = f"about {_commands(self.cost)} for the whole plan; lower bound by the estimates of the search"
+            return f"{what} {self.least}, gap {self.gap}; {end}"
+        return "" if self.proved or not self.found else end
+
     def lines(self) -> Iterator[str]:
         """Yield the plan as lines of text: its goals, its steps, its cost, and what was refuted."""
         for goal in self.goals:
@@ -140,14 +149,8 @@ class StatedPlan:
             )
         if not self.steps:
             yield "no step is left" if self.found else "no plan that was found attains all goals"
-        if self.cost:
-            end = "the search ended with it" if self.proved else "best found, not proved"
-            yield (
-                f"cost: about {_commands(self.cost)} for the whole plan; lower bound by the estimates of the search "
-                f"{self.least}, gap {self.gap}; {end}"
-            )
-        elif self.found and not self.proved:
-            yield "best found, not proved"
+        if self.cost_words:
+            yield f"cost: {self.cost_words}" if self.cost else self.cost_words
         yield from (f"refuted: {refutation.words}" for refutation in self.refutations)
 
     def __str__(self) -> str:

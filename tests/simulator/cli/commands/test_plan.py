@@ -149,6 +149,19 @@ def test_what_a_step_takes_is_cited_from_where_the_step_has_that_number(run: Pat
     assert len(cited) == 2
 
 
+def test_why_not_knows_what_a_plan_is(run: Path) -> None:
+    """Its facts are neither seen nor measured: the plan states them or does not."""
+    questions = questions_of_episode(read_episode(run / "ep.jsonl"))
+    for fact in ("goal(g7)", "passes(0,d9)", "refuted(arrive(here),9)"):
+        assert questions.why_not(fact, 1).because.startswith("the task plan does not state it")
+    assert questions.why_not("unmet(g1)", 1).because == "the task plan does not state it"
+    assert questions.why_not("unmet(g1)", 0).because == "there is no task plan at this step"
+    cost = questions.why("price(K, L, E)", 1).because
+    assert cost.startswith("about 10 commands for the whole plan; lower bound by the estimates of the search ")
+    assert cost.endswith("; the search ended with it")
+    assert questions.why_not("held(o1)", 3).because == "the robot did not grasp it; this is in hand instead"
+
+
 def test_another_first_step_is_said_to_cost_more(run: Path) -> None:
     questions = questions_of_episode(read_episode(run / "ep.jsonl"))
     reason = questions.why_not("plan(0,arrive(g2_r1))", 1)
