@@ -65,7 +65,7 @@ class ReasonTree:
 
     @property
     def _note(self) -> str:
-        """What it lacks, and how that is mended; "" for nothing."""
+        """The line about what is lacking, and how that is mended; "" for nothing."""
         return f"note: {self.lacking}; give rules with Episode.read(path, rules=[...])" if self.lacking else ""
 
 

@@ -128,7 +128,7 @@ class AnyOf:
 
 
 @dataclass(frozen=True)
-class Tree:
+class NestedKeys:
     """An object that may hold others like itself.
 
     Attributes
@@ -169,7 +169,7 @@ Form = (
     | ByKind
     | IfKey
     | AnyOf
-    | Tree
+    | NestedKeys
     | Anything
     | Noted
 )
@@ -277,7 +277,7 @@ def _any_of(form: AnyOf, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         yield at, f"{form.name} is wanted"
 
 
-def _tree(form: Tree, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+def _tree(form: NestedKeys, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
     yield from complaints(form.node, value, at)
     yield from complaints(Keys({form.below: ListOf(form)}, frozenset({form.below})), value, at)
 
@@ -304,7 +304,7 @@ _CHECKERS: Mapping[type, Callable[[Any, Any, KeyPath], Iterator[LineComplaint]]]
     ByKind: _by_kind,
     IfKey: _if_key,
     AnyOf: _any_of,
-    Tree: _tree,
+    NestedKeys: _tree,
     Anything: _anything,
     Noted: _noted,
 }

@@ -15,12 +15,12 @@ from simulator.episode.forms import (
     Keys,
     ListOf,
     NamesTo,
+    NestedKeys,
     Noted,
     Numeric,
     OneOf,
     OrNull,
     Row,
-    Tree,
     Whole,
 )
 
@@ -125,7 +125,7 @@ def _if_key(form: IfKey) -> Schema:
     }
 
 
-def _tree(form: Tree) -> Schema:
+def _tree(form: NestedKeys) -> Schema:
     found = _keys(form.node)
     found["properties"][form.below] = {"type": "array", "items": {"$ref": f"#/$defs/{form.name}"}}
     return found
@@ -145,7 +145,7 @@ _WRITERS: Mapping[type, Callable[[Any], Schema]] = {
     ByKind: _by_kind,
     IfKey: _if_key,
     AnyOf: lambda form: {"anyOf": [schema_of(one) for one in form.forms]},
-    Tree: _tree,
+    NestedKeys: _tree,
     Anything: lambda form: {},
     Noted: lambda form: {"description": form.note, **schema_of(form.inner)},
 }

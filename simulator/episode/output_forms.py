@@ -9,11 +9,11 @@ from simulator.episode.forms import (
     Keys,
     ListOf,
     NamesTo,
+    NestedKeys,
     Noted,
     Numeric,
     OneOf,
     OrNull,
-    Tree,
     Whole,
 )
 from simulator.episode.wellformed import (
@@ -143,7 +143,7 @@ TEST_OUTPUT = Keys(
     }
 )
 # `utak explain --json`.
-EXPLAIN_OUTPUT = Tree(
+EXPLAIN_OUTPUT = NestedKeys(
     "explain",
     Keys(
         {

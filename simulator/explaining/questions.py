@@ -80,7 +80,7 @@ class Questions:
 
     @property
     def lacking(self) -> str:
-        """What answers lack, in a line: rules of the run that are not given; "" for nothing.
+        """Rules of the run that are not given, so that answers lack them, in a line; "" for none.
 
         Raises CannotOpenError when a file of rules cannot be read.
         """

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -122,9 +121,10 @@ def _numbers(stride: float) -> ActionForm:
     ]
 
     def command(action: Any) -> Command:
-        if not isinstance(action, Real | np.ndarray) or np.size(action) != 1 or not 0 <= action < len(known):
+        number = np.asarray(action)
+        if number.size != 1 or not np.issubdtype(number.dtype, np.number) or not 0 <= number.item() < len(known):
             raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action!r:.200}")
-        return known[int(action)]
+        return known[int(number.item())]
 
     return ActionForm(spaces.Discrete(len(known)), command, lambda actions: [command(action) for action in actions])
 
