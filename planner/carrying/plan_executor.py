@@ -552,7 +552,8 @@ class PlanExecutor:
             self._plan = replace(begun, grasped=True, place=begun.legs[0].place)
             return self._next_step(self._plan, ends, situation)
         if model.held is not None:
-            return Act(Release(), f"{model.held} is released, to be grasped from elsewhere")
+            next_ = "to be grasped from elsewhere" if model.held == plan.name else f"because {plan.name} is moved next"
+            return Act(Release(), f"{model.held} is released, {next_}")
         if not there:
             return Go(square_index(leg.place, model), leg.place, f"{plan.name} can be grasped from there")
         if begun is None:
