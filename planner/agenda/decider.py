@@ -142,7 +142,8 @@ class Decider:
 
     def _done_in_words(self) -> str:
         """Return that all stages hold, and which wishes do, in words."""
-        why = " and ".join(map(str, self.stages)) + " holds"
+        goals = [str(goal) for stage in self.stages for goal in stage.goals]
+        why = f"{' and '.join(goals) or 'all that the task asks for'} {'hold' if len(goals) > 1 else 'holds'}"
         wished = [str(wish) for wish, _ in self.stages[-1].wishes] if self.stages else []
         hold = self._activities.errands.wishes_that_hold
         return why + "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
