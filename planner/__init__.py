@@ -9,7 +9,8 @@ situation     what a decision depends on: beliefs, cost maps, rooms, what parame
 journal       what a step adds to the record of decisions and places
 advice        what the plan executor advises
 subgoal_kind  the kinds of subgoals
-deciding      which goal is pursued next, and how (a room)
+agenda        which activity comes next for a stage, and with which verdict the robot gives up (a room)
+deciding      how each activity is done (a room)
 tasking       the task plan: what is brought where, in which order (a room)
 oracles       questions to geometry about states that plans lead to (a room)
 carrying      manipulation plans and their execution (a room)

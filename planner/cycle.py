@@ -15,7 +15,7 @@ from kb.localisation.field_account import Accommodation
 from kb.task.task import Task
 from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.facts import Places, belief
-from planner.deciding.decider import Decider
+from planner.agenda.decider import Decider
 from planner.decision import Decision, TaskVerdict
 from planner.journal import Journal
 

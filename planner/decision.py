@@ -25,13 +25,13 @@ class TaskVerdict(StrEnum):
 
 @dataclass(frozen=True)
 class Decision:
-    """The next command and its reason; or no command, and the verdict.
+    """The next command and its reason; or no command, and the verdict; or neither, when nothing is to be done.
 
     Attributes
     ----------
-    command : what the body does next, in the robot's own frame; None when the task has ended.
-    why : the reason of the command or of the verdict, in words.
-    verdict : how the task ended; None while it goes on.
+    command : what the body does next, in the robot's own frame; None for none.
+    why : the reason in words.
+    verdict : how the task ended, or how it ends as far as one part of it is concerned; None while it goes on.
     unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
         none.
     near : the place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x =
@@ -43,3 +43,29 @@ class Decision:
     verdict: TaskVerdict | None = None
     unless: str | None = ""
     near: tuple[float, float] | None = None
+
+    @property
+    def result(self) -> str:
+        """Return the result in the words of planner/asp/agenda.lp: command, idle, settled, or the verdict."""
+        if self.command is not None:
+            return "command"
+        if self.verdict is None:
+            return "idle"
+        settled = self.verdict == TaskVerdict.IMPOSSIBLE and self.unless is None
+        return "settled" if settled else str(self.verdict)
+
+
+def nothing_to_do(why: str) -> Decision:
+    """Return the decision that nothing is to be done.
+
+    why : the reason in words.
+    """
+    return Decision(None, why)
+
+
+def done(why: str) -> Decision:
+    """Return the decision that what was asked for holds.
+
+    why : the reason in words.
+    """
+    return Decision(None, why, TaskVerdict.DONE)

@@ -67,7 +67,9 @@ class Answer:
             return escape(self.kind)
         shown = table(self.variables, self.rows[:MAX_ROWS_SHOWN])
         hidden = len(self.rows) - MAX_ROWS_SHOWN
-        return shown + (f"<p>and {hidden} more rows</p>" if hidden > 0 else "")
+        others = [f"and {hidden} more row{'s' * (hidden != 1)}"] if hidden > 0 else []
+        others += ["and others that were not looked for"] if self.more else []
+        return shown + (f"<p>{', '.join(others)}</p>" if others else "")
 
 
 @dataclass(frozen=True, repr=False)

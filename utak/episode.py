@@ -96,7 +96,8 @@ class Step:
         BadInputError
             The episode does not record what is needed.
         """
-        return ReasonTree(questions(self._record, self._rules).why_step(self.number))
+        asked = questions(self._record, self._rules)
+        return ReasonTree(asked.why_step(self.number), asked.lacking)
 
     def __repr__(self) -> str:
         """Return the number, the command and its reason."""
@@ -250,7 +251,7 @@ class Episode(Sequence[Step]):
         BadInputError
             The text is no fact, the fact is not believed then, or the episode does not record what is needed.
         """
-        return ReasonTree(self._questions.why(fact, self[step].number))
+        return ReasonTree(self._questions.why(fact, self[step].number), self._questions.lacking)
 
     def why_cell(self, cell: int, step: int = -1) -> ReasonTree:
         """Return what a cell of the impression of a step is laid to.
@@ -272,7 +273,7 @@ class Episode(Sequence[Step]):
         BadInputError
             There is no such cell, or the episode does not record what is needed.
         """
-        return ReasonTree(self._questions.why_cell(cell, self[step].number))
+        return ReasonTree(self._questions.why_cell(cell, self[step].number), self._questions.lacking)
 
     @cached_property
     def _questions(self) -> Questions:

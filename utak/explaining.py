@@ -20,9 +20,12 @@ class ReasonTree:
     ----------
     reason : kb.evidence.reason.Reason
         The root of the tree: `claim`, `because`, `kind`, `source`, `rests_on` and `data`.
+    lacking : str
+        What the explanation lacks, in a line: rules of the run that are not given; "" for nothing.
     """
 
     reason: Reason
+    lacking: str = ""
 
     @property
     def claim(self) -> str:
@@ -49,16 +52,21 @@ class ReasonTree:
         return self.reason.as_dict()
 
     def __str__(self) -> str:
-        """Return three levels of the tree as text."""
-        return self.text()
+        """Return three levels of the tree as text, and what it lacks below."""
+        return "\n".join(filter(None, (self.text(), self._note)))
 
     def __repr__(self) -> str:
-        """Return three levels of the tree as text, so that it can be read at a prompt."""
-        return self.text()
+        """Return what `print` shows, so that it can be read at a prompt."""
+        return str(self)
 
     def _repr_html_(self) -> str:
-        """Return the whole tree for notebooks, to be unfolded."""
-        return _unfolding(self.reason, OPEN_LEVELS)
+        """Return the whole tree for notebooks, to be unfolded, and what it lacks below."""
+        return _unfolding(self.reason, OPEN_LEVELS) + (f"<p>{escape(self._note)}</p>" if self.lacking else "")
+
+    @property
+    def _note(self) -> str:
+        """The line about what is lacking, and how that is mended; "" for nothing."""
+        return f"note: {self.lacking}; give rules with Episode.read(path, rules=[...])" if self.lacking else ""
 
 
 def questions(record: EpisodeRecord, rules: tuple[str, ...]) -> Questions:

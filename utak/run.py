@@ -325,7 +325,7 @@ class Run:
     def _repr_html_(self) -> str:
         """Return the last step and what is planned for notebooks."""
         last = self.episode[-1]
-        plan = f"<br/>next: {escape(str(self.plan))}" if not self.finished else f"<br/>{escape(repr(self)[1:-1])}"
+        plan = f"<br/>{escape(repr(self)[1:-1])}" if self.finished else self.plan._repr_html_()
         caption = f"<b>{last.number}: {escape(last.action)}</b> {escape(last.why)}{plan}"
         return framed(caption, self._repr_svg_())
 

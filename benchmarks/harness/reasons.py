@@ -17,6 +17,7 @@ PROJECT = Path(__file__).resolve().parent.parent.parent
 StepLine = Mapping[str, Any]
 Tree = Mapping[str, Any]
 TOUCH_DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
+PLAN_MEASURES = ("takes(", "verified(", "refuted(", "given(")  # what geometry said of steps of the task plan
 ENDS = {"measured", "cells", "touch", "command", "task", "convention", "negation", "computed", "rejected"}
 
 
@@ -45,6 +46,12 @@ def _fact(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
     step = int(re.fullmatch(r"step (\d+)", node["source"])[1])  # type: ignore[index]
     if f"{node['claim']}." not in lines[step]["belief"]["facts"]:
         yield f"{node['claim']} is not believed at step {step}"
+
+
+def _measured(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
+    """Yield a complaint about a fact of the task plan that the step which is named as its source does not state."""
+    if node["claim"].startswith(PLAN_MEASURES):
+        yield from _fact(lines, node)
 
 
 def _cells(lines: Sequence[StepLine], node: Tree) -> Iterator[str]:
@@ -169,4 +176,11 @@ def _constants(path: Path) -> str:
     return "\n".join(line for line in path.read_text().splitlines() if line.startswith("#const")) + "\n"
 
 
-NODE_CHECKS = {"fact": _fact, "cells": _cells, "touch": _touch, "command": _command, "rule": _rule}
+NODE_CHECKS = {
+    "fact": _fact,
+    "measured": _measured,
+    "cells": _cells,
+    "touch": _touch,
+    "command": _command,
+    "rule": _rule,
+}

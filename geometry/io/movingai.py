@@ -9,6 +9,7 @@ have row 0 in the south, so rows are reversed.
 """
 
 import re
+from codecs import BOM_UTF8
 from pathlib import Path
 from typing import NamedTuple
 
@@ -86,7 +87,7 @@ def parse_map(raw: bytes) -> Bools:
     Parameters
     ----------
     raw : the content of a file in the format of the Moving AI benchmarks (lines `type`, `height N`, `width N`, then
-        `map` and the rows of text).
+        `map` and the rows of text). A byte order mark of UTF-8 before it counts for nothing.
 
     Raises
     ------
@@ -97,7 +98,8 @@ def parse_map(raw: bytes) -> Bools:
     >>> parse_map(b"type octile\nheight 2\nwidth 3\nmap\n..@\n.@.\n").tolist()
     [[True, False, True], [True, True, False]]
     """
-    lines = [line.removesuffix("\r").rstrip(" \t") for line in raw.decode("latin-1").split("\n")]
+    text = raw.removeprefix(BOM_UTF8).decode("latin-1")
+    lines = [line.removesuffix("\r").rstrip(" \t") for line in text.split("\n")]
     first, height, width = _header(lines)
     rows = lines[first : first + height]
     while rows and not rows[-1]:

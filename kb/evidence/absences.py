@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from kb.evidence.beliefs import FactExplainer, plain_fact
 from kb.evidence.inputs import Given, input_reason
-from kb.evidence.plans import planned_choice
+from kb.evidence.plans import TASK_PLAN_NAMES, planned_choice
 from kb.evidence.proving import call_deriving, query_predicates, unknown_predicate
 from kb.evidence.reason import Reason, ReasonKind
 from kb.explanation.query_absence import explain_query_absence
@@ -157,10 +157,20 @@ class AbsenceExplainer:
         return Reason(f"not {fact}", found.sentence, ReasonKind.NEGATION, f"step {step}", below, data)
 
     def _instead(self, fact: str, step: int) -> Reason:
-        """Return why a fact that no encoding derives is not believed: it is measured, and something else was."""
+        """Return why a fact is not believed that no encoding derives: it is measured, and something else was.
+
+        Facts of the task plan are stated with the plan, and what is in hand was grasped.
+        """
         instead = tuple(self._alternatives(fact, step))
-        thing = (atom_parts(fact)[1] or ("",))[0]
-        if instead:
+        name, arguments = atom_parts(fact)
+        thing = (arguments or ("",))[0]
+        if name in TASK_PLAN_NAMES:
+            planned = any(atom_parts(one)[0] in TASK_PLAN_NAMES for one in self._facts.record.steps[step].facts)
+            because = "the task plan does not state it" if planned else "there is no task plan at this step"
+            because += "; it states this" if instead else ""
+        elif name == "held" and instead:
+            because = "the robot did not grasp it; this is in hand instead"
+        elif instead:
             because = "it would have to be measured so; this is believed instead"
         elif f"node({thing})" in self._facts.record.steps[step].fact_set:
             because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"

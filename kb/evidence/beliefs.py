@@ -75,7 +75,7 @@ class FactExplainer:
         if name in TASK_PLAN_NAMES:
             return plan_fact_reason(self, fact, step)
         below = self._below(fact, name, arguments, step)
-        return Reason(fact, words_of("belief", fact), ReasonKind.FACT, f"step {step}", tuple(below))
+        return Reason(fact, _in_words(fact, name, arguments), ReasonKind.FACT, f"step {step}", tuple(below))
 
     def decision(self, encoding: str, atom: str, step: int, oldest: int = 0) -> Reason | None:
         """Return the reason of an atom of an encoding's newest answer between two steps; None when none holds it.
@@ -274,6 +274,14 @@ class FactExplainer:
         hint = near or "whynot tells what is missing"
         span = SourceSpan(1, 1, max(1, len(fact)))
         return BadInputError([Problem("why", span, f"this is not believed at step {step}", fact, hint)])
+
+
+def _in_words(fact: str, name: str, arguments: tuple[str, ...]) -> str:
+    """Return a believed fact in words. The floor counts from where the robot woke, and lies relative to the robot."""
+    if name == "offset" and arguments[0] == FLOOR_NODE:
+        east, north = (int(value) / FACT_UNITS_PER_SQUARE for value in arguments[1:])
+        return f"where the robot woke lies {east:g} squares east and {north:g} north of where it is"
+    return words_of("belief", fact)
 
 
 def plain_fact(fact: str) -> str:

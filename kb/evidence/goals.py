@@ -14,7 +14,9 @@ from kb.task.task import WRAPPING_GOALS
 from kb.tracing.decisions import SolverCall
 from kb.world.model import ROOT_NODE
 
+AGENDA = "agenda"  # the encoding that chooses activities and verdicts
 CHOICES = {  # encoding of the planner -> the predicate of its choice, and what it chose, in words
+    AGENDA: ("do", "this activity was chosen"),
     "aims": ("choose", "this subgoal was chosen"),
     "routes": ("choose", "this route was chosen"),
     "transport": ("try", "geometry was asked for this way of carrying"),
@@ -77,15 +79,16 @@ def explain_command(beliefs: FactExplainer, task: RecordedTask, step: int) -> Re
 
 
 def explain_verdict(beliefs: FactExplainer, task: RecordedTask) -> Reason | None:
-    """Return the reason of the verdict: what was planned, the goals with the facts they are about, the last choices.
+    """Return the reason of the verdict: the rules of the agenda, what was planned, the goals, and the last choices.
 
     None while the run goes on.
     """
     if task.result is None:
         return None
     last = len(beliefs.record.steps) - 1
-    below = (*plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
     claim = f"verdict({task.result['verdict']})"
+    ruled = _ruled_verdicts(beliefs, claim, last)
+    below = (*ruled, *plan_step_reasons(beliefs, last), *_goal_reasons(beliefs, task, last), *_choices(beliefs, last))
     return Reason(claim, str(task.result["reason"]), ReasonKind.RULE, f"step {last}", below)
 
 
@@ -136,6 +139,16 @@ def _node(beliefs: FactExplainer, argument: str, step: int) -> str:
     if name == "corner" and parts:
         return parts[0]
     return beliefs.record.steps[step].bound.get(argument, "")
+
+
+def _ruled_verdicts(beliefs: FactExplainer, claim: str, step: int) -> Iterator[Reason]:
+    """Yield the reason that the agenda has for a verdict at a step: what each activity came to; nothing without it."""
+    asked = [call for call in beliefs.record.decisions(step) if call.encoding == AGENDA]
+    if asked and claim in (asked[-1].answer or ()):
+        found = beliefs.prove(asked[-1], claim, step)
+        yield Reason(
+            found.claim, "the agenda ends with this verdict", found.kind, found.source, found.rests_on, found.data
+        )
 
 
 def _choices(beliefs: FactExplainer, step: int) -> Iterator[Reason]:

@@ -17,6 +17,7 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
     "candidate": "kind({0},object,{1})",
     "fixed": "movable({0},0)",
 }
+AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
 PARAMETER_INPUTS = frozenset(
     {"bound_before", "planned", "given_up"}
 )  # of a parameter and a node, from earlier decisions
@@ -49,6 +50,9 @@ def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int],
     """
     name, arguments = atom_parts(given.atom)
     says = words_of(given.call.encoding, given.atom)
+    if name in AGENDA_INPUTS:
+        why = next((about for about in given.call.about if _names(about, arguments)), "")
+        says = f"{says}: {why.partition(': ')[2]}" if why else says
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]

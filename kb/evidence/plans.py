@@ -14,6 +14,9 @@ from kb.world.stated_plan import stated_plan
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
 TASK_PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+# What is said of a step of the plan by its number: when the step before it is done, the same is said by a lower one. So
+# these facts, as they stand, are not those of the step of the run at which the plan was made.
+COUNTED_FROM_PRESENT_STEP = frozenset({"takes", "verified"})
 
 
 class PlanExplainer(Protocol):
@@ -47,7 +50,8 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     below = tuple(_below(beliefs, name, arguments, step))
     if below:
         return Reason(fact, says, ReasonKind.FACT, f"step {step}", below)
-    return Reason(fact, says, ReasonKind.MEASURED, f"step {_made_at(beliefs.record, step)}")
+    at = step if name in COUNTED_FROM_PRESENT_STEP else _made_at(beliefs.record, step)
+    return Reason(fact, says, ReasonKind.MEASURED, f"step {at}")
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
@@ -140,10 +144,13 @@ def _place(refuted: str) -> str:
 
 
 def _in_words(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: int) -> str:
-    """Return a step of the plan, or a refutation, in words; "" for other facts of the plan."""
-    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if name in ("plan", "refuted") else None
+    """Return a step of the plan, a refutation or the cost in words; "" for other facts of the plan."""
+    told = name in ("plan", "refuted", "price")
+    plan = stated_plan(beliefs.record.steps[step].facts, f"step {step}") if told else None
     if plan is None:
         return ""
+    if name == "price":
+        return plan.cost_words
     if name == "plan":
         return next((f"{one.words}; {one.certainty}" for one in plan.steps if str(one.number) == arguments[0]), "")
     return next((one.words for one in plan.refutations if str(one.number) == arguments[1]), "")

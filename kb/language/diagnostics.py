@@ -1,10 +1,12 @@
 """Problems in files that the user wrote: the place, the message and a hint."""
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
 MAX_PROBLEMS_SHOWN = 20  # problems printed at once (docs/files.md)
 MAX_PROBLEMS_PER_FILE = 100  # the search for more problems in a file ends here; a convention
+LINE_END = re.compile(r"[\n\r\x0b\x0c\x85\u2028\u2029]")  # what ends a line of text
 MAX_SOURCE_LINE_WIDTH = 120  # characters of a source line that a message shows; a convention
 
 
@@ -48,7 +50,7 @@ class Problem(NamedTuple):
         ''.
         """
         line, start, end = self.span
-        text = [f"{self.file}:{line}:{start}-{end}: error: {self.what}"]
+        text = [f"{_on_one_line(self.file)}:{line}:{start}-{end}: error: {self.what}"]
         if self.source:
             shown, left = _window(self.source, start)
             carets = max(1, min(end, left + len(shown)) - start + 1)
@@ -82,7 +84,7 @@ class CannotOpenError(Exception):
 
     def __init__(self, path: str, why: str) -> None:
         self.path, self.why = path, why
-        super().__init__(f"{path}: cannot open: {why}")
+        super().__init__(f"{_on_one_line(path)}: cannot open: {why}")
 
 
 def format_problems(problems: Iterable[Problem]) -> str:
@@ -113,6 +115,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
     near = difflib.get_close_matches(word[:80], sorted(known), n=1, cutoff=0.6)
     return f"did you mean {near[0]}?" if near else ""
+
+
+def _on_one_line(name: str) -> str:
+    """Return the name of a file with the ends of lines in it written out, so that no name begins a line of its own."""
+    return LINE_END.sub(lambda match: f"\\u{ord(match[0]):04x}", name)
 
 
 def _window(source: str, start: int) -> tuple[str, int]:

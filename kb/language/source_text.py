@@ -14,7 +14,7 @@ MAX_FILE_BYTES = 4_000_000  # bytes of a user's file (docs/files.md)
 UNSUPPORTED_ENCODINGS = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
 TYPOGRAPHIC_QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"  # quotes that word processors write
 # The message in the place of every other one about a hidden text.
-HIDDEN_TEXT_MESSAGE = "not as it must be; it is a link out of its folder, so nothing of its text is shown"
+HIDDEN_TEXT_MESSAGE = "not as it must be; it leads out of its folder, so nothing of its text is shown"
 UNUSUAL_SPACES = "\u00a0\u2002\u2003\u2009\u200b\u202f\u3000"  # blanks that look like a space and are none
 
 

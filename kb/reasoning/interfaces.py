@@ -73,6 +73,26 @@ def _check_step(term: Term) -> Complaint | None:
 
 
 STEP_ARGUMENT = ArgumentType("step", _check_step)
+# The activities of the agenda, with their numbers of arguments.
+ACTIVITIES: Mapping[str, int] = {
+    "release": 0, "keep": 0, "resume": 1, "agree": 0, "errand": 0, "find": 1, "examine": 1, "carry": 1, "go": 0,
+    "wish": 0, "look": 0, "pull": 1, "clear": 1, "feel": 1, "bare": 1, "blame": 1, "doubt": 1,
+}  # fmt: skip
+
+
+def _check_activity(term: Term) -> Complaint | None:
+    """Return the complaint about a term, or None when it is an activity of the agenda."""
+    if isinstance(term, Symbol) and ACTIVITIES.get(term.name) == len(term.args):
+        return None
+    known = ", ".join(f"{name}/{count}" for name, count in ACTIVITIES.items())
+    return Complaint(term.span, f"unknown activity {abbreviated(term)}", f"activities are {known}")
+
+
+ACTIVITY_ARGUMENT = ArgumentType("activity", _check_activity)
+SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
+RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
+BEGUN_ARGUMENT = word_argument("begun activity", ("clear", "feel"))
+VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
     "region": ((("region", 3), 0),),
@@ -183,6 +203,24 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("asked", 1): (PLAN_DOOR_ARGUMENT,),
         ("closed", 1): (PLAN_DOOR_ARGUMENT,),
     },
+    "agenda": {
+        ("stage_goal", 2): (GOAL_ARGUMENT, AMOUNT_ARGUMENT),
+        ("missing", 1): (GOAL_ARGUMENT,),
+        ("unclear", 1): (GOAL_ARGUMENT,),
+        ("own_goals", 0): (),
+        ("regions_forbidden", 0): (),
+        ("stages_attained", 0): (),
+        ("constraints_doubtful", 0): (),
+        ("hand_full", 0): (),
+        ("robot_lost", 0): (),
+        ("map_contradicted", 0): (),
+        ("begun", 1): (BEGUN_ARGUMENT,),
+        ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
+        ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
+        ("do", 1): (ACTIVITY_ARGUMENT,),
+        ("stage_attained", 0): (),
+        ("verdict", 1): (VERDICT_ARGUMENT,),
+    },
 }
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
@@ -202,4 +240,5 @@ READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
     {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
+    | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
 )

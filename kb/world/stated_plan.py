@@ -99,7 +99,8 @@ class StatedPlan:
     goals : the goals for which it was made, in the order of the task.
     steps : the steps that are left, in order.
     refutations : the steps that geometry refuted when it was made.
-    cost : about how many commands the whole plan takes, with the steps that are done; None where it is not stated.
+    cost : about how many commands the whole plan takes, with the steps that are done; None where it is not stated, or
+        geometry was not asked, because there is one way to plan it.
     least : a number of commands that no plan stays below, by the estimates of the search; None likewise.
     proved : whether the search ended with it; else it is the best one that was found up to the bound on rounds.
     """
@@ -126,6 +127,15 @@ class StatedPlan:
         """The names of the goals that it does not attain."""
         return tuple(goal.name for goal in self.goals if not goal.attained)
 
+    @property
+    def cost_words(self) -> str:
+        """The cost in words: how many commands, the lower bound, and how the search ended; "" where there is none."""
+        end = "the search ended with it" if self.proved else "best found, not proved"
+        if self.cost:
+            what = f"about {_commands(self.cost)} for the whole plan; lower bound by the estimates of the search"
+            return f"{what} {self.least}, gap {self.gap}; {end}"
+        return "" if self.proved or not self.found else end
+
     def lines(self) -> Iterator[str]:
         """Yield the plan as lines of text: its goals, its steps, its cost, and what was refuted."""
         for goal in self.goals:
@@ -139,12 +149,8 @@ class StatedPlan:
             )
         if not self.steps:
             yield "no step is left" if self.found else "no plan that was found attains all goals"
-        if self.cost is not None:
-            end = "the search ended with it" if self.proved else "best found, not proved"
-            yield (
-                f"cost: about {_commands(self.cost)} for the whole plan; lower bound by the estimates of the search "
-                f"{self.least}, gap {self.gap}; {end}"
-            )
+        if self.cost_words:
+            yield f"cost: {self.cost_words}" if self.cost else self.cost_words
         yield from (f"refuted: {refutation.words}" for refutation in self.refutations)
 
     def __str__(self) -> str:
@@ -234,6 +240,8 @@ def _plan(said: Mapping[str, list[tuple[str, ...]]]) -> StatedPlan:
         for step, number in sorted(said.get("refuted", ()), key=lambda row: int(row[1]))
     ]
     cost, least, end = next(iter(said.get("price", ())), (None, None, "found"))
+    if steps and cost == "0":  # no step takes nothing: geometry was not asked
+        cost, least = None, None
     return StatedPlan(
         tuple(goals),
         tuple(steps),

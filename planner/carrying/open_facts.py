@@ -13,7 +13,7 @@ import numpy as np
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import with_edge_neighbours
 from kb.world.model import WorldModel
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.placement import POSSIBLE_OBJECT
 from planner.screen.moves import orientation_is_settled
 from planner.screen.projection import dilate
@@ -21,34 +21,22 @@ from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
 from planner.situation import Situation
 
 
-def qualify(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
-    """Return a decision with `possible_if` in place of `impossible` where an open fact would overturn that.
+def open_fact_against(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
+    """Return the verdict `possible_if` with an open fact that would overturn a verdict; nothing when none is open.
 
     The fact is added to the reason.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
-    decision : what was decided; its `unless` may name the open fact already, "" asks for the nearest one here, and None
-        says that there can be none.
+    decision : the verdict `impossible`; its `unless` may name the open fact already, "" asks for the nearest one here.
     situation : what is believed (world model, rooms, doors, corners, track).
     scope : which walls matter for the task.
-
-    Returns
-    -------
-    Decision
-        The same decision when its verdict is another one, or when no fact is open.
     """
-    if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
-        return decision
     near = decision.near or situation.model.place_on_view
     fact = decision.unless or nearest_open_fact(situation, near, scope)
     if not fact:
-        return decision
-    why = f"{decision.why}; it may be possible if {fact}"
-    return replace(decision, why=why, verdict=TaskVerdict.POSSIBLE_IF)
+        return nothing_to_do("no fact is open that would overturn that")
+    return replace(decision, why=f"{decision.why}; it may be possible if {fact}", verdict=TaskVerdict.POSSIBLE_IF)
 
 
 def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerdict:

@@ -408,7 +408,7 @@ class PlanExecutor:
     def _clear_way(
         self, found: ManipulationPlan, node: Node, situation: Situation
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
-        """Return the first object that a plan needs moved aside, with a plan for that; or a look at it, or why not.
+        """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not.
 
         First of all it is felt whether the obstacle is an object, where that is not certain.
 
@@ -422,7 +422,8 @@ class PlanExecutor:
 
         A Node is an object of the world model, with name, patch of squares (map frame) and outline.
 
-        Obstacles are tried in the order of the model's objects; only a plan that needs nothing else moved counts.
+        Of several obstacles that one is moved which takes fewest commands, of equal ones the first of the model's
+        objects; only a plan that needs nothing else moved counts.
 
         Parameters
         ----------
@@ -433,10 +434,10 @@ class PlanExecutor:
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
             return touch
-        cleared = (self._plan_aside(other, found, situation) for other in situation.model.objects)
-        first = next((plan for plan in cleared if plan is not None), None)
-        if first is not None:
-            return first
+        asked = (self._plan_aside(other, found, situation) for other in situation.model.objects)
+        cleared = [one for one in asked if one is not None]
+        if cleared:
+            return min(cleared, key=lambda one: one[1].plan.commands)
         look = look_at_obstacle(found, situation)
         if look is not None:
             return look
@@ -552,7 +553,8 @@ class PlanExecutor:
             self._plan = replace(begun, grasped=True, place=begun.legs[0].place)
             return self._next_step(self._plan, ends, situation)
         if model.held is not None:
-            return Act(Release(), f"{model.held} is released, to be grasped from elsewhere")
+            next_ = "to be grasped from elsewhere" if model.held == plan.name else f"because {plan.name} is moved next"
+            return Act(Release(), f"{model.held} is released, {next_}")
         if not there:
             return Go(square_index(leg.place, model), leg.place, f"{plan.name} can be grasped from there")
         if begun is None:

@@ -1,6 +1,5 @@
-"""Deciding: from what is believed to the next command or the verdict.
+"""Deciding: how activities are done, each from what is believed to the next command or a verdict.
 
-decider       stages of the task, one after the other
 transport     a goal for an object: find it, look at it, carry it, or give up
 errands       the next step of the task plan, carried out
 bringing      an object is brought to an end that no goal of its own asks for
@@ -13,5 +12,5 @@ search        subgoals while something is missing
 verification  goal verification and active perception: looks that make sure
 tools         the stateful parts that one decision uses
 
-Public names: Decider, Transporter, ErrandRunner, ObstacleClearer, Pursuer, Verifier, Tools, subgoals_towards.
+Public names: Transporter, ErrandRunner, ObstacleClearer, Pursuer, Verifier, Tools, subgoals_towards.
 """

@@ -18,9 +18,6 @@ def bring_to_end(
 ) -> Decision | None:
     """Return the next command to bring an object to an end, or to find out what it is; None when there is none.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     node : the object.

@@ -12,7 +12,7 @@ from planner.deciding.bringing import bring_to_end
 from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.tools import Tools
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.embedded import Supposition, suppose
 from planner.goals.placement import POSSIBLE_OBJECT
 from planner.situation import Situation
@@ -24,7 +24,8 @@ ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the ro
 class ObstacleClearer:
     """Moves obstacles out of the robot's way, and remembers which one it is moving and what must stay meanwhile.
 
-    An obstacle is an object that blocks the robot's way to some part of the floor.
+    An obstacle is an object that blocks the robot's way to some part of the floor. What goals speak of stays where it
+    is.
     """
 
     def __init__(self) -> None:
@@ -34,14 +35,18 @@ class ObstacleClearer:
         self._stays: frozenset[str] = frozenset()
         self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
-    def continue_clearing(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the next command for the obstacle that is being moved; None when there is none that blocks still.
+    def begun(self, situation: Situation) -> tuple[str, ...]:
+        """Return what was begun in an earlier decision and is gone on with: feel, clear, both, or nothing.
 
-        Also None when its command would close a loop: then it is no longer being moved. Feeling that was begun is gone
-        on with first, until something is found or nothing is left to feel.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        feeling = ("feel",) if self._feeling and situation.model.held is None else ()
+        return (*feeling, "clear") if self._moving else feeling
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+    def clear_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command for the obstacle that is being moved; nothing when it blocks no longer.
+
+        Nothing, too, when its command would close a loop: then it is no longer being moved.
 
         Parameters
         ----------
@@ -50,12 +55,8 @@ class ObstacleClearer:
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
         node, held = situation.model.object(self._moving), situation.model.held
-        if self._feeling and held is None:
-            instead = self._feel_on(stage, situation, tools)
-            if instead is not None:
-                return instead
         if node is not None and held is None:
-            instead = self._move_first(self._movable(self._stays, situation), stage, situation, tools, node.name)
+            instead = self._move_first(self._movable(situation), stage, situation, tools, node.name)
             if instead is not None:
                 return instead
         act = None
@@ -64,101 +65,12 @@ class ObstacleClearer:
             again = None if last is None else suppose(node, last.side, last.depth, situation)
             act = tools.executor.continue_plan(node, situation if again is None else again.situation)
         if act is None or tools.pursuer.closes_loop(situation.model, act.command):
-            self._moving = ""
-            return None
+            gone, self._moving = self._moving, ""
+            return nothing_to_do(f"{gone} is no longer moved aside")
         return Decision(act.command, f"{act.why}; {stage}")
 
-    def clear_before_verdict(
-        self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools
-    ) -> Decision:
-        """Return a decision; in place of a verdict, the next command to move aside what blocks the robot.
-
-        What the goals speak of stays where it is. While an obstacle is left, because it must stay or did not move, the
-        verdict is `limit`, not `impossible`: nothing is proved of what lies behind it.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
-        Parameters
-        ----------
-        decision : what was decided towards the goals; one with a command is returned unchanged.
-        goals : the goals that the decision is about.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
-        """
-        if not decision.verdict:
-            return decision
-        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
-        movable = self._movable(self._stays, situation)
-        instead = self._move_first(movable, stage, situation, tools)
-        if instead is not None or decision.verdict != TaskVerdict.IMPOSSIBLE:
-            return instead or decision
-        decision = self._feel(decision, movable, stage, situation, tools)
-        if not decision.verdict:
-            return decision
-        things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
-        blocking = next((one.node.name for one in obstacles(things, situation)), "")
-        why = f"{decision.why}; {blocking} blocks the robot's way, and was not moved aside"
-        return Decision(None, why, TaskVerdict.LIMIT) if blocking else decision
-
-    def open_walls(
-        self, decision: Decision, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools
-    ) -> Decision:
-        """Return a decision; in place of `impossible`, the next command to feel walls, or to clear what fills them.
-
-        It is for a verdict that is proved whatever objects are moved aside, as far as these were seen: only what may go
-        on in walls is moved, and what stands before walls that were never felt.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
-        Parameters
-        ----------
-        decision : what was decided towards the goals; one that no open fact can overturn is returned unchanged.
-        goals : the goals that the decision is about; what they speak of stays where it is.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
-        """
-        if decision.verdict != TaskVerdict.IMPOSSIBLE or decision.unless is None:
-            return decision
-        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
-        movable = self._movable(self._stays, situation)
-        hidden = hidden_in_walls(movable, situation, feeling_scope(stage, situation).parting)
-        instead = self._move_first_of(hidden, stage, tools)
-        return instead or self._feel(decision, movable, stage, situation, tools)
-
-    def _feel(
-        self, decision: Decision, movable: Sequence[Node], stage: Stage, situation: Situation, tools: Tools
-    ) -> Decision:
-        """Return a decision; in place of `impossible`, the next command to feel walls, or to move what hides them.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
-        Parameters
-        ----------
-        decision : what was decided.
-        movable : the objects that may be moved.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
-        """
-        if decision.verdict == TaskVerdict.IMPOSSIBLE and decision.unless is not None:
-            felt = feel_walls(stage, situation, tools.pursuer)
-            if felt is not None:
-                self._feeling = True
-                return felt
-            hidden = before_walls(movable, situation, walls_to_feel(stage, situation))
-            return self._move_first_of(hidden, stage, tools) or decision
-        return decision
-
-    def _feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the next command to clear what was found in a wall, or to feel on; None when nothing is left.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+    def feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left.
 
         Parameters
         ----------
@@ -166,32 +78,93 @@ class ObstacleClearer:
         situation : what is believed (world model, rooms, doors, corners, track).
         tools : executor, pursuer and verifier, with which the command is worked out.
         """
-        hidden = hidden_in_walls(
-            self._movable(self._stays, situation), situation, feeling_scope(stage, situation).parting
-        )
-        found = self._move_first_of(hidden, stage, tools)
+        found = self._pull(stage, situation, tools)
         felt = None if found is not None else feel_walls(stage, situation, tools.pursuer)
         self._feeling = felt is not None
-        return found or felt
+        return found or felt or nothing_to_do("nothing is left to feel")
 
-    def _movable(self, stays: frozenset[str], situation: Situation) -> list[Node]:
+    def clear(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to move aside what blocks the robot's way; nothing when no such object can be moved.
+
+        Parameters
+        ----------
+        goals : what they speak of stays where it is.
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        tools : executor, pursuer and verifier, with which the command is worked out.
+        """
+        self._let_stay(goals, situation)
+        instead = self._move_first(self._movable(situation), stage, situation, tools)
+        return instead or nothing_to_do("nothing that blocks the robot's way can be moved aside")
+
+    def pull(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to move what may go on in a wall, as far as that was seen; nothing for no such thing.
+
+        Parameters
+        ----------
+        goals, stage, situation, tools : as for `clear`.
+        """
+        self._let_stay(goals, situation)
+        return self._pull(stage, situation, tools) or nothing_to_do("nothing that may go on in a wall can be moved")
+
+    def feel(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to feel walls that may be things; nothing when none is left that can be reached.
+
+        Parameters
+        ----------
+        goals, stage, situation, tools : as for `clear`.
+        """
+        self._let_stay(goals, situation)
+        felt = feel_walls(stage, situation, tools.pursuer)
+        self._feeling |= felt is not None
+        return felt or nothing_to_do("nothing is left to feel")
+
+    def bare(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to move away what stands before walls that were never felt; nothing for none.
+
+        Parameters
+        ----------
+        goals, stage, situation, tools : as for `clear`.
+        """
+        self._let_stay(goals, situation)
+        hidden = before_walls(self._movable(situation), situation, walls_to_feel(stage, situation))
+        instead = self._move_first_of(hidden, stage, tools)
+        return instead or nothing_to_do("nothing that stands before walls can be moved away")
+
+    def blame(self, situation: Situation) -> Decision:
+        """Return the verdict `limit` with an object that blocks the robot's way still; nothing when there is none.
+
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
+        blocking = next((one.node.name for one in obstacles(things, situation)), "")
+        if not blocking:
+            return nothing_to_do("no object blocks the robot's way")
+        return Decision(None, f"{blocking} blocks the robot's way, and was not moved aside", TaskVerdict.LIMIT)
+
+    def _let_stay(self, goals: Sequence[Fact], situation: Situation) -> None:
+        """Remember that what some goals speak of stays where it is."""
+        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
+
+    def _pull(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+        """Return the next command to move what may go on in a wall; None for no such thing."""
+        parting = feeling_scope(stage, situation).parting
+        return self._move_first_of(hidden_in_walls(self._movable(situation), situation, parting), stage, tools)
+
+    def _movable(self, situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none.
 
-        Only those that are objects with at least POSSIBLE_OBJECT percent, and not known to be immovable.
+        Only those that are objects with at least POSSIBLE_OBJECT percent, not known to be immovable, and need not stay.
 
-        stays : the names of those that must stay where they are.
         situation : what is believed: world model, rooms, doors, corners and track.
         """
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
-        return [node for node in things if node.name not in stays]
+        return [node for node in things if node.name not in self._stays]
 
     def _move_first(
         self, things: Sequence[Node], stage: Stage, situation: Situation, tools: Tools, name: str = ""
     ) -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -207,9 +180,6 @@ class ObstacleClearer:
 
     def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
         """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -227,9 +197,6 @@ class ObstacleClearer:
 
 def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------

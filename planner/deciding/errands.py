@@ -13,7 +13,7 @@ from planner.carrying.preconditions import turn_cost
 from planner.deciding.bringing import bring_to_end
 from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
-from planner.decision import Decision
+from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.intention import Intention, NextErrand
@@ -51,14 +51,11 @@ class ErrandRunner:
 
     def next(
         self, stage: Stage, situation: Situation, reconciled: Reconciliation, transporter: Transporter, tools: Tools
-    ) -> Decision | None:
-        """Return the next command for the task plan; None when there is no plan, or its next step is the robot's own.
+    ) -> Decision:
+        """Return the next command for the task plan; nothing where it has no errand for an object next.
 
-        Never a verdict: where an errand cannot be done, the plan is made anew without it, and where none is left, None
-        is returned.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+        The plan is made anew first where it no longer holds. The verdict `impossible`, for good, where users' rules
+        leave no plan. Where an errand cannot be done, the plan is made anew without it.
 
         Parameters
         ----------
@@ -68,31 +65,37 @@ class ErrandRunner:
         transporter : brings objects where goals hold.
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
+        situation = self._update(stage, situation, transporter, tools)
+        if self.is_shut_out:
+            return Decision(None, f"{stage} cannot be attained: {self.blamed}", TaskVerdict.IMPOSSIBLE, unless=None)
+        ruled = self.within_rules(situation)
         for attempt in range(MAX_FAILURES):
             if attempt:
-                self.update(stage, situation, transporter, tools)
-            found = self._intention.next_errand(stage, situation, transporter.place, transporter.origin_of)
+                ruled = self._update(stage, ruled, transporter, tools)
+            found = self._intention.next_errand(stage, ruled, transporter.place, transporter.origin_of)
             if found is None:
                 break
             tools.executor.unwanted = {found.node.name: (found.turned, found.errand.avoid)}
-            along = self.along_plan(situation)
+            along = self.along_plan(ruled)
             decision = self._follow(found, stage, along, reconciled, transporter, tools)
-            if decision is not None and decision.command is not None:
+            if decision.command is not None:
                 return decision
-            self._intention.failed(found.errand, situation)
+            self._intention.failed(found.errand, ruled)
         tools.executor.unwanted = {}
-        return None
+        return nothing_to_do("the task plan has no errand" if self.plan is None else "the next step is the robot's own")
 
-    def update(self, stage: Stage, situation: Situation, transporter: Transporter, tools: Tools) -> Situation:
-        """Make the plan anew where it no longer holds; return the situation with the doors that users' rules close.
+    def within_rules(self, situation: Situation) -> Situation:
+        """Return a situation with the doors closed that users' rules leave to no plan.
 
         Parameters
         ----------
-        stage : of the task: the goals that shall hold now.
         situation : what is believed (world model, rooms, doors, corners, track).
-        transporter : knows where goals hold.
-        tools : executor, pursuer and verifier.
         """
+        closed = self._intention.rules.names_of_closed(situation)
+        return situation if closed == situation.closed else replace(situation, closed=closed)
+
+    def _update(self, stage: Stage, situation: Situation, transporter: Transporter, tools: Tools) -> Situation:
+        """Make the plan anew where it no longer holds; return the situation with what it means by parameters."""
         avoid = {node.name: tools.executor.failed.grasps(node) for node in situation.model.objects if node.polygon}
         turn = turn_cost(situation.model)
         return self._intention.update(stage, situation, transporter.place, transporter.origin_of, avoid, turn)
@@ -158,13 +161,14 @@ class ErrandRunner:
         reconciled: Reconciliation,
         transporter: Transporter,
         tools: Tools,
-    ) -> Decision | None:
-        """Return the next command of an errand; a verdict or None when it cannot be done."""
+    ) -> Decision:
+        """Return the next command of an errand; a verdict or nothing when it cannot be done."""
         if found.goal is None:
-            return bring_to_end(found.node, found.errand.place, found.end, stage, situation, tools)
+            brought = bring_to_end(found.node, found.errand.place, found.end, stage, situation, tools)
+            return brought or nothing_to_do(f"{found.node.name} cannot be brought to {found.errand.place}")
         goal = found.goal
         stage = stage if goal in stage.goals else replace(stage, goals=(*stage.goals, goal))
         decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
-        if decision is None:
-            return None
+        if decision.verdict == TaskVerdict.DONE:
+            return decision
         return transporter.free_robot(str(goal.args[0]), stage, situation, tools) or decision

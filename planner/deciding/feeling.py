@@ -87,9 +87,6 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
 def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     stage : of the task: the goals that shall hold now.
@@ -102,9 +99,6 @@ def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision
 
 def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
     """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import went_through
 from planner.constraints import CARRY_NOTHING_THROUGH, SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.placement import mask_to_polygon
 from planner.situation import Situation
 
@@ -74,8 +74,8 @@ class ConstraintKeeper:
             if node.polygon is not None:
                 self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
 
-    def broken_at_start(self, situation: Situation) -> Decision | None:
-        """Return the verdict that a region was touched from the beginning; None when no such thing is known.
+    def broken_at_start(self, situation: Situation) -> Decision:
+        """Return the verdict that a region was touched from the beginning; nothing when no such thing is known.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class ConstraintKeeper:
             surely = in_robot_frame(node.polygon, model.frame).buffer(-_doubt(model, region) - 1.0)
             if not surely.is_empty and surely.intersects(region):
                 return Decision(None, f"{fact} cannot hold: {node.name} lies in that region", TaskVerdict.IMPOSSIBLE)
-        return None
+        return nothing_to_do("no constraint is known to be broken from the beginning")
 
     def guarded(self, decision: Decision, situation: Situation) -> Decision:
         """Return a decision; the verdict `limit` instead of a command that surely leads into a forbidden region.

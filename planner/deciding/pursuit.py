@@ -73,9 +73,6 @@ class Pursuer:
         A held object that is not taken along is released first. A subgoal that leads in a loop becomes dearer until
         another one is chosen.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         A Decision with a command may be the release, or what `along` returns.
 
         Parameters
@@ -110,9 +107,6 @@ class Pursuer:
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
         stage : of the task: the goals that shall hold now.
         situation : what is believed: world model, rooms, doors, corners and track.
@@ -125,9 +119,6 @@ class Pursuer:
         """Return the next command to a square where an object is grasped, so that the last move halts at its place.
 
         The verdict `impossible`, or `limit` after loops, when no way leads there.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -143,9 +134,6 @@ class Pursuer:
         """Return the next command to where an object is grasped, or to see what must be seen first.
 
         Returns None when the advice is neither (an Act or an Infeasibility), or cannot be followed: never a verdict.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         For a Go the way to the square, so that the last move halts at its place; for a See the way to one of its
         squares.
@@ -168,9 +156,6 @@ class Pursuer:
 
         A way to feel something is gone on with: on the way something else may come to be worth a look.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         ask : returns what is decided otherwise, a command or a verdict. It is called only while nothing is on the way
@@ -190,9 +175,6 @@ class Pursuer:
         """Return the next command towards a subgoal, and remember the route.
 
         The verdict `impossible` when every route leads through a forbidden door.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -269,9 +251,6 @@ class Pursuer:
 
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:
     """Return the verdict when no subgoal can be reached.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------

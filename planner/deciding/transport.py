@@ -21,7 +21,7 @@ from planner.carrying.plan_executor import Advice
 from planner.deciding.search import subgoals_towards
 from planner.deciding.tools import Tools
 from planner.deciding.verification import look_before_grasp, look_for_more
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, done, nothing_to_do
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
 from planner.goals.joint import OPPOSITE_CORNERS, conflicting_goals
 from planner.goals.object_goals import goal_placement
@@ -98,11 +98,10 @@ class Transporter:
         reconciled: Reconciliation,
         tools: Tools,
         end: str = "",
-    ) -> Decision | None:
-        """Return the next command towards a goal for an object, or the verdict; None when the goal holds.
+    ) -> Decision:
+        """Return the next command towards a goal for an object, or the verdict; done when the goal holds.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+        The object is found, looked at, and carried, one after the other.
 
         Parameters
         ----------
@@ -113,18 +112,52 @@ class Transporter:
         tools : executor, pursuer and verifier, with which the decision is worked out.
         end : the name of the one end of the goal to which the object is brought; "" for any.
         """
-        x = str(goal.args[0])
-        node = situation.model.object(situation.binding.get(x, ""))
-        if node is None:
-            return self._find(x, stage, situation, reconciled, tools)
+        if situation.model.object(situation.binding.get(str(goal.args[0]), "")) is None:
+            return self.find(goal, stage, situation, reconciled, tools)
+        examined = self.examine(goal, stage, situation, tools)
+        return self.carry(goal, stage, situation, reconciled, tools, end) if examined.result == "idle" else examined
+
+    def examine(self, goal: Fact, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next look at the object of a goal of which something is not clear; nothing when all is clear.
+
+        What was pressed against walls is not looked at: it is pressed on, or done. The verdict `limit` when the outline
+        of the object cannot be told.
+
+        Parameters
+        ----------
+        goal, stage, situation, tools : as for `towards`; what the object is, is known: else AssertionError.
+        """
+        node = situation.model.object(situation.binding.get(str(goal.args[0]), ""))
+        assert node is not None
         if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
-            return self._press_on(node, stage, situation, tools)
+            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
         look = _look_at(node, stage, situation, tools)
         if look is not None:
             return look
         if node.polygon is None:
             why = f"{stage} is not attempted: the outline of {node.name} is not known"
             return Decision(None, why, TaskVerdict.LIMIT)
+        return nothing_to_do(f"{node.name} is clear")
+
+    def carry(
+        self,
+        goal: Fact,
+        stage: Stage,
+        situation: Situation,
+        reconciled: Reconciliation,
+        tools: Tools,
+        end: str = "",
+    ) -> Decision:
+        """Return the next command to carry the object of a goal, or the verdict; done when the goal holds.
+
+        Parameters
+        ----------
+        goal, stage, situation, reconciled, tools, end : as for `towards`; the outline of the object is known: else
+            AssertionError.
+        """
+        x = str(goal.args[0])
+        node = situation.model.object(situation.binding.get(x, ""))
+        assert node is not None and node.polygon is not None
         land = self._place(goal, node, self.origin_of(x, node, situation), situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
@@ -137,11 +170,12 @@ class Transporter:
                 why = f"{stage} holds, but {node.name} went through a door that is forbidden to it"
                 return Decision(None, why, TaskVerdict.LIMIT)
             self._presser.begin(goal, node, land, situation)
-            return self._press_on(node, stage, situation, tools)
+            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
         advice = self._advice(node, land, situation, tools)
         if isinstance(advice, Infeasibility) and land.loose:
             if meets_any_end(land.loose, to_view_frame(node.polygon, situation)):
-                return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+                led = self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+                return led or done(f"{goal} holds")
             advice = tools.executor.advise(node, land.loose, situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
@@ -164,13 +198,10 @@ class Transporter:
         decision = self._look_for_way(advice, node, land, subgoals, stage, situation, tools)
         return self._check_proof(advice, decision, node, land, stage, situation, tools)
 
-    def conflict_verdict(self, stage: Stage, situation: Situation) -> Decision | None:
-        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; None otherwise.
+    def conflict(self, stage: Stage, situation: Situation) -> Decision:
+        """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
 
-        None, too, while it is not known where the goals hold.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
+        Nothing, too, while it is not known where the goals hold.
 
         Parameters
         ----------
@@ -196,16 +227,13 @@ class Transporter:
                 opposite = {corner_side(one), corner_side(other)} in map(set, OPPOSITE_CORNERS)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
-        return None
+        return nothing_to_do("no two goals are known to contradict each other")
 
     def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when there is none.
 
         Returns None, too, when nothing is held, when the held object is the one that parameter x means, or when it does
         not shut the robot in.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -220,22 +248,22 @@ class Transporter:
             None if node is None or held == situation.binding.get(x) else self._lead_out(node, stage, situation, tools)
         )
 
-    def _find(self, x: str, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools) -> Decision:
-        """Return the next command to find what a parameter means, or the verdict when nothing can be that.
+    def find(
+        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools
+    ) -> Decision:
+        """Return the next command to find what the parameter of a goal means, or the verdict when nothing can be that.
 
         Before the verdict, an object that may be it if its size were known better is measured.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
-        x : the parameter of the task.
+        goal : one goal of the stage; its first argument is the parameter.
         stage : of the task: the goals that shall hold now.
         situation : what is believed (world model, rooms, doors, corners, track).
         reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
+        x = str(goal.args[0])
         immovable = dict(reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
@@ -255,9 +283,6 @@ class Transporter:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it.
 
         In a loop the object is released instead.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -293,9 +318,6 @@ class Transporter:
         Where a door may be is looked at from places where the object would be in the way, and another way is looked for
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -336,9 +358,6 @@ class Transporter:
 
         In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
         object cannot come to where it must be in any case makes any verdict `impossible`.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -404,9 +423,6 @@ class Transporter:
 
         It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -424,9 +440,6 @@ class Transporter:
         self, node: Node, stage: Stage, situation: Situation, tools: Tools, shut_in: bool = False
     ) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
         node : the object, a node of the world model.
@@ -447,9 +460,6 @@ class Transporter:
         """Return the next command to measure an object that seems too large for all ends; None when it surely is.
 
         Returns the verdict `limit` when its size cannot be told.
-
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
 
         Parameters
         ----------
@@ -474,9 +484,6 @@ class Transporter:
         None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
         that.
 
-        A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a
-        verdict and its reason.
-
         Parameters
         ----------
         node : the object, a node of the world model.
@@ -499,9 +506,6 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
 
     What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     node : the object, a node of the world model.
@@ -521,9 +525,6 @@ def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situa
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
 
     None when there is nothing to see so, or no such push.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
 
@@ -548,9 +549,6 @@ def _take_along(
 ) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-
     Parameters
     ----------
     node : the object.
@@ -571,9 +569,6 @@ def _take_along(
 
 def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
     """Return the decision to push a held object in order to see something; None when that would close a loop.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
 
     Parameters
     ----------

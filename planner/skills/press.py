@@ -76,7 +76,8 @@ class Presser:
     def next(self, node: Node, model: WorldModel) -> Act | None:
         """Return the next press as a push that no plan asks for, and remember it; None when none is left.
 
-        A press is a push against a wall that may be further away than believed, as `begin` noted it.
+        A press is a push against a wall that may be further away than believed, as `begin` noted it. None also when
+        those that are left are of another object: goals are asked about in their order, whichever is being pressed for.
 
         An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
 
@@ -85,7 +86,7 @@ class Presser:
         node : the object, a node of the world model.
         model : what is believed, with its frame and its map view.
         """
-        if not self._left:
+        if not self._left or self._of is None or self._of[1] != node.name:
             return None
         push = self._left.pop(0)
         self._last = push, (node.polygon.centroid.x, node.polygon.centroid.y)

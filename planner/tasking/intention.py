@@ -138,7 +138,7 @@ class Intention:
         avoid: Mapping[str, Any],
         turn: float,
     ) -> Situation:
-        """Make the plan anew where it no longer holds; return the situation with the doors that users' rules close.
+        """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters.
 
         There is no plan while it is open what a goal means or where it holds.
 
@@ -164,7 +164,7 @@ class Intention:
         if any(situation.binding.get(parameter) != name for parameter, name in meant.items()):
             situation = with_meanings(situation, meant)
             self._problem = problem_of(stage, situation, place, origin, self._where)
-        return replace(situation, closed=self.rules.names_of_closed(situation))
+        return situation
 
     @property
     def meanings(self) -> Mapping[str, str]:

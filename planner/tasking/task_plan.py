@@ -133,7 +133,12 @@ class TaskPlan:
 
     @property
     def facts(self) -> tuple[str, ...]:
-        """The plan as facts without full stops, as kb/asp/belief.lp declares them."""
+        """The plan as facts without full stops, as kb/asp/belief.lp declares them.
+
+        () for a plan about nothing: where rules of users count, one is sought before it is known where any goal holds.
+        """
+        if not self.goals and not self.errands and not self.unmet:
+            return ()
         return (*self._goal_facts(), *self._step_facts(), *self._search_facts())
 
     @property

@@ -1,6 +1,10 @@
 """The command line of `utak`: its subcommands and their options."""
 
 import argparse
+import re
+import sys
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
 
 from simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
@@ -24,6 +28,7 @@ COMMANDS = (
     schema,
     warm,
 )
+NEGATIVE_POINT = re.compile(r"-[\d.][^,]*,.*")  # a point whose first coordinate has a minus, such as -1,2
 # The end of the help text.
 EXIT_CODES = (
     "exit codes: 0 done; 1 ran, goal not reached; 2 usage; 65 bad input; 66 cannot open; 70 our bug; "
@@ -42,9 +47,26 @@ class IntermixedParser(argparse.ArgumentParser):
             return super().parse_known_args(args, namespace)
         self._within = True
         try:
-            return super().parse_known_intermixed_args(args, namespace)
+            return super().parse_known_intermixed_args(points_joined(sys.argv[1:] if args is None else args), namespace)
         finally:
             self._within = False
+
+
+def points_joined(arguments: Sequence[str]) -> list[str]:
+    """Return arguments of a command line with each point that begins with a minus joined to the option before it.
+
+    Else argparse takes such a point for an option.
+
+    >>> points_joined(["a.yaml", "--start", "-1,2", "--scale", "2"])
+    ['a.yaml', '--start=-1,2', '--scale', '2']
+    """
+    joined = list(arguments[:1])
+    for before, argument in pairwise(arguments):
+        if before.startswith("--") and "=" not in before and NEGATIVE_POINT.fullmatch(argument):
+            joined[-1] += f"={argument}"
+        else:
+            joined.append(argument)
+    return joined
 
 
 def build_parser() -> argparse.ArgumentParser:

@@ -66,7 +66,9 @@ def read_episode(path: Path | str) -> Episode:
     BadInputError : the file is no episode, or it is damaged.
     """
     name = str(path)
-    lines = complete_lines(path)
+    *lines, rest = _split(path)
+    if _is_object(rest):  # an editor took the last line end away
+        lines.append(rest)
     rows = [_decoded(name, number, row) for number, row in enumerate(lines, 1)]
     if not rows or rows[0].get("utak") != "episode":
         raise _damaged(name, 1, "this is no episode: the first line is no header")
@@ -118,10 +120,24 @@ def complete_lines(path: Path | str) -> list[bytes]:
 
     Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
     """
+    return _split(path)[:-1]
+
+
+def _split(path: Path | str) -> list[bytes]:
+    """Return the lines of an episode with their line ends, and last what follows the last line end; raises as above."""
     whole = read_bytes(str(path), MAX_EPISODE_BYTES)
     if len(whole) > MAX_EPISODE_BYTES:
         raise _damaged(str(path), 1, f"the file is larger than {MAX_EPISODE_BYTES} bytes")
-    return [row + b"\n" for row in whole.split(b"\n")[:-1]]
+    *lines, rest = whole.split(b"\n")
+    return [*(line + b"\n" for line in lines), rest]
+
+
+def _is_object(raw: bytes) -> bool:
+    """Return whether bytes are a whole JSON object; those of a line that was cut short never are."""
+    try:
+        return isinstance(json.loads(raw), dict)
+    except (ValueError, RecursionError):
+        return False
 
 
 def without_limit(lines: list[bytes]) -> list[bytes]:

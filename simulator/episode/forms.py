@@ -128,6 +128,22 @@ class AnyOf:
 
 
 @dataclass(frozen=True)
+class NestedKeys:
+    """An object that may hold others like itself.
+
+    Attributes
+    ----------
+    name : the name under which the form stands in a schema document.
+    node : the keys of each object.
+    below : the key of the list of those that it holds; it may be missing.
+    """
+
+    name: str
+    node: Keys
+    below: str
+
+
+@dataclass(frozen=True)
 class Anything:
     """Any value."""
 
@@ -153,6 +169,7 @@ Form = (
     | ByKind
     | IfKey
     | AnyOf
+    | NestedKeys
     | Anything
     | Noted
 )
@@ -260,6 +277,11 @@ def _any_of(form: AnyOf, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
         yield at, f"{form.name} is wanted"
 
 
+def _tree(form: NestedKeys, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
+    yield from complaints(form.node, value, at)
+    yield from complaints(Keys({form.below: ListOf(form)}, frozenset({form.below})), value, at)
+
+
 def _noted(form: Noted, value: Any, at: KeyPath) -> Iterator[LineComplaint]:
     yield from complaints(form.inner, value, at)
 
@@ -282,6 +304,7 @@ _CHECKERS: Mapping[type, Callable[[Any, Any, KeyPath], Iterator[LineComplaint]]]
     ByKind: _by_kind,
     IfKey: _if_key,
     AnyOf: _any_of,
+    NestedKeys: _tree,
     Anything: _anything,
     Noted: _noted,
 }

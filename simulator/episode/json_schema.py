@@ -15,6 +15,7 @@ from simulator.episode.forms import (
     Keys,
     ListOf,
     NamesTo,
+    NestedKeys,
     Noted,
     Numeric,
     OneOf,
@@ -124,6 +125,12 @@ def _if_key(form: IfKey) -> Schema:
     }
 
 
+def _tree(form: NestedKeys) -> Schema:
+    found = _keys(form.node)
+    found["properties"][form.below] = {"type": "array", "items": {"$ref": f"#/$defs/{form.name}"}}
+    return found
+
+
 # By the class of a form: the function that returns its schema.
 _WRITERS: Mapping[type, Callable[[Any], Schema]] = {
     Numeric: lambda form: {"type": "number", "minimum": form.low, "maximum": form.high},
@@ -138,6 +145,7 @@ _WRITERS: Mapping[type, Callable[[Any], Schema]] = {
     ByKind: _by_kind,
     IfKey: _if_key,
     AnyOf: lambda form: {"anyOf": [schema_of(one) for one in form.forms]},
+    NestedKeys: _tree,
     Anything: lambda form: {},
     Noted: lambda form: {"description": form.note, **schema_of(form.inner)},
 }

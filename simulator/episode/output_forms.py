@@ -1,7 +1,21 @@
 """The forms of what commands print under `--json`, and all forms by the names that `utak schema` gives them."""
 
+from kb.evidence.reason import ReasonKind
 from kb.language.vocabulary import VERDICT_WORDS
-from simulator.episode.forms import AnyOf, Form, Keys, ListOf, NamesTo, Noted, Numeric, OneOf, OrNull, Whole
+from simulator.episode.forms import (
+    AnyOf,
+    Anything,
+    Form,
+    Keys,
+    ListOf,
+    NamesTo,
+    NestedKeys,
+    Noted,
+    Numeric,
+    OneOf,
+    OrNull,
+    Whole,
+)
 from simulator.episode.wellformed import (
     END,
     FLAG,
@@ -128,6 +142,96 @@ TEST_OUTPUT = Keys(
         "exit_code": OneOf(OUTCOME_CODES),
     }
 )
+# `utak explain --json`.
+EXPLAIN_OUTPUT = NestedKeys(
+    "explain",
+    Keys(
+        {
+            "claim": Noted("a fact or an atom as text, or a statement in words", TEXT),
+            "kind": OneOf(tuple(map(str, ReasonKind))),
+            "because": Noted("why it holds, in words", TEXT),
+            "source": Noted("where it comes from: a step, the task, or file and line of a rule", TEXT),
+            "data": Noted("more about it, by name", NamesTo(Anything())),
+            "cut": Noted("whether more levels follow, which are left out", FLAG),
+        },
+        frozenset({"because", "source", "data", "cut"}),
+    ),
+    "rests_on",
+)
+# How a run ended that was made again with changes.
+CHANGED_END: dict[str, Form] = {
+    "verdict": OrNull(OneOf(VERDICT_WORDS)),
+    "steps": OrNull(STEP_NUMBER),
+    "achieved": OrNull(FLAG),
+    "reason": OrNull(TEXT),
+    "refuted": Noted("why the changes make no run", OrNull(TEXT)),
+}
+CHANGES = Noted("each with `change`, which says what further keys it has", ListOf(Keys({"change": TEXT})))
+# `utak explain --fix --json`.
+FIX_OUTPUT = Keys(
+    {
+        "before": Noted(
+            "the end of the run without changes; null when it was not made", OrNull(Keys(RESULT_FORMS, RESULT_OPTIONAL))
+        ),
+        "repeated": Noted("whether that is the recorded end", OrNull(FLAG)),
+        "needless": Noted("whether the run works without changes", FLAG),
+        "fixes": ListOf(
+            Keys(
+                {
+                    "changes": CHANGES,
+                    "words": TEXT,
+                    **CHANGED_END,
+                    "smallest": Noted("whether no part of the changes suffices", FLAG),
+                    "least": Noted("whether less of each change does not suffice", FLAG),
+                }
+            )
+        ),
+        "failed": ListOf(Keys({"changes": CHANGES, **CHANGED_END})),
+        "width_step": Numeric(0, MAX_LENGTH),
+        "runs": Whole(0, MAX_COUNT),
+        "commands": Whole(0, MAX_COUNT),
+        "ended": Noted("what ended the search before everything was tried; empty for nothing", TEXT),
+    }
+)
+# Counts of runs of a sweep.
+SWEEP_COUNT = Keys(
+    {
+        "scenario": TEXT,
+        "noise": OrNull(Numeric(0, 1)),
+        "runs": Whole(0, MAX_COUNT),
+        "done": Whole(0, MAX_COUNT),
+        "false_claims": Whole(0, MAX_COUNT),
+        "judged": Whole(0, MAX_COUNT),
+        "passed": Whole(0, MAX_COUNT),
+        "achieved": OrNull(Whole(0, MAX_COUNT)),
+        "failed": NamesTo(Whole(0, MAX_COUNT)),
+        "success_rate": OrNull(Numeric(0, 1)),
+        "success_interval": OrNull(ListOf(Numeric(0, 1), 2, 2)),
+        "verdicts": NamesTo(Whole(0, MAX_COUNT)),
+        "steps_median": OrNull(Numeric(0, MAX_COUNT)),
+        "steps_95_percentile": OrNull(Numeric(0, MAX_COUNT)),
+    }
+)
+SWEPT_RUN: dict[str, Form] = {"scenario": TEXT, "noise": Numeric(0, 1), "seed": Whole(0, 2**63 - 1)}
+# `utak sweep --json`.
+SWEEP_OUTPUT = Keys(
+    {
+        "planned": Whole(0, MAX_COUNT),
+        "groups": ListOf(SWEEP_COUNT),
+        "all": SWEEP_COUNT,
+        "false_claims": ListOf(Keys(SWEPT_RUN)),
+        "failed": ListOf(Keys({**SWEPT_RUN, "how": TEXT, "reason": TEXT})),
+    }
+)
+# A line of the results of `utak sweep -o`, but for the first one.
+SWEEP_ROW = Keys(
+    {
+        **SWEPT_RUN,
+        "result": OrNull(RUN_OUTPUT),
+        "passed": OrNull(FLAG),
+        "failed": OrNull(Keys({"how": TEXT, "reason": TEXT})),
+    }
+)
 # All forms by the names that `utak schema` gives them.
 NAMED_FORMS: dict[str, Form] = {
     "header": Noted("the first line of an episode", HEADER),
@@ -138,5 +242,9 @@ NAMED_FORMS: dict[str, Form] = {
     "plan": Noted("what `utak plan --json` prints", PLAN_OUTPUT),
     "routes": Noted("what `utak routes --json` prints", ROUTES_OUTPUT),
     "test": Noted("what `utak test --json` prints", TEST_OUTPUT),
+    "explain": Noted("what `utak explain --json` prints", EXPLAIN_OUTPUT),
+    "fix": Noted("what `utak explain --fix --json` prints", FIX_OUTPUT),
+    "sweep": Noted("what `utak sweep --json` prints", SWEEP_OUTPUT),
+    "sweep_row": Noted("a line of the results of a sweep, after the first", SWEEP_ROW),
 }
 EPISODE_LINES = ("header", "step", "end")  # the names of the lines of an episode

@@ -27,6 +27,7 @@ from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.language.reader import facts_from_text
 from kb.language.vocabulary import BELIEF_PREDICATES
 from simulator.episode.episode import Episode, EpisodeLine
+from simulator.explaining.missing_rules import missing_rules
 
 QUESTION_VARIABLE = re.compile(r"(?<![\w\"])(?:[A-Z]\w*|_)(?![\w\"])")  # in a question: stands for anything
 
@@ -76,6 +77,14 @@ class Questions:
     def last_step(self) -> int:
         """The number of the last step."""
         return len(self.beliefs.record.steps) - 1
+
+    @property
+    def lacking(self) -> str:
+        """Rules of the run that are not given, so that answers lack them, in a line; "" for none.
+
+        Raises CannotOpenError when a file of rules cannot be read.
+        """
+        return missing_rules(self._header, self._rule_files)
 
     def why(self, fact: str, step: int | None = None) -> Reason:
         """Return the reason why a fact is believed, or why a goal or a verdict stands as it does.

@@ -1,6 +1,6 @@
 """Trees of reasons for the steps of a whole episode, cut to what a page can hold."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from kb.evidence.reason import Reason, ReasonKind
@@ -15,19 +15,20 @@ MAX_SENTENCE_CHARACTERS = 240  # characters of the text of a claim; a convention
 TreeEntry = dict[str, Any]  # {"text": str, "children": [...]}, or without children
 
 
-def trees_of_episode(episode: Episode) -> dict[int, list[TreeEntry]]:
+def trees_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> dict[int, list[TreeEntry]]:
     """Return trees of reasons by step: why its command was given, and at the last step why the verdict is so.
 
     Parameters
     ----------
     episode : the episode; what it does not record is not explained.
+    rule_files : the paths of the files with users' rules that took part.
 
     Returns
     -------
     By step, trees of at most TREE_LEVELS levels. Of a long episode MAX_EXPLAINED_STEPS steps at equal distances are
     explained.
     """
-    questions, last = questions_of_episode(episode), len(episode.steps) - 1
+    questions, last = questions_of_episode(episode, rule_files), len(episode.steps) - 1
     stride = max(1, -(-last // MAX_EXPLAINED_STEPS))
     trees: dict[int, list[TreeEntry]] = {}
     try:

@@ -78,7 +78,9 @@ def scenario_of_walls(
         squares = scaled_walls(walls, scale)
         place = roomy_place(squares) if start is None else _square(source, squares, scale, start, offset)
         if place is None:
-            raise BadInputError([source.problem(source.start(), f"the map has no floor at {scale} squares a cell")])
+            what = f"the map has no floor at {scale} square{'s' * (scale > 1)} a cell"
+            hint = "--scale 1 keeps floor that is narrow" if scale < 1 else ""
+            raise BadInputError([source.problem(source.start(), what, hint)])
         drawn = world_text(CellWorld(squares, (), place), 1)
     except RasterError as error:
         hint = "--scale 1/N makes one square of N x N cells"

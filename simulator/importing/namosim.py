@@ -134,7 +134,8 @@ class _Reader:
             f"The robot {agents[0].attributes.get('agent_id')} has an extent in NAMOSIM; Utak is a point in its middle."
         ]
         if len(agents) > 1:
-            notes.append(f"{len(agents) - 1} more robots are left out: in TABLETOP nobody else moves.")
+            more = "1 more robot is" if len(agents) == 2 else f"{len(agents) - 1} more robots are"
+            notes.append(f"{more} left out: in TABLETOP nobody else moves.")
         facts = [f"table({self._width}, {self._height}).", f'verge("{_text(verge)}").']
         facts += [f'object({name}, {colour}, "{_text(polygon)}").' for name, colour, polygon in things]
         start: tuple[str, ...] = ()

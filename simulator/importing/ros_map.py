@@ -84,7 +84,7 @@ def _image(path: Path, head: MapHead, options: ImportOptions) -> Source:
     image = path.parent / head.image
     if options.untrusted and lies_outside(image, path.parent):
         raise CannotOpenError(str(image), f"{path} names an image out of its folder, which --untrusted refuses")
-    return text_source(image, read_raw(image, MAX_PGM_BYTES, "an image", options.untrusted))
+    return text_source(image, read_raw(image, MAX_PGM_BYTES, "an image", options.untrusted), path.parent)
 
 
 def occupancy_of(image: GreyImage, head: MapHead) -> Occupancy:

@@ -111,8 +111,6 @@ def _values(source: Source) -> dict[str, _Value]:
     listed: str | None = None  # the key whose list is being read
     for number, line in enumerate(source.lines, 1):
         text = line.rstrip()
-        if number == 1:
-            text = text.removeprefix("\xef\xbb\xbf")  # a byte order mark
         bare = text.lstrip()
         if not bare or bare.startswith("#") or text in ("---", "...") or text.startswith("%YAML"):
             continue

@@ -1,5 +1,6 @@
 """The text of a file of another format, in which an error names line and column."""
 
+from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE
 from pathlib import Path
 
 from kb.language.diagnostics import BadInputError, CannotOpenError
@@ -34,16 +35,24 @@ def read_raw(path: Path | str, max_bytes: int, what: str, untrusted: bool = Fals
     return raw
 
 
-def text_source(path: Path | str, raw: bytes) -> Source:
+def text_source(path: Path | str, raw: bytes, folder: Path | None = None) -> Source:
     """Return the text of a file's bytes, one letter a byte, so that columns count bytes.
 
     Parameters
     ----------
     path : the file.
-    raw : its bytes.
+    raw : its bytes; a byte order mark of UTF-8 before them is left out.
+    folder : the folder in which the file should lie; None for the one in which it is named.
 
     Returns
     -------
-    The text, with the file's name; hidden in messages when the file is a link out of its folder.
+    The text, with the file's name; hidden in messages when the file lies outside of the folder, all links followed.
+
+    Raises
+    ------
+    BadInputError : the text is in UTF-16.
     """
-    return Source(str(path), raw.decode("latin-1"), lies_outside(path))
+    source = Source(str(path), raw.removeprefix(BOM_UTF8).decode("latin-1"), lies_outside(path, folder))
+    if raw.startswith((BOM_UTF16_BE, BOM_UTF16_LE)):
+        raise BadInputError([source.problem(source.start(), "the file is a text in UTF-16", "save it as UTF-8")])
+    return source

@@ -65,6 +65,7 @@ class Dialogue:
         self.story, self.engine, self.printer = story, engine, printer
         self.commands, self.explainers = commands, explainers
         self.rest: Any = None  # a simulator.repl.asking.Pages
+        self._told_lacking = False
 
     @property
     def names(self) -> list[str]:
@@ -129,6 +130,15 @@ class Dialogue:
             self.printer.tell(f"this is a bug of ours: {type(bug).__name__}: {str(bug)[:MAX_BUG_CHARACTERS]}")
         return True
 
+    def _tell_lacking(self) -> None:
+        """Print, before the first explanation, that rules of the run are not given, if so."""
+        if not self._told_lacking:
+            from simulator.explaining.missing_rules import missing_rules
+
+            self._told_lacking = True
+            if lacking := missing_rules(self.story.header, self.story.rule_files):
+                self.printer.tell(f"{lacking}; give rules with utak repl --kb FILE")
+
     def _parts(self, statement: str) -> tuple[str, str]:
         """Return the name of a statement's command and what follows it; a query has the name `?-`."""
         text = statement.strip()
@@ -146,6 +156,7 @@ class Dialogue:
         if name in self.commands:
             self.commands[name].run(self, rest)
         elif name in self.explainers:
+            self._tell_lacking()
             self.printer.say(self.explainers[name].explain(self.story, *asked(rest)))
         else:
             hint = did_you_mean(name, self.names) or "help lists what there is, ?- asks"

@@ -1,5 +1,6 @@
 """Replays as files: reading an episode that can be shown, and writing its page or its moving picture."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,21 +36,38 @@ def _is_shallow(value: Any) -> bool:
     return False
 
 
-def write_page(path: Path | str, episode: Episode, force: bool = False) -> None:
-    """Write the page of an episode, with trees of reasons; `force` overwrites no-pages.
+def write_page(path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = ()) -> str:
+    """Write the page of an episode, with trees of reasons.
 
-    Raises CannotOpenError, also when this Python has not its module lzma.
+    Parameters
+    ----------
+    path : the file.
+    episode : the episode.
+    force : whether to overwrite what is no page.
+    rule_files : the paths of the files with users' rules that took part, for the reasons.
+
+    Returns
+    -------
+    What the reasons lack, in a line that also stands in the page: rules of the run that are not given; "" for nothing.
+
+    Raises
+    ------
+    CannotOpenError : the file cannot be written, a file of rules cannot be read, or this Python has not its module
+        lzma.
     """
+    from simulator.explaining.missing_rules import missing_rules
     from simulator.explaining.trees import trees_of_episode  # takes clingo, which the other kinds of replay do not need
 
     try:
-        page = replay_page(episode, trees_of_episode(episode))
+        lacking = missing_rules(episode.header, rule_files)
+        page = replay_page(episode, trees_of_episode(episode, rule_files), lacking)
     except ModuleNotFoundError as error:
         if error.name not in ("lzma", "_lzma"):
             raise
         what = "pages need Python's own module lzma, without which this Python was built; --text does not"
         raise CannotOpenError(str(path), what) from None
     write_whole(path, page, is_page, "page of HTML", force)
+    return lacking
 
 
 def check_page_path(path: Path | str, force: bool = False) -> None:

@@ -26,7 +26,7 @@ PLAYER = ("decode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js"
 MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convention
 
 
-def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None) -> str:
+def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None, lacking: str = "") -> str:
     """Return an episode as a page of HTML that plays it.
 
     Parameters
@@ -34,6 +34,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
     episode : the episode; it may have been cut short, but has step 0.
     trees : explanations to be shown with steps, by step: lists of `{"text": str, "children": [...]}`, whose children
         are of the same form.
+    lacking : what the explanations lack, in a line; "" for nothing.
 
     Returns
     -------
@@ -49,7 +50,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
     style, shell = _part("style.css"), Template(_part("body.html"))
     body = shell.substitute(
         heading=html.escape(_goals(episode)) or "no goal",
-        about=html.escape(_about(episode)),
+        about=html.escape("; ".join(filter(None, (_about(episode), _clipped(lacking))))),
         legend=_part("legend.html"),
         help=_part("help.html"),
     )
@@ -95,7 +96,8 @@ def _about(episode: Episode) -> str:
     options = episode.header["options"]
     told = [f"seed {options['seed']}", f"noise {options['noise']:g}", f"paths {options['paths']}"]
     told += ["no pull"] if options.get("pull") is False else []
-    told += [f"{len(options['kb'])} rule files"] if options["kb"] else []
+    count = len(options["kb"])
+    told += [f"{count} file{'s' * (count != 1)} of rules"] if count else []
     if episode.result is None:
         return f"{', '.join(told)}; the episode was cut short after step {len(episode.steps) - 1}"
     result = episode.result

@@ -11,7 +11,7 @@ from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import facts_of_line
 from simulator.run.robots import make_robot
 from simulator.run.session import Result, RobotMaker, Session
-from simulator.scenario.expectation import expects_verdict
+from simulator.scenario.expectation import expects_verdict, read_expectations, weights_of
 from simulator.scenario.points import ExpectationOutcome, PointScore, score
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.scenario.settings import Settings, kb_files_named
@@ -94,9 +94,41 @@ def run_trial(
     assert scenario.expectations is not None
     faults = tuple(faults_of(result, outcomes, expects_verdict(scenario.expectations)))
     end = f"{result.verdict} in {result.steps} steps: {result.reason}"
-    weighed = any(fact.name == "weight" for fact in scenario.expectations) or any(n != 1 for n in plan.asks.values())
+    weighed = _is_weighed(scenario.expectations, plan)
     message = "; ".join([*faults, end])
     return ScenarioTrial(not faults, message, result, settings, faults, outcomes, weighed, tuple(last_steps))
+
+
+class PromisedPoints(NamedTuple):
+    """The points of a scenario that could not be run.
+
+    Attributes
+    ----------
+    score : none earned, of those that its files promise.
+    weighed : whether the scenario's author weighed them.
+    """
+
+    score: PointScore
+    weighed: bool
+
+
+def promised_points(folder: Path | str) -> PromisedPoints | None:
+    """Return the points that expect.lp and trial.lp of a scenario promise; None where these cannot be read.
+
+    So what a scenario is worth does not depend on whether the other files can be read, such as those of a pupil.
+    """
+    try:
+        facts = read_expectations(Path(folder) / "expect.lp", None)
+        plan = read_trial_plan(Path(folder) / TRIAL_FILE) if (Path(folder) / TRIAL_FILE).exists() else NO_PLAN
+    except (BadInputError, CannotOpenError):
+        return None
+    possible = sum(weights_of(facts).values()) + sum(plan.asks.values())
+    return PromisedPoints(PointScore(0, possible), _is_weighed(facts, plan))
+
+
+def _is_weighed(expectations: Sequence[Fact], plan: TrialPlan) -> bool:
+    """Return whether an author weighed some expectations or questions."""
+    return any(fact.name == "weight" for fact in expectations) or any(n != 1 for n in plan.asks.values())
 
 
 def _read(folder: Path) -> tuple[Scenario, TrialPlan]:

@@ -7,7 +7,7 @@ from time import perf_counter
 from typing import Any, NamedTuple
 
 from simulator.episode.episode import EpisodeLine
-from simulator.run.trial import ScenarioTrial, run_trial
+from simulator.run.trial import ScenarioTrial, promised_points, run_trial
 from simulator.scenario.untrusted import refuse_outside_links
 from simulator.terminal import exits
 from simulator.terminal.action_in_words import describe
@@ -53,7 +53,7 @@ def try_scenario(wish: Wish) -> TrialRecord:
     began = perf_counter()
     code, error = outcome_of(_run, wish, trials)
     seconds = perf_counter() - began
-    record = without_run(wish, code, error) if not trials else _record(wish, code, trials[0])
+    record = broken_off(wish, code, error) if not trials else _record(wish, code, trials[0])
     return record | {"seconds": round(seconds, 3)} if wish.timed else record
 
 
@@ -67,7 +67,7 @@ def _run(wish: Wish, trials: list[ScenarioTrial]) -> int:
 
 def repeating_command(wish: Wish) -> str:
     """Return the command that tries a scenario again, as a POSIX shell reads it."""
-    words = ["utak", "test", wish.folder]
+    words = ["utak", "test", f"./{wish.folder}" if wish.folder.startswith("-") else wish.folder]
     for name, value in wish.given.items():
         words += ["--no-pull"] if name == "pull" else [f"--{name.replace('_', '-')}", str(value)]
     for path in wish.kb_files:
@@ -95,6 +95,14 @@ def without_run(wish: Wish, code: int, error: str) -> TrialRecord:
         "last_steps": [],
         "command": repeating_command(wish),
     }
+
+
+def broken_off(wish: Wish, code: int, error: str) -> TrialRecord:
+    """Return the record of a scenario that is there and was not run to its end: it earned none of its points."""
+    refused = wish.untrusted and code == exits.CANNOT_OPEN  # perhaps a link, which is not followed
+    promised = None if refused else promised_points(wish.folder)
+    earned = {} if promised is None else {"points": promised.score._asdict(), "weighed": promised.weighed}
+    return without_run(wish, code, error) | earned
 
 
 def _record(wish: Wish, code: int, trial: ScenarioTrial) -> TrialRecord:

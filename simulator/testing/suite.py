@@ -12,7 +12,7 @@ from simulator.run.trial import scenarios_in
 from simulator.terminal import exits
 from simulator.terminal.outcome import outcome_of
 from simulator.testing.handle import WorkerEndedError, WorkerHandle
-from simulator.testing.record import TrialRecord, Wish, try_scenario, without_run
+from simulator.testing.record import TrialRecord, Wish, broken_off, try_scenario, without_run
 
 
 class FoundScenario(NamedTuple):
@@ -85,7 +85,7 @@ def try_all(wishes: Sequence[Wish], jobs: int = 1) -> Iterator[TrialRecord]:
             del record["report"]
             return record
         except WorkerEndedError as ended:
-            return without_run(wish, exits.OUR_BUG, f"utak: this is a bug of ours: {ended}")
+            return broken_off(wish, exits.OUR_BUG, f"utak: this is a bug of ours: {ended}")
         finally:
             with taking:
                 free.append(handle)

@@ -21,9 +21,9 @@ TEST_OUTCOME_WORDS = {  # by exit code: the word on a scenario's line, and the w
 def outcome_line(record: TrialRecord) -> str:
     """Return the line about one scenario: the outcome, the points where its author weighed them, and the reasons."""
     word, folder = TEST_OUTCOME_WORDS[record["exit_code"]][0], _flat(record["scenario"])
-    if record["verdict"] is None:
-        return f"{word} {folder}: see above"
     points = f"{_points(record)}: " if record["weighed"] else ""
+    if record["verdict"] is None:
+        return f"{word} {folder}: {points}see above"
     return f"{word} {folder}: {points}{_flat(_message(record))}"
 
 
@@ -51,7 +51,7 @@ def summary_line(records: Sequence[TrialRecord]) -> str:
 
 
 def total_score(records: Sequence[TrialRecord]) -> PointScore:
-    """Return the points of all scenarios together. One that could not be run has none that are known."""
+    """Return the points of all scenarios together. One whose expect.lp cannot be read has none that are known."""
     scores = [_points(record) for record in records if record["points"] is not None]
     return PointScore(sum(one.earned for one in scores), sum(one.possible for one in scores))
 

@@ -12,10 +12,10 @@ from kb.task.task import Task
 from kb.world.corners import corners
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import rooms_of
+from planner.agenda.decider import Decider
 from planner.carrying.plan_executor import PlanExecutor
 from planner.carrying.remaining_plan import PlanOperations
 from planner.cycle import Options, Robot
-from planner.deciding.decider import Decider
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.tools import Tools
 from planner.deciding.verification import Verifier

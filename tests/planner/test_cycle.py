@@ -16,8 +16,8 @@ from kb.perception.frame import turned
 from kb.task.task import Claim, Parameter, Task
 from kb.world.corners import corners
 from kb.world.rooms import rooms_of
+from planner.agenda.decider import Decider
 from planner.cycle import Options, Robot
-from planner.deciding.decider import Decider
 from planner.screen.projection import CostMaps
 from planner.stages import constraints, stages
 from tests.kb.drawings import known_model

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import utak
+from utak.beliefs import MAX_ROWS_SHOWN, Answer
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -109,3 +110,15 @@ def test_a_world_without_facts_can_be_shown() -> None:
     assert len(world) == 0
     ElementTree.fromstring(world._repr_svg_())
     assert repr(world) == "<World at step 0: 0 facts; objects: none>"
+
+
+def test_an_answer_says_how_many_rows_it_does_not_show() -> None:
+    rows = tuple((number,) for number in range(MAX_ROWS_SHOWN + 1))
+    for count, more, said in (
+        (MAX_ROWS_SHOWN, False, None),
+        (MAX_ROWS_SHOWN + 1, False, "<p>and 1 more row</p>"),
+        (MAX_ROWS_SHOWN + 1, True, "<p>and 1 more row, and others that were not looked for</p>"),
+        (2, True, "<p>and others that were not looked for</p>"),
+    ):
+        shown = Answer("bindings", ("X",), rows[:count], more)._repr_html_()
+        assert shown.endswith(said) if said else "<p>" not in shown

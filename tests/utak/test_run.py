@@ -161,7 +161,7 @@ def test_rules_of_users_take_part_and_may_be_asked(tmp_path: Path) -> None:
 def test_a_run_shows_itself() -> None:
     run = utak.Run(NEXT_ROOM)
     assert repr(run) == "<Run after 0 commands>"
-    assert "next: " in run._repr_html_()
+    assert run.plan._repr_html_() in run._repr_html_()
     ElementTree.fromstring(run._repr_svg_())
     run.finish()
     assert repr(run).startswith(f"<Run after {len(run.episode) - 1} commands; done: ")

@@ -73,8 +73,12 @@ def _dictionaries(stride: float) -> ActionForm:
         return _command(do, stride * way[0], stride * way[1], HALF_TURN * turn[0], direction)
 
     def command(action: Any) -> Command:
-        way, turn = np.asarray(action["way"]).tolist(), np.asarray(action["turn"]).tolist()
-        return one(int(action["do"]), way, turn, int(action["direction"]))
+        try:
+            way, turn = np.asarray(action["way"]).tolist(), np.asarray(action["turn"]).tolist()
+            return one(int(action["do"]), way, turn, int(action["direction"]))
+        except (LookupError, TypeError):
+            what = "`do`, `way` (2 numbers), `turn` (1 number) and `direction`"
+            raise ValueError(f"an action is a dictionary with {what}, not {action!r:.200}") from None
 
     def commands(actions: Any) -> list[Command]:
         columns = [np.asarray(actions[key]).tolist() for key in ("do", "way", "turn", "direction")]
@@ -92,6 +96,8 @@ def _boxes(stride: float) -> ActionForm:
     space = spaces.Box(-1.0, 1.0, (len(ACTION_KINDS) + 3,), np.float32)
 
     def one(numbers: Sequence[float]) -> Command:
+        if np.shape(numbers) != space.shape:
+            raise ValueError(f"an action is {len(ACTION_KINDS) + 3} numbers, not {numbers!r:.200}")
         kinds, (east, north, turn) = numbers[: len(ACTION_KINDS)], numbers[len(ACTION_KINDS) :]
         do = max(range(len(ACTION_KINDS)), key=lambda kind: kinds[kind])
         direction = round(math.degrees(math.atan2(east, north)) / 45.0) % len(DIRECTIONS) if do == 3 else 0
@@ -115,9 +121,10 @@ def _numbers(stride: float) -> ActionForm:
     ]
 
     def command(action: Any) -> Command:
-        if not 0 <= action < len(known):
-            raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action}")
-        return known[int(action)]
+        number = np.asarray(action)
+        if number.size != 1 or not np.issubdtype(number.dtype, np.number) or not 0 <= number.item() < len(known):
+            raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action!r:.200}")
+        return known[int(number.item())]
 
     return ActionForm(spaces.Discrete(len(known)), command, lambda actions: [command(action) for action in actions])
 

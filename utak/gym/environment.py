@@ -155,8 +155,8 @@ def next_game(several: list[Game], random: np.random.Generator, options: dict[st
     number: int | None = (options or {}).get("scenario")
     if number is None:
         return several[int(random.integers(len(several)))] if len(several) > 1 else several[0]
-    if not 0 <= number < len(several):
-        raise ValueError(f"there is no scenario {number}: there are {len(several)}, numbered from 0")
+    if not isinstance(number, int | np.integer) or not 0 <= number < len(several):
+        raise ValueError(f"there is no scenario {number!r:.200}: there are {len(several)}, numbered from 0")
     return several[number]
 
 

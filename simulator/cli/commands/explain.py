@@ -69,6 +69,8 @@ def execute(options: argparse.Namespace) -> int:
     questions = questions_of_episode(
         read_begun_episode(options.episode), [str(Path(path).absolute()) for path in options.kb]
     )
+    if questions.lacking:
+        print(f"utak: {questions.lacking}; give rules with --kb FILE", file=sys.stderr)
     reason = _answer(questions, options)
     if options.json:
         print(as_json(reason.as_dict()))

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
 from simulator.terminal import exits
@@ -19,6 +20,9 @@ def add(parts: Any) -> None:
     form.add_argument("--html", metavar="FILE", help="write one page of HTML that plays it in any browser")
     form.add_argument("--gif", metavar="FILE", help="write a moving picture (needs pillow: pip install 'utak[gif]')")
     form.add_argument("--text", action="store_true", help="print actions, reasons, tables and changed facts (default)")
+    part.add_argument(
+        "--kb", action="append", metavar="FILE", default=[], help="with --html: a file of rules of the run; repeatable"
+    )
     part.add_argument("--force", action="store_true", help="overwrite a file that is no page or picture")
     part.set_defaults(execute=execute)
 
@@ -27,9 +31,14 @@ def execute(options: argparse.Namespace) -> int:
     """Read the episode and show it."""
     from simulator.replay.output import read_replayable, write_gif, write_page
 
+    if options.kb and options.html is None:
+        print("utak replay: --kb needs --html: only pages give reasons", file=sys.stderr)
+        return exits.USAGE
     episode = read_replayable(options.episode)
     if options.html is not None:
-        write_page(options.html, episode, options.force)
+        rule_files = [str(Path(path).absolute()) for path in options.kb]
+        if lacking := write_page(options.html, episode, options.force, rule_files):
+            print(f"utak: {lacking}; give rules with --kb FILE", file=sys.stderr)
     elif options.gif is not None:
         write_gif(options.gif, episode, options.force)
     else:

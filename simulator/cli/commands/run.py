@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from simulator.scenario.settings import PATH_CHOICES
@@ -101,7 +102,8 @@ def execute(options: argparse.Namespace) -> int:
     if options.html is not None:
         from simulator.replay.output import write_page
 
-        write_page(options.html, _recorded(lines), options.force)
+        rule_files = [str(Path(path).absolute()) for path in (*options.kb, *options.from_kb)]
+        write_page(options.html, _recorded(lines), options.force, rule_files)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 

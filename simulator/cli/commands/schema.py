@@ -6,7 +6,10 @@ from typing import Any
 
 from simulator.terminal import exits
 
-SCHEMA_NAMES = ("episode", "header", "step", "end", "run", "query", "plan", "routes", "test")
+SCHEMA_NAMES = (
+    *("episode", "header", "step", "end"),
+    *("run", "query", "plan", "routes", "test", "explain", "fix", "sweep", "sweep_row"),
+)
 
 
 def add(parts: Any) -> None:
@@ -14,7 +17,10 @@ def add(parts: Any) -> None:
     part = parts.add_parser(
         "schema", help="print the JSON Schema of episodes, or of what a command prints under --json"
     )
-    what = "episode (a line of one; the default), header, step, end, or the output of run, query, plan, routes, test"
+    what = (
+        "episode (a line of one; the default), header, step, end; the output of run, query, plan, routes, test, "
+        "explain, fix (explain --fix), sweep; sweep_row (a line of a sweep's results)"
+    )
     part.add_argument("name", nargs="?", choices=SCHEMA_NAMES, default="episode", metavar="NAME", help=what)
     part.set_defaults(execute=execute)
 

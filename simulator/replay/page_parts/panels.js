@@ -61,7 +61,7 @@ function planPanel(at) {
   } else parts.push(html("p", { class: "quiet" }, said("price", 3).length ? "No step of the plan is left." : "The facts of this step have no plan."));
   const unmet = said("unmet", 1).map(([goal]) => shown(goal));
   if (unmet.length) parts.push(html("p", {}, "no plan that was found attains " + unmet.join(", ")));
-  for (const [cost, least, end] of said("price", 3)) parts.push(html("p", {}, `cost ${shown(cost)} commands in all, at least ${shown(least)}; ${end === "proved" ? "the search ended with it" : "best found, not proved"}`));
+  for (const [cost, least, end] of said("price", 3).filter(([cost]) => cost !== "0")) parts.push(html("p", {}, `cost ${shown(cost)} commands in all, at least ${shown(least)}; ${end === "proved" ? "the search ended with it" : "best found, not proved"}`));
   const refuted = said("refuted", 2);
   if (refuted.length) parts.push(html("p", {}, "refuted:"), html("ul", {}, ...refuted.map(([step, given]) => html("li", {}, html("code", {}, shown(step)), " given ", html("code", {}, of("given", given).join(", ") || shown(given))))));
   for (const word of ["verdict", "because"]) for (const [value] of said(word, 1)) parts.push(html("p", {}, `${word}: `, html("code", {}, shown(value))));

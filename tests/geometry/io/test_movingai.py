@@ -19,6 +19,7 @@ READ = {
     "width before height": GOOD.replace("height 5\nwidth 6", "width 6\nheight 5"),
     "no type": GOOD.replace("type octile\n", ""),
     "blank lines after the rows": GOOD + "\n \n\r\n",
+    "a byte order mark": "\ufeff" + GOOD,
 }
 REFUSED = {
     "no number": (GOOD.replace("height 5", "height "), (2, 6), "one word was expected after height, not 0"),
@@ -43,7 +44,6 @@ REFUSED = {
     "a blank amid a row": (GOOD.replace("@.TW.@", "@. W.@"), (7, 3), "unknown square ' '"),
     "a form feed": (GOOD.replace("@.TW.@", "@.\fW.@"), (7, 3), "unknown square"),
     "an unknown square": (GOOD.replace("@.TW.@", "@.TX.@"), (7, 4), "unknown square 'X'"),
-    "a byte order mark": ("\ufeff" + GOOD, (1, 1), "no line of a head"),
 }
 
 

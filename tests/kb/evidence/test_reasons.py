@@ -122,6 +122,22 @@ def test_a_command_is_explained_by_the_goal_that_counted_then(run: tuple[Questio
             assert {old, new} & set(claims) == {goal}
 
 
+def test_places_are_said_from_where_they_are_counted(run: tuple[Questions, list[Any]]) -> None:
+    """All but the floor lie from where the robot woke; the floor, which begins there, lies from where the robot is."""
+    questions, lines = run
+    for line in lines:
+        told = {}
+        for fact in line["belief"]["facts"]:
+            if fact.startswith("offset("):
+                words = questions.why(fact, line["step"]).because
+                east, north = re.findall(r"(-?[\d.]+) (?:squares east|north)", words)
+                told[fact[7:].partition(",")[0]] = float(east), float(north), words
+        *place, words = told.pop("org")
+        assert place == pytest.approx(line["belief"]["place"], abs=0.006)
+        assert told.pop("floor")[:2] == pytest.approx([-value for value in place])
+        assert all(one.endswith("of where the robot woke") for one in (words, *(one for *_, one in told.values())))
+
+
 def test_a_step_or_a_cell_that_is_not_there_is_refused(run: tuple[Questions, list[Any]]) -> None:
     questions, lines = run
     with pytest.raises(BadInputError, match="there is no step"):

@@ -12,6 +12,18 @@ HOW = ("predicted", "blocked", "slipped", "turned", "misled", "smaller", "larger
 EXPLANATIONS, REGIONS, NODES, THINGS, NUMBERS = (1, 2, 3), ("a", "b", "c"), ("n1", "n2"), ("x", "y"), (1, 2, 3)
 CLASSES, PROPERTIES, VALUES = ("square", "brick", "disc"), ("shape", "colour"), ("square", "g")
 KINDS, PLACES, LEVELS, WAYS = ("attain", "explore", "pass", "settle"), ("g", "h"), (0, 1, 2), ("clear", "aside")
+ACTIVITIES = (
+    "keep",
+    "resume(clear)",
+    "errand",
+    "examine(g1)",
+    "carry(g1)",
+    "go",
+    "wish",
+    "look",
+    "pull(g1)",
+    "feel(g1)",
+)
 # By encoding: of each input predicate the values of its arguments.
 INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "accommodation": {
@@ -38,6 +50,12 @@ INPUTS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
         "full_squares": (("o1", "o2"), (9, 12)),
     },
     "aims": {"aim": (NUMBERS, KINDS, (10, 50, 90)), "chance": (NUMBERS, (20, 50, 100)), "last": (NUMBERS,)},
+    "agenda": {
+        "stage_goal": (("g1", "g2"), (1, 2)), "missing": (("g1", "g2"),), "unclear": (("g1", "g2"),),
+        "own_goals": (), "regions_forbidden": (),
+        "stages_attained": (), "constraints_doubtful": (), "hand_full": (), "robot_lost": (), "map_contradicted": (),
+        "begun": (("clear", "feel"),), "came_to": (ACTIVITIES, ("idle", "done", "impossible")),
+    },
     "feel": {
         "halt": (NUMBERS, (20, 90), (1, 2)), "tells": (NUMBERS, ("thing", "plain"), ("doorway", "square"), (1, 3)),
     },
@@ -69,6 +87,7 @@ ANSWERS: dict[str, dict[str, tuple[tuple[object, ...], ...]]] = {
     "rooms": {"door": (NUMBERS, (90,)), "opening": (NUMBERS,)},
     "shapes": {"shape": (("o1",), (*CLASSES, "polygon"), (2, 30, 62, 74, 98, 99))},
     "aims": {"choose": (NUMBERS,)},
+    "agenda": {"do": (ACTIVITIES,), "stage_attained": (), "verdict": (("done", "limit", "impossible", "possible_if"),)},
     "feel": {"feel": (NUMBERS,)},
     "boldness": {"take": (NUMBERS,)},
     "routes": {"choose": (NUMBERS,)},

@@ -19,7 +19,7 @@ from kb.objects.held_object import HeldObject
 from kb.perception.frame import Frame, turned
 from kb.task.task import Task
 from kb.world.object_names import ObjectNames
-from planner.deciding.decider import Decider
+from planner.agenda.decider import Decider
 from tests.kb.drawings import walked
 from tests.kb.eyes import impression, random_room, utak_in, world_of
 from tests.kb.localisation.test_tracker import ROOM

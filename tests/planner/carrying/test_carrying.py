@@ -17,10 +17,10 @@ from geometry.motion.se2 import Translate
 from kb.body import Body, Command, Grasp, Move, Push, Release, Turn
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
+from planner.agenda.decider import Decider
 from planner.carrying.manipulation_oracle import ManipulationPlan
 from planner.carrying.remaining_plan import PlanOperations, safe_prefix
 from planner.cycle import Options, Robot
-from planner.deciding.decider import Decider
 from planner.deciding.pursuit import Pursuer
 from planner.decision import Decision
 from planner.navigation.loop_guard import LoopGuard
@@ -204,6 +204,26 @@ def test_the_object_is_released_before_a_walk_and_both_goals_hold_at_the_end(tmp
         holding = (holding or isinstance(command, Push | Turn)) and not isinstance(command, Release)
     assert math.dist(done.session.table.utak, (15.5, 14.5)) <= 1.5
     assert max(done.session.table.polygons["t"].bounds[:2]) <= 3.0 + 1e-6
+
+
+def test_reasons_name_the_thing_in_hand_and_the_one_that_comes_next(tmp_path: Path) -> None:
+    """Two things are carried and pressed into corners, and one of two things is released for the other's sake."""
+    things = SQUARE + f'\nobject(u, r, "{box(20, 5, 25, 7)}").'
+    start = "object(x). shape(x, square). object(y). shape(y, brick)."
+    folder = scene(tmp_path, room(things), start, "at(x, corner(southwest)). at(y, corner(southeast)).")
+    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
+    session.wake()
+    released = []
+    while not session.finished:
+        held = session.robot.model.held
+        session.step()
+        action, why = session.line["action"], session.line["why"]
+        if action["do"] in ("push", "turn", "release"):
+            assert why.startswith(f"{held} "), why
+        released += [why.partition(";")[0]] if action["do"] == "release" else []
+    assert session.end().verdict == "done"
+    names = {session.robot.decider.bound[parameter] for parameter in "xy"}
+    assert set(released) & {f"{one} is released, because {(names - {one}).pop()} is moved next" for one in names}
 
 
 def test_first_beside_another_object_then_away(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kb.world.model import WorldModel
-from planner.carrying.open_facts import nearest_open_fact, possible_width, qualify, verdict_if_not_found
+from planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, verdict_if_not_found
 from planner.decision import Decision, TaskVerdict
 from planner.sights.walls import FeelingScope, unfelt_walls
 from tests.kb.drawings import known_model
@@ -25,25 +25,25 @@ def felt(model: WorldModel, but: int = 0) -> WorldModel:
 
 
 def test_a_wall_that_was_never_felt_may_be_an_object() -> None:
-    found = qualify(GIVEN_UP, situation_of(known_model(ROOM)))
+    found = open_fact_against(GIVEN_UP, situation_of(known_model(ROOM)))
     assert found.verdict == "possible_if" and found.why.startswith("no way leads there; it may be possible if the wall")
 
 
 def test_the_only_unfelt_wall_is_named() -> None:
     model = felt(known_model(ROOM), but=1)
-    assert qualify(GIVEN_UP, situation_of(model)).why.endswith(
+    assert open_fact_against(GIVEN_UP, situation_of(model)).why.endswith(
         "if the wall at POINT (-3.0 -1.0), which was never felt, is a thing that can be moved"
     )
 
 
 def test_nothing_is_open_where_all_is_felt_and_seen() -> None:
-    assert qualify(GIVEN_UP, situation_of(felt(known_model(ROOM)))) == GIVEN_UP
+    assert open_fact_against(GIVEN_UP, situation_of(felt(known_model(ROOM)))).result == "idle"
 
 
 def test_a_wall_felt_to_be_an_object_is_still_open() -> None:
     model = felt(known_model(ROOM))
     thing = replace(model, felt=dict.fromkeys(model.felt, "g"))
-    assert qualify(GIVEN_UP, situation_of(thing)).verdict == "possible_if"
+    assert open_fact_against(GIVEN_UP, situation_of(thing)).verdict == "possible_if"
 
 
 def test_the_floor_may_go_on_where_nothing_was_seen() -> None:
@@ -71,26 +71,15 @@ def test_an_object_with_reached_floor_all_around_leads_a_walking_robot_nowhere()
     assert "more than one thing" in nearest_open_fact(situation, (0.0, 0.0), FeelingScope(parting=False))
 
 
-@pytest.mark.parametrize("verdict", [None, TaskVerdict.DONE, TaskVerdict.LIMIT, TaskVerdict.POSSIBLE_IF])
-def test_other_verdicts_are_kept(verdict: TaskVerdict | None) -> None:
-    decision = Decision(None, "so", verdict)
-    assert qualify(decision, situation_of(known_model(ROOM))) == decision
-
-
-def test_a_verdict_that_no_fact_can_overturn_stays_impossible() -> None:
-    decision = replace(GIVEN_UP, unless=None)
-    assert qualify(decision, situation_of(known_model(ROOM))) == decision
-
-
 def test_an_open_fact_that_the_decision_names_comes_first() -> None:
-    found = qualify(replace(GIVEN_UP, unless="o1 is more than one thing"), situation_of(known_model(ROOM)))
+    found = open_fact_against(replace(GIVEN_UP, unless="o1 is more than one thing"), situation_of(known_model(ROOM)))
     assert found.why == "no way leads there; it may be possible if o1 is more than one thing"
 
 
 def test_the_unfelt_wall_nearest_to_the_place_of_the_verdict_is_named() -> None:
     model = known_model(ROOM)
     near = replace(GIVEN_UP, near=(5.5, 2.5))
-    assert "the wall at POINT (3.0 0.0)" in qualify(near, situation_of(model)).why
+    assert "the wall at POINT (3.0 0.0)" in open_fact_against(near, situation_of(model)).why
 
 
 def test_a_passage_may_be_wider_by_the_squares_of_both_its_walls() -> None:

@@ -15,7 +15,7 @@ from kb.language.reader import facts_from_text
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.obstacles import TRIAL_PUSH, Obstacle, obstacles
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision
 from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from planner.situation import Situation
 from planner.stages import Stage
@@ -37,20 +37,22 @@ BEHIND = rooms(["b" + "." * 9 + "gg" + ".." + "kk" + "." * 9 + "b"] * 3)  # each
 WITHIN = rooms(["b" + "." * 9 + "ggb" + "." * 12 + "b"] * 3)  # one column of the door
 AGAINST = rooms(["b" + "." * 9 + "gg" + "bb" + "." * 11 + "b"] * 3)  # a wall
 UTAK = Stage(facts_from_text("in(utak, room(next))."))
-GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
 
 
 class Clearing:
-    """A clearer of obstacles with its own tools."""
+    """Activities that are decided for a stage whose goals are given up with a verdict."""
 
     def __init__(self) -> None:
         self._clearer, self._tools = ObstacleClearer(), tools_with()
 
-    def on(self, stage: Stage, situation: Situation) -> Decision | None:
-        return self._clearer.continue_clearing(stage, situation, self._tools)
+    def on(self, stage: Stage, situation: Situation) -> Decision:
+        return self._clearer.clear_on(stage, situation, self._tools)
 
-    def before(self, decision: Decision, stage: Stage, situation: Situation) -> Decision:
-        return self._clearer.clear_before_verdict(decision, stage.goals, stage, situation, self._tools)
+    def before(self, stage: Stage, situation: Situation) -> Decision:
+        """What helps, if anything, before the goals of the robot itself are called impossible."""
+        remedies = (self._clearer.clear, self._clearer.feel, self._clearer.bare)
+        found = [remedy(stage.goals, stage, situation, self._tools) for remedy in remedies]
+        return next((one for one in found if one.command is not None), self._clearer.blame(situation))
 
 
 def felt(situation: Situation) -> Situation:
@@ -107,55 +109,51 @@ def test_an_object_in_a_door_that_did_not_move_is_drawn_out_first() -> None:
 def test_an_obstacle_is_grasped_and_its_plan_is_continued() -> None:
     situation, clearing = known(BEFORE), Clearing()
     (node,) = situation.model.objects
-    assert clearing.before(Decision(Push(1.0, 0.0), "on"), UTAK, situation).command == Push(1.0, 0.0)
-    first = clearing.before(GIVEN_UP, UTAK, situation)
+    first = clearing.before(UTAK, situation)
     assert isinstance(first.command, Move)
     beside = replace(situation.model, place=(node.patch.west - 0.5, node.patch.south + 0.5))
-    taken = clearing.before(GIVEN_UP, UTAK, situation_of(beside))
+    taken = clearing.before(UTAK, situation_of(beside))
     assert isinstance(taken.command, Grasp)
     assert "blocks the robot's way" in taken.why
     held = situation_of(replace(beside, held=node.name))
-    pushed = clearing.on(UTAK, held)
-    assert pushed is not None
-    assert isinstance(pushed.command, Push | Turn)
-    assert Clearing().on(UTAK, held) is None
+    assert isinstance(clearing.on(UTAK, held).command, Push | Turn)
+    assert Clearing().on(UTAK, held).result == "idle"
 
 
 def test_the_way_to_an_obstacle_is_continued_whatever_else_there_is_to_do() -> None:
     situation, clearing = known(BEFORE), Clearing()
-    assert clearing.on(UTAK, situation) is None
-    first = clearing.before(GIVEN_UP, UTAK, situation)
+    assert clearing.on(UTAK, situation).result == "idle"
+    first = clearing.before(UTAK, situation)
     nearer = situation_of(replace(situation.model, place=(1.5, 1.5)))
     again = clearing.on(UTAK, nearer)
-    assert again is not None
     assert again.why == first.why
-    assert again.command != first.command
-    assert clearing.on(UTAK, known(ELSEWHERE)) is None  # it blocks no longer
-    assert clearing.on(UTAK, situation) is None
+    assert again.command not in (None, first.command)
+    assert clearing.on(UTAK, known(ELSEWHERE)).result == "idle"  # it blocks no longer
+    assert clearing.on(UTAK, situation).result == "idle"
 
 
 def test_an_obstacle_that_may_be_wall_is_felt_first() -> None:
     situation = known(BEFORE)
     (node,) = situation.model.objects
     unsure = situation_of(replace(situation.model, objects=(replace(node, confidence=40),)))
-    assert "colour" in Clearing().before(GIVEN_UP, UTAK, unsure).why
+    assert "colour" in Clearing().before(UTAK, unsure).why
     hardly = situation_of(replace(situation.model, objects=(replace(node, confidence=10),)))
-    assert "it is felt" in Clearing().before(GIVEN_UP, UTAK, hardly).why  # what it is taken for is a wall
-    assert Clearing().before(GIVEN_UP, UTAK, felt(hardly)) == GIVEN_UP
+    assert "it is felt" in Clearing().before(UTAK, hardly).why  # what it is taken for is a wall
+    assert Clearing().before(UTAK, felt(hardly)).result == "idle"
 
 
 def test_an_object_that_the_goal_is_about_stays() -> None:
     situation = replace(felt(known(BEFORE)), binding={"x": "g"})
-    decided = Clearing().before(GIVEN_UP, Stage(facts_from_text("circled(utak, x).")), situation)
-    assert (decided.command, decided.verdict) == (None, "limit")  # nothing is proved of what lies behind it
-    assert Clearing().before(GIVEN_UP, UTAK, situation).command is not None
+    decided = Clearing().before(Stage(facts_from_text("circled(utak, x).")), situation)
+    assert decided.result == "limit"  # nothing is proved of what lies behind it
+    assert Clearing().before(UTAK, situation).result == "command"
 
 
-@pytest.mark.parametrize(("rows", "verdict"), [(BEFORE, "limit"), (WITHIN, "limit"), (ELSEWHERE, "impossible")])
-def test_an_obstacle_that_did_not_move_may_be_wedged_in(rows: list[str], verdict: str) -> None:
-    decided = Clearing().before(GIVEN_UP, UTAK, felt(known(rows, movable=0)))
-    assert (decided.command, decided.verdict) == (None, verdict)
-    assert ("g blocks the robot's way" in decided.why) == (verdict == "limit")
+@pytest.mark.parametrize(("rows", "result"), [(BEFORE, "limit"), (WITHIN, "limit"), (ELSEWHERE, "idle")])
+def test_an_obstacle_that_did_not_move_may_be_wedged_in(rows: list[str], result: str) -> None:
+    decided = Clearing().before(UTAK, felt(known(rows, movable=0)))
+    assert decided.result == result
+    assert ("g blocks the robot's way" in decided.why) == (result == "limit")
 
 
 @pytest.mark.parametrize(("rows", "depths"), [(WITHIN, (0, 3, 3, 3)), (AGAINST, (0, 3, 6, 6)), (BEFORE, (0, 0, 0, 0))])

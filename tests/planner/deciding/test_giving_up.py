@@ -12,8 +12,8 @@ from kb.task.task import Task
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import rooms_of
+from planner.agenda.decider import Decider
 from planner.cycle import Options, Robot
-from planner.deciding.decider import Decider
 from planner.decision import Decision, TaskVerdict
 from tests.planner.test_cycle import EMPTY, SQUARE, DrawnBody
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from kb.body import Move
 from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.model import WorldModel
-from planner.deciding.decider import Decider
+from planner.agenda.decider import Decider
 from planner.decision import Decision, TaskVerdict
 from simulator.explaining.fixing.recorded import task_from_texts
 from tests.planner.situations import all_felt, known_situation

@@ -13,10 +13,10 @@ from kb.language.reader import facts_from_text
 from kb.task.binding import Reconciliation
 from kb.world.model import WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE
+from planner.agenda.decider import Decider
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import ManipulationOracle, Request
 from planner.carrying.open_facts import qualify
-from planner.deciding.decider import Decider
 from planner.deciding.transport import Transporter
 from planner.deciding.verification import (
     Verifier,

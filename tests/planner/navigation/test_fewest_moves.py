@@ -10,7 +10,7 @@ from kb.language.diagnostics import SourceSpan
 from kb.language.terms import Symbol
 from kb.task.task import Task
 from kb.world.rooms import rooms_of
-from planner.deciding.decider import Decider
+from planner.agenda.decider import Decider
 from planner.navigation.fewest_moves import ASSUMED_MOVES, MOVE_COST, SQUARE_COST, FewestMoves
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import one_move_squares

@@ -88,6 +88,16 @@ def test_an_object_without_presses_or_not_held_is_not_pressed() -> None:
     assert not presser.is_pressed(GOAL, node, loose)
 
 
+def test_presses_are_given_for_the_object_that_is_pressed_alone() -> None:
+    situation, node = holding()
+    presser = Presser()
+    presser.begin(GOAL, node, LAND, situation)
+    assert presser.next(replace(node, name="another"), situation.model) is None
+    act = presser.next(node, situation.model)
+    assert act is not None and act.command == Push(ACROSS.dx, ACROSS.dy)
+    assert presser.is_pressed(GOAL, moved(node, 0.3, 0.0), situation)
+
+
 @pytest.mark.parametrize(
     ("gap", "short", "ways"),
     [

@@ -15,7 +15,7 @@ from planner.oracles.carry import CarryOracle, Certainty
 from planner.oracles.problem import PlacedGoal, TaskProblem
 from planner.situation import Situation
 from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.task_plan import RefutedStep
+from planner.tasking.task_plan import RefutedStep, TaskPlan
 from tests.planner.situations import known_situation
 
 WALL = "b" * 24
@@ -185,3 +185,10 @@ def test_the_robot_itself_goes_last() -> None:
     problem = TaskProblem(problem.nodes, goals, problem.places, fulfils, {"g2_there": stand}, problem.state)
     made = make_plan(problem, situation, CarryOracle(problem, situation))
     assert steps(made) == ["carry(g,g1_pose)", "arrive(g2_there)"]
+
+
+def test_a_plan_about_nothing_is_not_stated() -> None:
+    """Users' rules have a plan sought while it is not known where any goal holds: then there is none to follow."""
+    assert TaskPlan(()).facts == ()
+    assert TaskPlan((), unmet=("apart",)).facts[0] == "unmet(apart)"
+    assert "price(0,0,proved)" in TaskPlan((), goals=(PlacedGoal("g1", "at(x,start)", "g", False),)).facts

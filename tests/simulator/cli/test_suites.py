@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import shutil
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -76,7 +77,7 @@ def test_outcomes_are_one_json_object_and_junit_xml(
     assert list(complaints(NAMED_FORMS["test"], found)) == []
     assert found["exit_code"] == 66
     assert found["counts"] == {"passed": 0, "failed": 2, "bad": 1, "absent": 2, "bug": 0}
-    assert found["points"] == {"earned": 2, "possible": 6}
+    assert found["points"] == {"earned": 2, "possible": 7}  # that of the absent world, too, whose expect.lp is there
     assert all(list(one) == list(found["scenarios"][0]) for one in found["scenarios"])
     by_name = {Path(one["scenario"]).name: one for one in found["scenarios"]}
     assert set(by_name) == {"nowhere", "a_failed", "b_bad", "c_absent", "good"}
@@ -131,6 +132,39 @@ def test_points_are_told_where_they_are_weighed(scene: Path, capsys: pytest.Capt
     seen = capsys.readouterr()
     assert seen.out == f"ok {scene}: 4 of 4 points: limit in 30 steps: the script has ended\n"
     assert "1 of 1 passed; 4 of 4 points" in seen.err
+
+
+def test_what_a_scenario_is_worth_does_not_depend_on_whether_it_can_be_run(
+    scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A pupil's goal.lp with an error in it earns nothing of the points that expect.lp and trial.lp promise."""
+    (scene / "expect.lp").write_text("fails. weight(fails, 4).")
+    (scene / "trial.lp").write_text('max_steps(5). asks("unseen(R, N)", rows(1)).')
+    (scene / "goal.lp").write_text("at(utak, cornr(northeast)).")
+    for jobs in ("1", "2"):
+        assert main(["test", str(scene), str(scene), "--json", "--jobs", jobs]) == 65
+        found = json.loads(capsys.readouterr().out)
+        assert list(complaints(NAMED_FORMS["test"], found)) == []
+        assert found["points"] == {"earned": 0, "possible": 5}
+    assert main(["test", str(scene)]) == 65
+    assert capsys.readouterr().out == f"BAD {scene}: 0 of 5 points: see above\n"
+    (scene / "expect.lp").write_text("fails. weight(")
+    assert main(["test", str(scene), "--json"]) == 65
+    assert json.loads(capsys.readouterr().out)["scenarios"][0]["points"] is None
+
+
+def test_commands_that_repeat_a_test_take_any_name(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    scene.rename(tmp_path / "-odd\nname")
+    assert main(["test", "./-odd\nname", "--json"]) in (0, 1)
+    command = json.loads(capsys.readouterr().out)["scenarios"][0]["command"]
+    assert main(shlex.split(command)[1:]) in (0, 1)
+    (tmp_path / "-odd\nname" / "goal.lp").write_text("at(")
+    assert main(shlex.split(command)[1:]) == 65
+    error = capsys.readouterr().err.splitlines()[-4]
+    assert error.startswith("-odd\\u000aname/goal.lp:1:"), error
 
 
 def test_a_plan_sets_options_and_asks(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,7 @@ from random_scenes import write_scene
 
 from kb.language.diagnostics import BadInputError, CannotOpenError
 from simulator.cli.main import main
-from simulator.episode.episode import EpisodeLog, encode, read_episode
+from simulator.episode.episode import Episode, EpisodeLog, encode, read_episode
 
 ROOT = Path(__file__).resolve().parents[3]
 JUDGE = Path(os.environ.get("UTAK_JUDGE", ROOT.parent / "shared" / "judge" / "judge.py"))
@@ -80,6 +80,18 @@ def test_a_run_cut_anywhere_resumes_to_the_same_file(keep: int, tmp_path: Path) 
     path.write_bytes(whole[:keep])
     assert main([*options, "--resume", *([] if keep > 4000 or keep < 0 else ["--seed", "9"])]) == 75
     assert path.read_bytes() == whole
+
+
+def test_a_last_line_counts_when_only_its_line_end_is_missing(tmp_path: Path) -> None:
+    folder, path = write_scene(tmp_path / "s", 2), tmp_path / "ep.jsonl"
+    main(["run", str(folder), "--log", str(path)])
+    whole, episode = path.read_bytes(), read_episode(path)
+    assert episode.result is not None
+    path.write_bytes(whole[:-1])
+    assert read_episode(path) == episode
+    for cut in (2, 3, 30):
+        path.write_bytes(whole[:-cut])
+        assert read_episode(path) == Episode(episode.header, episode.steps, None)
 
 
 def test_a_killed_run_leaves_a_readable_episode_and_resumes(tmp_path: Path) -> None:

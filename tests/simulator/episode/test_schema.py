@@ -99,6 +99,37 @@ def test_outputs_of_commands_have_the_forms(
                 assert not validators[name].is_valid({k: v for k, v in value.items() if k != key})
 
 
+def test_trees_of_reasons_and_sweeps_have_the_forms(
+    validators: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario, log, rows = str(ROOT / "examples" / "go_northeast"), str(tmp_path / "ep.jsonl"), tmp_path / "rows.jsonl"
+    printed(capsys, "run", scenario, "--json", "--max-steps", "2", "--log", log)
+    questions = ([], ["verdict(V)"], ["kind(floor, K, C)"], ["--whynot", "held(o1)"], ["--cell", "3"])
+    trees = [printed(capsys, "explain", log, "--json", *words) for words in questions]
+    for tree in trees:
+        assert [error.message for error in validators["explain"].iter_errors(tree)] == []
+        assert accepts(NAMED_FORMS["explain"], tree)
+    deep = next(tree for tree in trees if any("rests_on" in below for below in tree.get("rests_on", ())))
+    lower = next(below for below in deep["rests_on"] if "rests_on" in below)["rests_on"][0]
+    for damage in ({"kind": "guess"}, {"claim": None}, {"rests_on": {}}, {"rests_on": [{}]}):
+        kept = {key: lower.get(key) for key in damage}
+        lower |= damage
+        assert not validators["explain"].is_valid(deep) and not accepts(NAMED_FORMS["explain"], deep)
+        lower |= kept
+        for key in (key for key, value in kept.items() if value is None):
+            del lower[key]
+    assert accepts(NAMED_FORMS["explain"], deep)
+    sweep = ["sweep", scenario, "--seeds", "0:2", "--max-steps", "1", "-o", str(rows), "--json"]
+    summary = printed(capsys, *sweep)
+    lines = [json.loads(line) for line in rows.read_text().splitlines()][1:]
+    assert len(lines) == 2
+    for name, value in (("sweep", summary), ("sweep_row", lines[0]), ("sweep_row", {**lines[1], "result": None})):
+        assert [error.message for error in validators[name].iter_errors(value)] == []
+        assert accepts(NAMED_FORMS[name], value)
+        for key in value:
+            assert not validators[name].is_valid({k: v for k, v in value.items() if k != key})
+
+
 VALUES = st.one_of(
     st.none(), st.booleans(), st.integers(-3, 200), st.integers(), st.floats(allow_nan=False, allow_infinity=False),
     st.text(max_size=4), st.sampled_from(["done", "move", "node(o1).", "node(o1).\n", "7" * 160, "e" * 159, "grasp"]),

@@ -1,5 +1,6 @@
 """`utak import`: folders, goals, formats and misuse."""
 
+from codecs import BOM_UTF8
 from pathlib import Path
 
 import pytest
@@ -106,6 +107,35 @@ def test_text_behind_a_link_is_not_shown(end: str, tmp_path: Path, capsys: pytes
     (tmp_path / "in" / f"file{end}").symlink_to(tmp_path / "secret")
     assert main(["import", str(tmp_path / "in" / f"file{end}"), str(tmp_path / "s")]) == 65
     assert "secret" not in capsys.readouterr().err.partition("error:")[2]
+
+
+@pytest.mark.parametrize("end", sorted(set(SAMPLES) - {".pgm", ".yaml", ".yml"}))
+def test_a_byte_order_mark_changes_nothing_and_utf_16_is_named(
+    end: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A Sokoban level with such a mark lost its first row, because the row was taken for a comment."""
+    (tmp_path / "a").mkdir()
+    texts = []
+    for mark in (b"", BOM_UTF8):
+        (tmp_path / "a" / f"file{end}").write_bytes(mark + SAMPLES[end])
+        assert main(["import", str(tmp_path / "a" / f"file{end}"), str(tmp_path / "s"), "--force"]) == 0
+        texts.append([path.read_text() for path in sorted((tmp_path / "s").iterdir())])
+    assert texts[0] == texts[1]
+    (tmp_path / "a" / f"file{end}").write_text(SAMPLES[end].decode("latin-1"), encoding="utf-16")
+    capsys.readouterr()
+    assert main(["import", str(tmp_path / "a" / f"file{end}"), str(tmp_path / "s"), "--force"]) == 65
+    assert "UTF-16" in capsys.readouterr().err
+
+
+def test_text_of_an_image_beyond_the_folder_of_its_head_is_not_shown(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "secret").write_text("root:secret:0\n")
+    (tmp_path / "in" / "map.yaml").write_bytes(SAMPLES[".yaml"].replace(b"image: map.pgm", b"image: ../secret"))
+    assert main(["import", str(tmp_path / "in" / "map.yaml"), str(tmp_path / "s")]) == 65
+    error = capsys.readouterr().err
+    assert "leads out of its folder" in error and "secret" not in error.partition("error:")[2]
 
 
 def test_malformed_files_are_imported_or_refused_with_a_place(tmp_path: Path) -> None:

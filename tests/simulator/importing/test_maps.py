@@ -318,7 +318,7 @@ def test_the_start_is_in_metres_of_the_map_frame(tmp_path: Path) -> None:
     world = imported(path, tmp_path / "s", "--start=-0.55,-1.75").world  # pixel (4, 2) from the south-west
     assert world.utak == (3.5, 1.5)  # one column and one row of margin are cut off
     turned = ros_map(tmp_path, yaml=YAML.replace("0.0]", f"{math.pi / 2}]"))
-    world = imported(turned, tmp_path / "t", "--start=-1.25,-1.55").world
+    world = imported(turned, tmp_path / "t", "--start", "-1.25,-1.55").world
     assert world.utak == (3.5, 1.5)
 
 

@@ -2,16 +2,25 @@
 
 import json
 import random
+import re
 from pathlib import Path
 from typing import Any
 
 from simulator.cli.main import main
 from simulator.episode.episode import Episode, read_episode
+from simulator.replay.packed.short_texts import values_of
 
 ROOT = Path(__file__).resolve().parents[3]
 HOSTILE = (
     '</script><script>document.title="taken"</script><!-- \x1b[31m \u202e \ud800 <img src=x onerror=alert(1)> ${1} `'
 )
+
+
+def body_of(page: str) -> str:
+    """Return the body of a page as markup, which the page holds packed."""
+    packed = re.search(r'id="player">\n(.*?)\n</script>', page, re.DOTALL)
+    assert packed is not None
+    return str(values_of(packed[1])[0]["body"])
 
 
 def recorded(folder: Path, example: str, *options: str) -> tuple[Path, Episode]:

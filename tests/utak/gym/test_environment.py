@@ -266,3 +266,25 @@ def test_gymnasium_finds_the_environment_by_the_name_of_its_package() -> None:
         [sys.executable, "-I", "-c", program], capture_output=True, text=True, timeout=120, check=True
     )
     assert done.stdout.strip() == "(9.5, 15.5)"
+
+
+@pytest.mark.parametrize(
+    ("form", "action"),
+    [
+        ("dict", None),
+        ("dict", {"do": 0}),
+        ("dict", {"do": 0, "way": 1.0, "turn": [0.0], "direction": 0}),
+        ("box", None),
+        ("box", np.zeros(9, np.float32)),
+        ("discrete", "3"),
+        ("discrete", np.zeros(2)),
+        ("discrete", None),
+    ],
+)
+def test_what_is_no_action_is_refused_in_words(form: str, action: Any) -> None:
+    env = TabletopEnv(ROOM, actions=form)
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="an action is "):
+        env.step(action)
+    with pytest.raises(ValueError, match="there is no scenario 'first'"):
+        env.reset(options={"scenario": "first"})

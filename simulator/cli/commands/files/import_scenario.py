@@ -70,7 +70,7 @@ def add(parts: Any) -> None:
         "--start",
         type=_point,
         metavar="X,Y",
-        help="where the robot wakes: cells of a .map, metres of a ROS map (--start=-1,2 with a minus)",
+        help="where the robot wakes: cells of a .map, metres of a ROS map",
     )
     part.add_argument(
         "--origin", choices=("bottom", "top"), help="the edge of a .map from which --start counts y (default bottom)"

@@ -132,6 +132,36 @@ def test_every_fact_and_command_of_the_plan_is_explained(run: Path) -> None:
     assert {"refuted(carry(o1,g1_r2),0)", "given(0,at(o2,here))", "means(g1,in(x,room(next)))"} <= set(claims)
 
 
+def test_what_a_step_takes_is_cited_from_where_the_step_has_that_number(run: Path) -> None:
+    """When the first step is done, the second one is the present one, and what was said of 1 is said of 0."""
+    episode = read_episode(run / "ep.jsonl")
+    questions, cited = questions_of_episode(episode), set()
+    for step in range(1, STEPS + 1):
+        for node in questions.why("plan(0, S)", step).walk():
+            if node.claim.startswith(("takes(", "verified(")):
+                number = node.claim.partition("(")[2].partition(",")[0].removesuffix(")")
+                planned = [
+                    [fact for fact in episode.steps[at]["belief"]["facts"] if fact.startswith(f"plan({number},")]
+                    for at in (step, int(node.source.removeprefix("step ")))
+                ]
+                assert planned[0] == planned[1] != []
+                cited.add(planned[0][0])
+    assert len(cited) == 2
+
+
+def test_why_not_knows_what_a_plan_is(run: Path) -> None:
+    """Its facts are neither seen nor measured: the plan states them or does not."""
+    questions = questions_of_episode(read_episode(run / "ep.jsonl"))
+    for fact in ("goal(g7)", "passes(0,d9)", "refuted(arrive(here),9)"):
+        assert questions.why_not(fact, 1).because.startswith("the task plan does not state it")
+    assert questions.why_not("unmet(g1)", 1).because == "the task plan does not state it"
+    assert questions.why_not("unmet(g1)", 0).because == "there is no task plan at this step"
+    cost = questions.why("price(K, L, E)", 1).because
+    assert cost.startswith("about 10 commands for the whole plan; lower bound by the estimates of the search ")
+    assert cost.endswith("; the search ended with it")
+    assert questions.why_not("held(o1)", 3).because == "the robot did not grasp it; this is in hand instead"
+
+
 def test_another_first_step_is_said_to_cost_more(run: Path) -> None:
     questions = questions_of_episode(read_episode(run / "ep.jsonl"))
     reason = questions.why_not("plan(0,arrive(g2_r1))", 1)

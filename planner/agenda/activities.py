@@ -1,0 +1,175 @@
+"""Activities: the steps of the robot for a stage of its task, and their results.
+
+The activities have the names of planner/asp/agenda.lp, which chooses among them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+
+from kb.body import Grasp, Release
+from kb.language.terms import Fact
+from kb.task.task import Task
+from planner.agenda.choice import Activity, Agenda, StageEnd
+from planner.agenda.own_goals import OwnGoals
+from planner.agenda.stage_turn import CONSTRAINTS, StageTurn
+from planner.carrying.open_facts import open_fact_against
+from planner.constraints import avoidances
+from planner.deciding.clearing import ObstacleClearer
+from planner.deciding.errands import ErrandRunner
+from planner.deciding.feeling import feeling_scope
+from planner.deciding.keeping import ConstraintKeeper
+from planner.deciding.tools import Tools
+from planner.deciding.transport import Transporter
+from planner.decision import Decision, TaskVerdict, nothing_to_do
+from planner.goals.robot_goals import destination
+from planner.per_model import PerModel
+from planner.sights.walls import ALL_WALLS
+from planner.situation import Situation
+
+
+class Activities:
+    """Does what the agenda chooses, and owns what carries it out.
+
+    Attributes
+    ----------
+    errands : carries out the task plan.
+    keeper : tells whether constraints were kept.
+    """
+
+    def __init__(self, task: Task, tools: Tools, pull: bool) -> None:
+        """Make activities of which none was begun.
+
+        Parameters
+        ----------
+        task : its constraints are looked at.
+        tools : executor, pursuer and verifier, with which commands are worked out.
+        pull : whether a held object may be pulled.
+        """
+        where = PerModel(destination)
+        self.errands, self.keeper = ErrandRunner(where, pull), ConstraintKeeper(task)
+        self._tools, self._transporter, self._clearer = tools, Transporter(), ObstacleClearer()
+        self._own = OwnGoals(where)
+
+    def decide(self, turn: StageTurn) -> Decision:
+        """Return the next command for a stage, or the verdict with which the robot gives up; done when it is attained.
+
+        Parameters
+        ----------
+        turn : the stage and what is believed; a stage without goals when all are attained.
+        """
+        about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
+        agenda = Agenda(self._facts(turn), turn.situation.rules, about)
+        last = nothing_to_do("all goals hold")
+        while isinstance(found := agenda.next(), Activity):
+            decision = self._allowed(self._do(found, turn, last), turn)
+            if decision.command is not None:
+                agenda.record()
+                return decision
+            agenda.note(found, decision)
+            if decision.verdict not in (None, TaskVerdict.DONE):
+                last = decision
+        agenda.record()
+        return self._ended(found, last, turn)
+
+    def _facts(self, turn: StageTurn) -> Iterator[str]:
+        """Yield the facts of a stage for the agenda, without full stops."""
+        model = turn.situation.model
+        for number, (name, goal) in enumerate(turn.goals.items(), 1):
+            yield f"stage_goal({name},{number})"
+            node = model.object(turn.situation.binding.get(str(goal.args[0]), ""))
+            if node is None:
+                yield f"missing({name})"
+            elif node.polygon is None:
+                yield f"unclear({name})"
+        yield from (f"begun({activity})" for activity in self._clearer.begun(turn.situation))
+        if not turn.stage.goals and self._doubt_of_done(turn.situation):
+            yield "constraints_doubtful"
+        given = {
+            "own_goals": bool(turn.stage.own),
+            "stages_attained": not turn.stage.goals,
+            "regions_forbidden": any(True for _ in avoidances(turn.situation.task)),
+            "hand_full": model.held is not None,
+            "robot_lost": model.lost,
+            "map_contradicted": model.anew and model.shaken,
+        }
+        yield from (name for name, holds in given.items() if holds)
+
+    def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
+        """Return what an activity comes to.
+
+        activity : what is done. turn : the stage and what is believed. last : the last verdict of an activity.
+        """
+        stage, situation, tools, clearer = turn.stage, turn.situation, self._tools, self._clearer
+        ruled = self.errands.within_rules(situation)
+        goals, carried = turn.goals_of(activity.subject), (stage, ruled, turn.reconciled, tools)
+        doing: Mapping[str, Callable[[], Decision]] = {
+            "release": lambda: _put_down(situation),
+            "keep": lambda: self.keeper.broken_at_start(situation),
+            "resume": lambda: self._resume(activity.subject, turn),
+            "agree": lambda: self._transporter.conflict(stage, situation),
+            "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
+            "find": lambda: self._freed(goals[0], turn, self._transporter.find(goals[0], *carried)),
+            "examine": lambda: self._freed(goals[0], turn, self._transporter.examine(goals[0], stage, ruled, tools)),
+            "carry": lambda: self._freed(goals[0], turn, self._transporter.carry(goals[0], *carried)),
+            "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
+            "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
+            "look": lambda: self._own.look(turn, self._transporter, tools),
+            "pull": lambda: clearer.pull(goals, stage, ruled, tools),
+            "clear": lambda: clearer.clear(goals, stage, ruled, tools),
+            "feel": lambda: clearer.feel(goals, stage, ruled, tools),
+            "bare": lambda: clearer.bare(goals, stage, ruled, tools),
+            "blame": lambda: _added(last, clearer.blame(ruled)),
+            "doubt": lambda: open_fact_against(
+                last, situation, ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(stage, situation)
+            ),
+        }
+        return doing[activity.kind]()
+
+    def _resume(self, begun: str, turn: StageTurn) -> Decision:
+        """Return the next command of what was begun in an earlier decision: clear or feel."""
+        go_on = {"clear": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
+        return go_on(turn.stage, turn.situation, self._tools)
+
+    def _freed(self, goal: Fact, turn: StageTurn, decision: Decision) -> Decision:
+        """Return a decision; in its place the push after which another object in hand no longer shuts the robot in."""
+        if decision.command is None and decision.verdict in (None, TaskVerdict.DONE):
+            return decision
+        ruled = self.errands.within_rules(turn.situation)
+        return self._transporter.free_robot(str(goal.args[0]), turn.stage, ruled, self._tools) or decision
+
+    def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
+        """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""
+        if not isinstance(decision.command, Grasp) or not self.errands.blamed_so_far:
+            return decision
+        return Decision(None, f"{turn.stage} cannot be attained as far as is known", TaskVerdict.LIMIT)
+
+    def _ended(self, end: StageEnd, last: Decision, turn: StageTurn) -> Decision:
+        """Return the decision with which a stage ends: done, or a verdict with its reason."""
+        if end.verdict == TaskVerdict.DONE:
+            return replace(last, why=f"{turn.stage} holds", verdict=TaskVerdict.DONE)
+        why = last.why
+        if end.forbidden:
+            why = f"{turn.stage} cannot be attained: users' rules forbid all that may still be done"
+        elif last.verdict is None:
+            why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"
+        if self.errands.blamed and not self.errands.is_shut_out:
+            why = f"{why}; {self.errands.blamed}"
+        return replace(last, why=why, verdict=end.verdict)
+
+    def _doubt_of_done(self, situation: Situation) -> str:
+        """Return why the constraints may not have been kept when all goals hold, in words; "" when they surely were."""
+        if situation.forbidden("utak") and not situation.avoided:
+            return "the robot went through every door that is sure"
+        return self.keeper.doubt_of_done(situation)
+
+
+def _put_down(situation: Situation) -> Decision:
+    """Return the release of what a robot holds that is lost."""
+    held = situation.model.held
+    why = f"{held} is released, because the robot does not know where it is: nothing looks as expected"
+    return Decision(Release(), why)
+
+
+def _added(verdict: Decision, found: Decision) -> Decision:
+    """Return what was found, with the reason of a verdict before its own."""
+    return found if found.verdict is None else replace(found, why=f"{verdict.why}; {found.why}")

@@ -1,0 +1,79 @@
+"""The next activity, chosen by planner/asp/agenda.lp from what is left to do and what came of earlier ones."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.reasoning.solver import solve
+from kb.tracing.decisions import record_decisions
+from planner.decision import Decision, TaskVerdict
+from planner.navigation.subgoals import PLANNER_ASP
+
+
+class Activity(NamedTuple):
+    """Something that the robot may do next.
+
+    Attributes
+    ----------
+    kind : what it does, as planner/asp/agenda.lp names it, such as carry.
+    subject : what it is about, such as the name of a goal; "" for nothing in particular.
+    """
+
+    kind: str
+    subject: str = ""
+
+    def __str__(self) -> str:
+        """Return the activity as the encoding writes it."""
+        return f"{self.kind}({self.subject})" if self.subject else self.kind
+
+
+class StageEnd(NamedTuple):
+    """Nothing is left to do for a stage.
+
+    Attributes
+    ----------
+    verdict : `done` for a stage that is attained; else the verdict with which the robot gives up.
+    forbidden : whether users' rules forbid all that may still be done.
+    """
+
+    verdict: TaskVerdict
+    forbidden: bool = False
+
+
+class Agenda:
+    """The choice among activities within one decision, with the results of those that were tried."""
+
+    def __init__(self, given: Iterable[str], rules: Sequence[Path], about: Sequence[str]) -> None:
+        """Make an agenda on which nothing was done.
+
+        Parameters
+        ----------
+        given : the facts of the present stage, without full stops, as planner/asp/agenda.lp wants them.
+        rules : the user's own encodings.
+        about : what the names of goals mean, in words; for the record of decisions alone.
+        """
+        self._facts, self._about = list(given), list(about)
+        self._files = [PLANNER_ASP / "agenda.lp", *rules]
+
+    def next(self) -> Activity | StageEnd:
+        """Return the activity that is chosen now, or the end when nothing is left."""
+        with record_decisions():  # of all choices, only the last one is recorded
+            answer = solve(self._files, self._facts) or ()
+        for atom in answer:
+            if atom.name == "do":
+                activity = atom.arguments[0]
+                return Activity(activity.name, " ".join(map(str, activity.arguments)))
+            if atom.name == "verdict":
+                return StageEnd(TaskVerdict(str(atom.arguments[0])))
+            if atom.name == "stage_attained":
+                return StageEnd(TaskVerdict.DONE)
+        return StageEnd(TaskVerdict.LIMIT, forbidden=True)
+
+    def note(self, activity: Activity, decision: Decision) -> None:
+        """Note that an activity came to no command, and why."""
+        self._facts.append(f"came_to({activity},{decision.result})")
+        self._about.append(f"{activity}: {decision.why}")
+
+    def record(self) -> None:
+        """Write the last choice into the record of decisions: it has the facts of all that were refused before."""
+        solve(self._files, self._facts, about=self._about)

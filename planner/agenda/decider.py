@@ -1,0 +1,261 @@
+"""The decider: from the world model to the next command, one stage of the task after the other until all are attained.
+
+What is done for a stage is chosen by planner/asp/agenda.lp (planner.agenda.activities).
+"""
+
+from collections.abc import Mapping, Sequence
+from copy import deepcopy
+from dataclasses import replace
+from pathlib import Path
+
+from geometry.kernels.arrays import XY
+from kb.language.terms import Fact
+from kb.language.vocabulary import ROBOT
+from kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
+from kb.task.task import Task
+from kb.tracing.decisions import record_decisions
+from kb.world.corners import Corner, corners
+from kb.world.model import WorldModel
+from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
+from planner.agenda.activities import Activities
+from planner.agenda.stage_turn import StageTurn
+from planner.carrying.plan_executor import PlanExecutor
+from planner.deciding.pursuit import Pursuer
+from planner.deciding.tools import Tools
+from planner.deciding.verification import Verifier
+from planner.decision import Decision, TaskVerdict
+from planner.screen.projection import CostMaps, costs_to_objects
+from planner.situation import Situation, regions_kept_off
+from planner.stages import Stage, parameters_that_keep_meaning, stages
+from planner.tasking.task_plan import TaskPlan
+
+PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that something cannot be, as things are
+
+
+class Decider:
+    """Decides, and owns everything that remembers earlier decisions.
+
+    The executor, the pursuer and the verifier belong to it alone: it lends them, as Tools, for the time of a call.
+
+    Attributes
+    ----------
+    task, paths, rules : the task, the name of the path-finder and the user's encodings, as given.
+    stages : the stages of the task, in order.
+    attained : how many of them are attained.
+    bound : what the task's parameters mean: parameter -> name of a node.
+    rooms, corners : as last believed, in squares, view frame; none before the first decision.
+    pursuer : walks after subgoals.
+    executor : follows manipulation plans.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        paths: str = "skeleton",
+        rules: tuple[Path, ...] = (),
+        pull: bool = True,
+        bound: Mapping[str, str] | None = None,
+        executor: PlanExecutor | None = None,
+        pursuer: Pursuer | None = None,
+    ) -> None:
+        """Make a decider that has decided nothing.
+
+        Parameters
+        ----------
+        task : the goals and what is said of their parameters.
+        paths : the path-finder of planner.navigation.routes: skeleton, visibility or grid.
+        rules : the user's own encodings.
+        pull : whether a held object may be pulled.
+        bound : what parameters of the task are known to mean: parameter -> name of a node; nothing if None.
+        executor : follows manipulation plans; a new one if None. It belongs to this decider from now on.
+        pursuer : walks after subgoals; a new one if None. It belongs to this decider from now on.
+        """
+        self.task, self.paths, self.rules = task, paths, rules
+        self.bound: Mapping[str, str] = bound or {}
+        self.stages = stages(task)
+        self.attained = 0
+        self.rooms: Rooms = NO_ROOMS
+        self.corners: Mapping[str, Corner] = {}
+        self.pursuer = pursuer or Pursuer(paths)
+        self.executor = executor or PlanExecutor(pull)
+        self._activities = Activities(task, Tools(self.executor, self.pursuer, Verifier()), pull)
+        self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
+        self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
+
+    @property
+    def plan(self) -> TaskPlan | None:
+        """The task plan under way, from its present errand on; None while there is none."""
+        return self._activities.errands.plan
+
+    @property
+    def attempt(self) -> TaskPlan | None:
+        """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
+        return self._activities.errands.attempt
+
+    def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return what to do after an impression.
+
+        Stages that are attained are counted as such for good.
+
+        Parameters
+        ----------
+        model : what is believed.
+        track : the places where the robot has been, the present one last: (x, y) in squares, map frame.
+
+        Returns
+        -------
+        Decision
+            The next command, or the verdict.
+
+        Raises
+        ------
+        BadInputError
+            The user's encodings are wrong.
+        """
+        self._activities.keeper.note(model)
+        decision = self._decided(model, track)
+        if decision.command is not None or decision.verdict == TaskVerdict.DONE:
+            return decision
+        return self._blamed_on_constraints(decision, model, track)
+
+    def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return what to do after an impression, whatever constraints have to do with a verdict.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        kept_off = regions_kept_off(self.task, self.bound, model, "utak", lenient=self._lenient)
+        cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
+        self.rooms = rooms_of(model, self.rules)
+        reconciled = self._reconcile(cost_maps)
+        self.corners = corners(model, self.rules)
+        places = tuple((float(x), float(y)) for x, y in track)
+        situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
+        situation = replace(situation, lenient=self._lenient, as_well=as_well_by_parameter(reconciled))
+        for stage in self.stages[self.attained :]:
+            decision = self._activities.decide(StageTurn(stage, situation, reconciled, track))
+            meant = self._activities.errands.meanings
+            if any(self.bound.get(parameter) != name for parameter, name in meant.items()):
+                self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
+                self._reconcile(cost_maps)
+            if decision.verdict not in (None, TaskVerdict.DONE):
+                if self._gave_up_meaning(stage, situation):
+                    return self._decided(model, track)  # the same is tried with another thing that is meant as well
+                vain = self._tried_in_vain(stage)
+                decision = replace(decision, why=f"{decision.why}; {vain}") if vain else decision
+            if decision.verdict != TaskVerdict.DONE:
+                return self._activities.keeper.guarded(decision, situation)
+            self.attained += 1
+        ended = self._activities.decide(StageTurn(Stage(()), situation, reconciled, track))
+        return replace(ended, why=self._done_in_words()) if ended.verdict == TaskVerdict.DONE else ended
+
+    def _done_in_words(self) -> str:
+        """Return that all stages hold, and which wishes do, in words."""
+        goals = [str(goal) for stage in self.stages for goal in stage.goals]
+        why = f"{' and '.join(goals) or 'all that the task asks for'} {'hold' if len(goals) > 1 else 'holds'}"
+        wished = [str(wish) for wish, _ in self.stages[-1].wishes] if self.stages else []
+        hold = self._activities.errands.wishes_that_hold
+        return why + "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
+
+    def is_done_without_wishes(self, model: WorldModel, track: Sequence[XY]) -> bool:
+        """Return whether all goals hold as they are, so that nothing but wishes is left.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        """
+        if not self.stages or not self.stages[-1].wishes:
+            return False
+        other = deepcopy(self)
+        other.stages = (*self.stages[:-1], replace(self.stages[-1], wishes=()))
+        with record_decisions():  # a question about the end, not a decision
+            return other.decide(model, track).verdict == TaskVerdict.DONE
+
+    def _blamed_on_constraints(self, decision: Decision, model: WorldModel, track: Sequence[XY]) -> Decision:
+        """Return a verdict with the constraints that leave no way, where there would be one without them.
+
+        A verdict that stands without the constraints stands with them. Else it is proved only when it stands for
+        regions that are taken as small as they surely are, too; if it does not, it is `limit`.
+
+        Parameters
+        ----------
+        decision : a verdict, but for `done`.
+        model, track : as for `decide`.
+        """
+        ways = [goal for goal in self.task.goals if goal.name in ("avoid", "carry_nothing_through")]
+        if not ways or any(str(goal) in decision.why for goal in ways):
+            return decision
+        without = self._asked(model, track, ways)
+        if without.command is None and without.verdict != TaskVerdict.DONE:
+            return without
+        alone = [goal for goal in ways if self._asked(model, track, [goal]).command is not None]
+        why = f"{decision.why}; {' and '.join(map(str, alone or ways))} leave{'s' * (len(alone or ways) == 1)} no way"
+        proof = self._asked(model, track, [], lenient=True)
+        if decision.verdict in PROOFS and proof.verdict in PROOFS:
+            return replace(decision, why=why, verdict=proof.verdict)
+        return replace(decision, why=why, verdict=TaskVerdict.LIMIT)
+
+    def _asked(
+        self, model: WorldModel, track: Sequence[XY], without: Sequence[Fact], lenient: bool = False
+    ) -> Decision:
+        """Return what would be decided without some constraints, or with regions as small as they surely are.
+
+        Parameters
+        ----------
+        model, track : as for `decide`.
+        without : the constraints that are left out.
+        lenient : whether regions count only where whole squares lie in them.
+        """
+        other = deepcopy(self)
+        other.task = replace(self.task, goals=tuple(goal for goal in self.task.goals if goal not in without))
+        other._activities.keeper.task, other._lenient = other.task, lenient
+        with record_decisions():  # a question about the verdict, not a decision
+            return other._decided(model, track)
+
+    def _gave_up_meaning(self, stage: Stage, situation: Situation) -> bool:
+        """Note that a stage cannot be attained with what one parameter means, where it may mean something else as well.
+
+        Returns False when there is nothing else to try.
+
+        Parameters
+        ----------
+        stage : of the task: the goals that shall hold now.
+        situation : what is believed (world model, rooms, doors, corners, track).
+        """
+        for parameter in (str(goal.args[0]) for goal in stage.carried):
+            others = {(parameter, name) for name in situation.as_well.get(parameter, ())}
+            meant = parameter, self.bound.get(parameter, "")
+            if others - self._given_up and meant not in self._given_up:
+                self._given_up |= {meant}
+                return True
+        return False
+
+    def _tried_in_vain(self, stage: Stage) -> str:
+        """Return which things were tried in vain that parameters of a stage may mean as well, in words; "" for none."""
+        parameters = dict.fromkeys(str(goal.args[0]) for goal in stage.carried)
+        given_up = sorted(self._given_up)
+        tried = [(x, [n for p, n in given_up if p == x and n != self.bound.get(x)]) for x in parameters]
+        words = (f"{x} may be {' or '.join(names)} as well, and that was no better" for x, names in tried if names)
+        return "; ".join(words)
+
+    def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
+        """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
+
+        A Reconciliation holds the binding (parameter -> name of a node), and the pairs that are doubtful or
+        contradicted.
+
+        Parameters
+        ----------
+        cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+        """
+        wished = [goal for stage in self.stages for goal, _ in stage.wishes]
+        goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
+        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT})
+        known = costs_to_objects(cost_maps)
+        kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
+        planned, before, given_up = self._activities.errands.meanings, self.bound, self._given_up
+        model, rules = cost_maps.model, self.rules
+        reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up)
+        self.bound = reconciled.binding
+        return reconciled

@@ -1,0 +1,52 @@
+"""The agenda: activities are chosen by rules that users can extend, and the record says what was refused before."""
+
+from pathlib import Path
+
+import pytest
+
+from kb.language.diagnostics import BadInputError
+from kb.language.reader import facts_from_text
+from kb.task.task import Task
+from kb.tracing.decisions import SolverCall, record_decisions
+from planner.agenda.decider import Decider
+from planner.decision import Decision
+from tests.kb.drawings import known_model
+
+ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
+NEXT_ROOM = Task({}, (), facts_from_text("in(utak, room(next))."))
+
+
+def decided(tmp_path: Path, rules: str = "") -> tuple[Decision, SolverCall]:
+    """Return what a robot in a closed room decides, and the record of the agenda. rules : of the user."""
+    file = tmp_path / "mine.lp"
+    file.write_text(rules)
+    model = known_model(ROOM)
+    with record_decisions() as record:
+        decision = Decider(NEXT_ROOM, rules=(file,) if rules else ()).decide(model, [model.place])
+    (choice,) = [call for call in record if call.encoding == "agenda"]
+    return decision, choice
+
+
+def test_before_a_verdict_walls_are_felt_and_the_record_says_what_was_refused_before(tmp_path: Path) -> None:
+    decision, choice = decided(tmp_path)
+    assert "felt" in decision.why and decision.command is not None
+    assert choice.answer == ("do(feel(robot))",)
+    refused = [fact for fact in choice.facts if fact.startswith("came_to")]
+    assert refused == ["came_to(errand,idle)", "came_to(go,impossible)", "came_to(clear(robot),idle)"]
+
+
+def test_a_rule_that_forbids_an_activity_ends_in_limit_and_says_so(tmp_path: Path) -> None:
+    decision, choice = decided(tmp_path, ":- do(feel(_)).")
+    assert (decision.command, decision.verdict) == (None, "limit")
+    assert "users' rules forbid all that may still be done" in decision.why
+    assert choice.answer == ()
+
+
+def test_a_rule_about_what_the_robot_is_stuck_with_counts_only_there(tmp_path: Path) -> None:
+    assert decided(tmp_path, ":- do(feel(S)), stuck(S, limit).")[0].command is not None
+    assert decided(tmp_path, ":- do(feel(S)), stuck(S, impossible).")[0].verdict == "limit"
+
+
+def test_rules_cannot_say_what_came_of_an_activity(tmp_path: Path) -> None:
+    with pytest.raises(BadInputError, match="came_to/2 says what there is, and rules add nothing to it"):
+        decided(tmp_path, "came_to(feel(robot), idle).")
