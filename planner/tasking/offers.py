@@ -15,7 +15,7 @@ from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import SPOT_SLACK, covered_by, spots
+from planner.oracles.spots import SPOT_SLACK, corner_spots, covered_by, spots
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -127,10 +127,13 @@ class Offers:
         return self._spots(name, problem, where, open_floor) or self._spots(name, problem, where, floor)
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
-        """Return places within the region of a goal."""
+        """Return places within the region of a goal: in its corners, where others find room, and at places apart."""
         floor = self._floors.by_kind[FloorKind.LIKELY]
-        inside = squares(self._carry(region.polygon), self.shape[1], self.shape[0])
-        return self._spots(name, problem, floor & inside, floor)
+        inside = floor & squares(self._carry(region.polygon), self.shape[1], self.shape[0])
+        outline = problem.state.things[name].outline
+        corners = corner_spots(self._carry(outline), inside, floor)
+        moves = list(dict.fromkeys(corners + spots(self._carry(outline), inside, floor, self._needed)))
+        return [end_about(Translate(float(columns), float(rows)).carry(outline)) for columns, rows in moves]
 
     def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
         """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""

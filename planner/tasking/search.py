@@ -95,7 +95,7 @@ class PlanSearch:
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
         self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
         overlaps = tuple(overlaps_of(problem))
-        self._facts = problem_facts(problem, (), situation, overlaps)
+        self._facts = problem_facts(problem, (), situation, frozenset(), overlaps)
         self._cut = False  # whether a search of clingo was cut off by its limit
         self._offers.note_in_way(things_in_way(overlaps))
 
@@ -177,8 +177,9 @@ class PlanSearch:
         if offered is None:
             return False
         self._problem = offered
-        overlaps = overlaps_of(offered, self._offers.spots)
-        self._facts = problem_facts(offered, self._offers.aside, self._situation, overlaps)
+        spots = self._offers.spots
+        overlaps = overlaps_of(offered, spots)
+        self._facts = problem_facts(offered, self._offers.aside, self._situation, spots, overlaps)
         return True
 
     def _estimated(self, errands: Sequence[Errand]) -> int:

@@ -60,6 +60,27 @@ WALLED_IN = [  # the robot cannot come to h
 ]
 
 
+CLOSET = [  # each of the things fits into the closet by itself, right behind the door; all do only along its walls
+    "b" * 29,
+    "b...............bbbbbbbbbbbbb",
+    "b...............bb..........b",
+    "b.hhhh..........bb..........b",
+    "b.hhhh......................b",
+    "b.hhhh......................b",
+    "b.hhhh......................b",
+    "b......U....................b",
+    "b...........................b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b" * 29,
+]
+
+
 def moved(dx: float, dy: float) -> At:
     """Return the end of a thing that is moved by (dx, dy) squares."""
     return At(Pose(dx, dy, 0.0))
@@ -98,6 +119,21 @@ def test_two_things_change_places_by_way_of_a_third_place() -> None:
     subjects = [errand.subject for errand in made.plan.errands]
     assert len(subjects) == 3 and subjects[0] == subjects[2] != subjects[1]
     assert made.plan.errands[0].action == "clear"
+
+
+def test_things_are_packed_along_the_walls_of_a_closet_and_no_place_in_a_refuted_region_is_asked_about() -> None:
+    situation = known_situation(CLOSET)
+    problem = drawn_problem(situation, {})
+    west, south = problem.state.things["g"].outline.bounds[:2]
+    closet = Inside(shapely.box(west + 16, south + 1, west + 26, south + 11))
+    problem = drawn_problem(situation, {"g": closet, "h": closet, "k": closet})
+    made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
+    assert not made.plan.unmet and len(made.plan.errands) == 3
+    known: set[tuple[object, ...]] = set()
+    for one in made.plan.refutations:
+        region = "_".join(one.place.split("_")[:2])
+        assert region == one.place or (one.subject, region, one.origin, one.given, one.stood) not in known
+        known.add((one.subject, one.place, one.origin, one.given, one.stood))
 
 
 def test_as_many_goals_as_possible_are_attained_and_the_others_named() -> None:
