@@ -134,7 +134,7 @@ def test_corner_spots_touch_two_walls_and_the_furthest_comes_first(data: st.Data
     places = {(x + dx, y + dy) for dx, dy in moves}
     corners = {(a, b) for a in (1, columns - 1 - width) for b in (1, rows - 1 - height)}
     assert len(moves) == len(places) and (x, y) not in places
-    assert places == corners - {(x, y)} or (x, y) in corners and places >= corners - {(x, y)}
+    assert places == corners - {(x, y)} or ((x, y) in corners and places >= corners - {(x, y)})
     lengths = [max(abs(dx), abs(dy)) + 0.42 * min(abs(dx), abs(dy)) for dx, dy in moves]
     assert lengths == pytest.approx(sorted(lengths, reverse=True), abs=1.5)
 
