@@ -271,16 +271,18 @@ class CarryOracle:
         kind, shut : the floor of the plan.
         """
         margin = self.floors.margin
-        walk = self._free(after, None, kind, shut)
-        outline = Translate(margin, margin).carry(before.things[name].outline)
-        crossed = swept_squares(plan, outline, walk.shape) & walk
-        labels = components(self._free(after, None, FloorKind.SURE, shut) | crossed).labels
-        sizes = np.bincount(labels.ravel())
-        sizes[0] = 0
-        outside = labels == sizes.argmax()  # most of the floor that can surely be walked on
-        x, y = int(after.robot[0]) + margin, int(after.robot[1]) + margin
-        if outside[y, x]:
+        square = int(after.robot[1]) + margin, int(after.robot[0]) + margin  # row, column
+        sure = self._free(after, None, FloorKind.SURE, shut)
+        outside = _largest_part(sure)  # most of the floor that can surely be walked on
+        if outside[square]:
             return ()
+        walk = sure
+        if kind != FloorKind.SURE:
+            walk = self._free(after, None, kind, shut)
+            outline = Translate(margin, margin).carry(before.things[name].outline)
+            outside = _largest_part(sure | (walk & swept_squares(plan, outline, walk.shape)))
+            if outside[square]:
+                return ()
         under = self._covered(name, after.things[name], (walk.shape[0], walk.shape[1]))
         rows, columns = np.nonzero(dilate(under, 1) & walk & ~outside)
         middle = after.things[name].outline.centroid
@@ -387,6 +389,14 @@ class CarryOracle:
             node: Node = self._problem.nodes[name]
             return np.pad(model.mask(node.patch), margin)
         return squares(Translate(margin, margin).carry(lying.outline), shape[1], shape[0])
+
+
+def _largest_part(free: Bools) -> Bools:
+    """Return the largest connected part of some free squares, (rows, columns) bool; all False without free squares."""
+    labels = components(free).labels
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return free & (labels == sizes.argmax())
 
 
 def _key(state: TableState) -> Any:

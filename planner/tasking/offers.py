@@ -70,6 +70,7 @@ class Offers:
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
         self._in_way: list[str] = []
         self._offered: set[str] = set()
+        self._further: set[str] = set()  # the things for which places past others were offered, too
 
     def keep_clear(self, way: Bools) -> None:
         """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
@@ -102,6 +103,25 @@ class Offers:
                         fulfils[name, f"{place}_{number}"] = problem.fulfils[name, place]
         self.spots |= new.keys()
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
+
+    def further_places(self, problem: TaskProblem) -> TaskProblem | None:
+        """Return the problem with places that things in the way reach only once others are moved; None for no new ones.
+
+        Parameters
+        ----------
+        problem : things, places and goals, with the places that `places` has offered.
+        """
+        new: dict[tuple[str, str], End] = {}
+        floor = self._floors.by_kind[FloorKind.SURE]
+        for name in [name for name in self._in_way if name not in self._further]:
+            self._further.add(name)
+            known = [problem.places[key] for key in self.aside if key[0] == name]
+            found = [end for end in self._spots(name, problem, floor, floor) if end not in known]
+            for number, end in enumerate(found, len(known) + 1):
+                new[name, f"spot{number}"] = end
+                self.aside.append((name, f"spot{number}"))
+        self.spots |= new.keys()
+        return replace(problem, places={**problem.places, **new}) if new else None
 
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
         """Return places on sure floor, off the ways of others where that can be, and off other things.

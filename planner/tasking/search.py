@@ -103,7 +103,7 @@ class PlanSearch:
         """Return the cheapest plan that was found and verified; one with unmet goals when there is none for all."""
         goals = self._problem.goals  # a wish that holds may not hold any more when something else was brought
         out_of_place = {goal.subject for goal in goals if not goal.holds or goal.weight is not None}
-        horizon = max(1, len(out_of_place))
+        horizon = shortest = max(1, len(out_of_place))
         most = horizon + MAX_MORE_ERRANDS
         best: TaskPlan | None = None
         facts: tuple[str, ...] = ()
@@ -117,6 +117,9 @@ class PlanSearch:
                 continue
             if proposal.unmet and best is None and horizon < most:
                 horizon += 1
+                continue
+            if proposal.unmet and best is None and self._take(self._offers.further_places(self._problem)):
+                horizon = shortest
                 continue
             if proposal.unmet:
                 best, proved = best or TaskPlan(proposal.errands, proposal.unmet), True
@@ -173,7 +176,10 @@ class PlanSearch:
         """
         if not {goal.name for goal in self._problem.goals}.issuperset(unmet):
             self._offers.note_in_way(list(self._problem.nodes))
-        offered = self._offers.places(self._problem)
+        return self._take(self._offers.places(self._problem))
+
+    def _take(self, offered: TaskProblem | None) -> bool:
+        """Go on with a problem that has further places; return False for None, and change nothing then."""
         if offered is None:
             return False
         self._problem = offered
