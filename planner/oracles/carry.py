@@ -396,7 +396,8 @@ def _largest_part(free: Bools) -> Bools:
     labels = components(free).labels
     sizes = np.bincount(labels.ravel())
     sizes[0] = 0
-    return free & (labels == sizes.argmax())
+    largest: Bools = free & (labels == sizes.argmax())
+    return largest
 
 
 def _key(state: TableState) -> Any:
