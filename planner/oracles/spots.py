@@ -4,12 +4,14 @@ It certifies that the object, not turned, lies there over squares of a floor, an
 from square to square.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Ints
+from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from planner.screen.projection import dilate
@@ -61,10 +63,42 @@ def corner_spots(outline: Any, floor: Bools, around: Bools) -> list[tuple[int, i
     if usable is None or not usable.mask.any():
         return []
     row, column = usable.home
-    places = np.argwhere(usable.mask)
-    ends = {tuple(places[np.argmax(places @ np.array(diagonal))].tolist()) for diagonal in DIAGONALS}
-    deepest = sorted(ends, key=lambda place: (-int(usable.far[place]), place))
+    deepest = sorted(_corners_of(usable.mask), key=lambda place: (-int(usable.far[place]), place))
     return [(x - column, y - row) for y, x in deepest]
+
+
+def turned_corner_outlines(outline: Any, floor: Bools) -> list[Any]:
+    """Return an object as it lies, turned by quarters, in the corners of a floor; outlines in the frame of the arrays.
+
+    At most four for each way in which the object then lies otherwise than now. Whether it can be brought there is not
+    asked.
+
+    Parameters
+    ----------
+    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
+    floor : (rows, columns) bool, squares on which it may lie.
+    """
+    rows, columns = floor.shape
+    found, shapes = list[Any](), set[bytes]()
+    for quarters in range(4):
+        turned = Rotate(90.0 * quarters, (0.5, 0.5)).carry(
+            outline
+        )  # about the middle of a square, as the robot turns it
+        west, south = (math.floor(v) for v in turned.bounds[:2])
+        turned = Translate(float(-west), float(-south)).carry(turned)
+        own = squares(turned, columns, rows)
+        new = own.any() and own.tobytes() not in shapes
+        shapes.add(own.tobytes())
+        fits = _fits(floor, np.argwhere(own).astype(np.int32)) if new and quarters else np.zeros_like(floor)
+        found += [Translate(float(x), float(y)).carry(turned) for y, x in sorted(_corners_of(fits))]
+    return found
+
+
+def _corners_of(mask: Bools) -> set[tuple[int, int]]:
+    """Return the squares (row, column) of a mask that are furthest along its four diagonals; none of an empty mask."""
+    places = np.argwhere(mask)
+    ends = [places[np.argmax(places @ np.array(diagonal))] for diagonal in DIAGONALS if len(places)]
+    return {(int(row), int(column)) for row, column in ends}
 
 
 class _Usable(NamedTuple):

@@ -10,7 +10,7 @@ from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import At, Inside
 from geometry.motion.se2 import Pose, Translate
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import corner_spots, spots
+from planner.oracles.spots import corner_spots, spots, turned_corner_outlines
 from tests.planner.situations import known_situation
 
 ROOM = [
@@ -137,6 +137,27 @@ def test_corner_spots_touch_two_walls_and_the_furthest_comes_first(data: st.Data
     assert places == corners - {(x, y)} or ((x, y) in corners and places >= corners - {(x, y)})
     lengths = [max(abs(dx), abs(dy)) + 0.42 * min(abs(dx), abs(dy)) for dx, dy in moves]
     assert lengths == pytest.approx(sorted(lengths, reverse=True), abs=1.5)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_turned_corner_outlines_are_the_thing_turned_by_quarters_in_the_corners_of_the_floor(
+    data: st.DataObject,
+) -> None:
+    rows, columns = data.draw(st.integers(8, 16)), data.draw(st.integers(8, 16))
+    width, height = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 4))
+    floor = np.zeros((rows, columns), np.bool_)
+    floor[1:-1, 1:-1] = True
+    outline = shapely.box(1, 1, 1 + width, 1 + height)
+    if data.draw(st.booleans()):
+        outline = shapely.Polygon([(1, 1), (5, 1), (5, 2), (2, 2), (2, 5), (1, 5)])  # an L
+    found = turned_corner_outlines(outline, floor)
+    assert len(found) == (12 if len(outline.exterior.coords) > 5 else 0 if width == height else 4)
+    for one in found:
+        low, high = np.round(one.bounds[:2]), np.round(one.bounds[2:])
+        assert one.area == pytest.approx(outline.area)
+        assert low[0] == 1 or high[0] == columns - 1
+        assert low[1] == 1 or high[1] == rows - 1
 
 
 def test_a_region_is_reached_where_it_is_free() -> None:
