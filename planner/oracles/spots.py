@@ -18,6 +18,7 @@ from planner.screen.projection import dilate
 
 SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
 DIAGONALS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # (rows, columns) towards the corners of a floor
+TURN_DECIMALS = 6  # digits of coordinates after a quarter turn that count; bounds rounding
 MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
 MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on choices
 
@@ -80,17 +81,16 @@ def turned_corner_outlines(outline: Any, floor: Bools) -> list[Any]:
     """
     rows, columns = floor.shape
     found, shapes = list[Any](), set[bytes]()
-    for quarters in range(4):
-        turned = Rotate(90.0 * quarters, (0.5, 0.5)).carry(
-            outline
-        )  # about the middle of a square, as the robot turns it
-        west, south = (math.floor(v) for v in turned.bounds[:2])
+    for quarters in range(4):  # about the middle of a square, as the robot turns it
+        turned = Rotate(90.0 * quarters, (0.5, 0.5)).carry(outline)
+        west, south = (math.floor(round(v, TURN_DECIMALS)) for v in turned.bounds[:2])
         turned = Translate(float(-west), float(-south)).carry(turned)
+        if turned.bounds[2] > columns or turned.bounds[3] > rows:
+            continue
         own = squares(turned, columns, rows)
-        new = own.any() and own.tobytes() not in shapes
+        fits = np.zeros_like(floor) if own.tobytes() in shapes else _fits(floor, np.argwhere(own).astype(np.int32))
         shapes.add(own.tobytes())
-        fits = _fits(floor, np.argwhere(own).astype(np.int32)) if new and quarters else np.zeros_like(floor)
-        found += [Translate(float(x), float(y)).carry(turned) for y, x in sorted(_corners_of(fits))]
+        found += [Translate(float(x), float(y)).carry(turned) for y, x in sorted(_corners_of(fits)) if quarters]
     return found
 
 
