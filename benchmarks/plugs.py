@@ -22,7 +22,7 @@ from pathlib import Path
 from benchmarks.claims import child
 from benchmarks.claims.refute import searched
 from benchmarks.claims.run import Limits, judged, run_child, warm_up
-from benchmarks.worlds.filled.doorplugs import PLUG_KINDS, PLUG_TASKS, plugged_world
+from benchmarks.worlds.filled.doorplugs import PLUG_KINDS, PLUG_TASKS, PULL_KINDS, plugged_world
 from benchmarks.worlds.odd.tasks import NO
 from benchmarks.worlds.scenes import write
 
@@ -68,10 +68,11 @@ def run_one(kind: str, task: str, seed: int, limits: Limits, folder: Path, keep:
     path, cycles = place / child.RESULT_FILE, place / child.CYCLES_FILE
     told = json.loads(path.read_text()) if path.exists() else {}
     achieved, verdict = bool(told.get("achieved")), str(told.get("verdict", ended))
-    possible: bool | None = False if world.possible == NO else True if achieved else None
+    cannot = world.possible == NO or (not limits.pull and kind in PULL_KINDS)
+    possible: bool | None = False if cannot else True if achieved else None
     if possible is None and limits.search and searched(place, limits.search, limits.pull).answer == "solvable":
         possible = True
-    false_done = verdict == "done" and (not achieved or world.possible == NO)
+    false_done = verdict == "done" and (not achieved or cannot)
     laws = [] if not told else [found for found in judged(place) or [] if "expected" not in found]
     row = PlugRow(
         kind=kind,

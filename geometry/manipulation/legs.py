@@ -16,7 +16,7 @@ import shapely
 from geometry.kernels.arrays import XY, Bools, Floats, Longs
 from geometry.manipulation.workspace import Workspace, widened_body
 from geometry.motion.se2 import Motion, Rotate, Translate
-from geometry.raster.rasterize import covered_areas
+from geometry.raster.rasterize import MIN_COVERED_AREA, covered_areas
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS
 
 MAX_STOPS = 40  # stops of a push that are tried as its corners, besides those where it turns; convention, for time
@@ -63,7 +63,7 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
     """Return the step (columns, rows) from the robot's square to the neighbour that the body covers most.
 
     Each is -1, 0 or 1, columns to the east, rows to the north. Of equally covered squares one that shares an edge comes
-    first. None when the body covers none of the eight neighbours.
+    first. None when the body covers none of the eight neighbours, as `squares` tells it: a sliver will do.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def direction_to_grasp(shape: Any, place: XY) -> tuple[int, int] | None:
     column, row = math.floor(place[0]) - 1, math.floor(place[1]) - 1
     near = shapely.transform(shape, lambda p: p - np.array([column, row]))
     covered = covered_areas(near, 3, 3)
-    best = max(PUSH_DIRECTIONS, key=lambda d: (round(float(covered[d[1] + 1, d[0] + 1]), 6), d[0] * d[1] == 0))
-    return best if covered[best[1] + 1, best[0] + 1] > 1e-9 else None
+    met = [d for d in PUSH_DIRECTIONS if covered[d[1] + 1, d[0] + 1] > MIN_COVERED_AREA]
+    return max(met, key=lambda d: (round(float(covered[d[1] + 1, d[0] + 1]), 6), d[0] * d[1] == 0), default=None)
 
 
 def round_motion(motion: Motion) -> Motion:

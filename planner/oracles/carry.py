@@ -15,10 +15,12 @@ from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End, Inside, moved
 from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
 from geometry.motion.se2 import Pose, Rotate, Translate
+from geometry.raster.components import components
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from kb.language.vocabulary import ROBOT
 from kb.world.model import Node
+from planner.carrying.manipulation_oracle import swept_squares
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import Lying, TableState, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL, dilate
@@ -234,13 +236,13 @@ class CarryOracle:
     def _free_handed(self, state: TableState, name: str, end: End, kind: FloorKind, shut: frozenset[str]) -> _Carrying:
         """Return a plan after which the object does not shut the robot in; any plan where there is no such plan.
 
-        A robot that pulls a thing into a dead end stands behind it at last.
+        A robot that pulls a thing into a dead end, or into what may be one, stands behind it at last.
         """
         plan = self._plan(state, name, end, kind, shut)
         if not plan.legs:
             return _Carrying(plan)
         after = self._after(state, name, plan, "")
-        inner = self._inner_grasps(after, name, plan, kind, shut)
+        inner = self._inner_grasps(after, name, plan, state, kind, shut)
         if not inner:
             return _Carrying(plan)
         other = self._plan(state, name, end, kind, shut, inner)
@@ -251,28 +253,38 @@ class CarryOracle:
         after: TableState,
         name: str,
         plan: CarryingPlan,
+        before: TableState,
         kind: FloorKind,
         shut: frozenset[str],
     ) -> tuple[XY, ...]:
-        """Return the grasps of an object from where most of the floor cannot be reached, once it lies; () if it can.
+        """Return the grasps of an object that end off most of the floor, once it lies; () if the plan's own does not.
 
-        As (x, y) of the robot from the middle of the object as it lay before the plan.
+        As (x, y) of the robot from the middle of the object as it lay before the plan. Floor that is not surely free
+        counts only where the plan crosses it: what is hoped to lead on there may be a dead end.
 
         Parameters
         ----------
         after : the state after the plan.
         name : the object.
         plan : the plan.
-        kind, shut : the floor on which the robot walks.
+        before : the state before it.
+        kind, shut : the floor of the plan.
         """
         margin = self.floors.margin
-        walk = self._free(after, None, kind, shut)
-        far = reach(walk, int(after.robot[0]) + margin, int(after.robot[1]) + margin)
-        outside = walk & (far == GEODESIC_UNREACHED)
-        if 2 * outside.sum() < walk.sum():  # most of the floor can be reached
+        square = int(after.robot[1]) + margin, int(after.robot[0]) + margin  # row, column
+        sure = self._free(after, None, FloorKind.SURE, shut)
+        outside = _largest_part(sure)  # most of the floor that can surely be walked on
+        if outside[square]:
             return ()
+        walk = sure
+        if kind != FloorKind.SURE:
+            walk = self._free(after, None, kind, shut)
+            outline = Translate(margin, margin).carry(before.things[name].outline)
+            outside = _largest_part(sure | (walk & swept_squares(plan, outline, walk.shape)))
+            if outside[square]:
+                return ()
         under = self._covered(name, after.things[name], (walk.shape[0], walk.shape[1]))
-        rows, columns = np.nonzero(dilate(under, 1) & ~under & (far != GEODESIC_UNREACHED))
+        rows, columns = np.nonzero(dilate(under, 1) & walk & ~outside)
         middle = after.things[name].outline.centroid
         assert plan.pose is not None
         offsets = np.column_stack([columns + 0.5 - margin - middle.x, rows + 0.5 - margin - middle.y])
@@ -377,6 +389,15 @@ class CarryOracle:
             node: Node = self._problem.nodes[name]
             return np.pad(model.mask(node.patch), margin)
         return squares(Translate(margin, margin).carry(lying.outline), shape[1], shape[0])
+
+
+def _largest_part(free: Bools) -> Bools:
+    """Return the largest connected part of some free squares, (rows, columns) bool; all False without free squares."""
+    labels = components(free).labels
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    largest: Bools = free & (labels == sizes.argmax())
+    return largest
 
 
 def _key(state: TableState) -> Any:

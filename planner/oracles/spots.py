@@ -4,17 +4,21 @@ It certifies that the object, not turned, lies there over squares of a floor, an
 from square to square.
 """
 
+import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Ints
+from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from planner.screen.projection import dilate
 
 SPOT_SLACK = 0.4  # squares about an outline within which a thing lies at its spot: less than half a square
+DIAGONALS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # (rows, columns) towards the corners of a floor
+TURN_DECIMALS = 6  # digits of coordinates after a quarter turn that count; bounds rounding
 MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
 MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on choices
 
@@ -32,25 +36,101 @@ def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[
     around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
     keep_clear : (rows, columns) bool, squares that others need.
     """
-    rows, columns = floor.shape
-    own = squares(outline, columns, rows)
-    if not own.any():
+    usable = _usable(outline, floor, around)
+    if usable is None:
         return []
-    offsets = np.argwhere(own) - np.argwhere(own).min(axis=0)
-    row, column = (int(v) for v in np.argwhere(own).min(axis=0))
-    passable = _fits(around | floor | own, offsets)
-    if not passable[row, column]:
-        return []
-    far = reach(passable, column, row)
-    usable = _fits(floor, offsets) & (far != GEODESIC_UNREACHED)
-    usable[row, column] = False
-    clear = usable & _fits(~keep_clear, offsets)
-    roomy = clear & _fits(~dilate(~(around | floor | own), 1), offsets)
+    offsets, passable, far, mask, (row, column) = usable
+    clear = mask & _fits(~keep_clear, offsets)
+    roomy = clear & _fits(~dilate(~passable, 1), offsets)
     apart = int(max(offsets.max(axis=0)) + 1)
     chosen = _apart(roomy, far, MAX_CLEAR_SPOTS, apart)
     chosen += _apart(clear & ~roomy, far, MAX_CLEAR_SPOTS - len(chosen), apart)
-    chosen += _apart(usable & ~clear, far, MAX_OTHER_SPOTS, apart)
+    chosen += _apart(mask & ~clear, far, MAX_OTHER_SPOTS, apart)
     return [(x - column, y - row) for x, y in chosen]
+
+
+def corner_spots(outline: Any, floor: Bools, around: Bools) -> list[tuple[int, int]]:
+    """Return translations (columns, rows) of an object to the corners of a floor: there it leaves most room for others.
+
+    The corner that is furthest to be pushed to comes first. At most four; [] for none.
+
+    Parameters
+    ----------
+    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
+    floor : (rows, columns) bool, squares on which it may lie.
+    around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
+    """
+    usable = _usable(outline, floor, around)
+    if usable is None or not usable.mask.any():
+        return []
+    row, column = usable.home
+    deepest = sorted(_corners_of(usable.mask), key=lambda place: (-int(usable.far[place]), place))
+    return [(x - column, y - row) for y, x in deepest]
+
+
+def turned_corner_outlines(outline: Any, floor: Bools) -> list[Any]:
+    """Return an object as it lies, turned by quarters, in the corners of a floor; outlines in the frame of the arrays.
+
+    At most four for each way in which the object then lies otherwise than now. Whether it can be brought there is not
+    asked.
+
+    Parameters
+    ----------
+    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
+    floor : (rows, columns) bool, squares on which it may lie.
+    """
+    rows, columns = floor.shape
+    found, shapes = list[Any](), set[bytes]()
+    for quarters in range(4):  # about the middle of a square, as the robot turns it
+        turned = Rotate(90.0 * quarters, (0.5, 0.5)).carry(outline)
+        west, south = (math.floor(round(v, TURN_DECIMALS)) for v in turned.bounds[:2])
+        turned = Translate(float(-west), float(-south)).carry(turned)
+        if turned.bounds[2] > columns or turned.bounds[3] > rows:
+            continue
+        own = squares(turned, columns, rows)
+        fits = np.zeros_like(floor) if own.tobytes() in shapes else _fits(floor, np.argwhere(own).astype(np.int32))
+        shapes.add(own.tobytes())
+        found += [Translate(float(x), float(y)).carry(turned) for y, x in sorted(_corners_of(fits)) if quarters]
+    return found
+
+
+def _corners_of(mask: Bools) -> set[tuple[int, int]]:
+    """Return the squares (row, column) of a mask that are furthest along its four diagonals; none of an empty mask."""
+    places = np.argwhere(mask)
+    ends = [places[np.argmax(places @ np.array(diagonal))] for diagonal in DIAGONALS if len(places)]
+    return {(int(row), int(column)) for row, column in ends}
+
+
+class _Usable(NamedTuple):
+    """The places of an object on a floor, each by the lowest row and column of its squares.
+
+    offsets : (n, 2) rows and columns of its squares from there. passable : the squares over which it may be pushed.
+    far : how far it is pushed to each place. mask : the places but its own. home : its own, (row, column).
+    """
+
+    offsets: Ints
+    passable: Bools
+    far: Ints
+    mask: Bools
+    home: tuple[int, int]
+
+
+def _usable(outline: Any, floor: Bools, around: Bools) -> _Usable | None:
+    """Return the places of an object that it can be pushed to, as for `spots`; None where it cannot even lie."""
+    rows, columns = floor.shape
+    own = squares(outline, columns, rows)
+    if not own.any():
+        return None
+    row, column = (int(v) for v in np.argwhere(own).min(axis=0))
+    offsets = np.argwhere(own) - np.array([row, column])
+    passable = around | floor | own
+    fits = _fits(passable, offsets)
+    if not fits[row, column]:
+        return None
+    far = reach(fits, column, row)
+    mask = _fits(floor, offsets) & (far != GEODESIC_UNREACHED)
+    mask[row, column] = False
+    return _Usable(offsets, passable, far, mask, (row, column))
 
 
 def _fits(mask: Bools, offsets: Ints) -> Bools:

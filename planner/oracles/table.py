@@ -58,6 +58,14 @@ ORACLES = (
         CostClass.BEFORE,
     ),
     OracleEntry(
+        "parts",
+        "does a place of a thing lie within a region where a goal of it holds?",
+        "planner.tasking.facts",
+        ("within/3",),
+        "the outline at the place lies within the region, so that the region cannot be refuted without the place",
+        CostClass.BEFORE,
+    ),
+    OracleEntry(
         "spots",
         "where can a thing lie out of the way, or within the region of its goal?",
         "planner.oracles.spots",

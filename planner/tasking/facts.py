@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -64,6 +64,7 @@ def problem_facts(
     problem: TaskProblem,
     aside: Sequence[tuple[str, str]],
     situation: Situation,
+    spots: AbstractSet[tuple[str, str]],
     overlaps: Iterable[Overlap],
 ) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops.
@@ -73,6 +74,7 @@ def problem_facts(
     problem : things, places and goals.
     aside : by object and place: the places where an object is out of the way.
     situation : what is believed: world model, rooms, doors, corners and track.
+    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     overlaps : the places of two things that overlap.
     """
     facts = [f"place({ROBOT},{HERE})"]
@@ -95,6 +97,7 @@ def problem_facts(
     facts += [f"order({parameter},{number})" for parameter, number in orders.items()]
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
     facts += map(str, overlaps)
+    facts += _part_facts(problem, spots)
     return (*facts, *_room_facts(problem, situation), *_world_facts(problem, situation))
 
 
@@ -137,19 +140,9 @@ def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = froz
     spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     """
     names, outlines = [], []
-    for name, lying in problem.state.things.items():
-        names.append((name, HERE))
-        outlines.append(lying.outline)
-    for (name, place), end in problem.places.items():
-        lying = problem.state.things[name]
-        if isinstance(end, At):
-            outline = shape_at_pose(lying.outline, end.pose)
-        elif isinstance(end, Inside) and (name, place) in spots:
-            outline = end.polygon.buffer(-SPOT_SLACK, join_style="mitre")
-        else:
-            continue
+    for name, place, outline in _exact_places(problem, spots):
         names.append((name, place))
-        outlines.append(outline.buffer(-OVERLAP_ROUNDING))
+        outlines.append(outline if place == HERE else outline.buffer(-OVERLAP_ROUNDING))
     if not outlines:
         return
     tree = shapely.STRtree(outlines)
@@ -157,6 +150,33 @@ def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = froz
         (x, p), (y, q) = names[one], names[other]
         if x < y and (p, q) != (HERE, HERE):
             yield Overlap(x, p, y, q)
+
+
+def _exact_places(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[tuple[str, str, Any]]:
+    """Yield thing, place and outline there, where things lie now, at poses and at spots; regions are left out.
+
+    spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
+    """
+    for name, lying in problem.state.things.items():
+        yield name, HERE, lying.outline
+    for (name, place), end in problem.places.items():
+        if place != HERE and isinstance(end, At):
+            yield name, place, shape_at_pose(problem.state.things[name].outline, end.pose)
+        elif place != HERE and isinstance(end, Inside) and (name, place) in spots:
+            yield name, place, end.polygon.buffer(-SPOT_SLACK, join_style="mitre")
+
+
+def _part_facts(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> Iterator[str]:
+    """Yield which exact places of a thing lie within which region where a goal of it holds, without full stops."""
+    regions = [
+        (key, end.polygon)
+        for key, end in problem.places.items()
+        if isinstance(end, Inside) and key not in spots and key[1] != HERE
+    ]
+    for name, place, outline in _exact_places(problem, spots):
+        for (thing, region), polygon in regions:
+            if thing == name and polygon.covers(outline.buffer(-OVERLAP_ROUNDING)):
+                yield f"within({name},{place},{region})"
 
 
 def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:

@@ -15,7 +15,7 @@ from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import SPOT_SLACK, covered_by, spots
+from planner.oracles.spots import SPOT_SLACK, corner_spots, covered_by, spots, turned_corner_outlines
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -71,6 +71,7 @@ class Offers:
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
         self._in_way: list[str] = []
         self._offered: set[str] = set()
+        self._further: set[str] = set()  # the things for which places past others were offered, too
 
     def keep_clear(self, way: Bools) -> None:
         """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
@@ -104,6 +105,34 @@ class Offers:
         self.spots |= new.keys()
         return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
 
+    def further_places(self, problem: TaskProblem) -> TaskProblem | None:
+        """Return the problem with places that things in the way reach less easily; None for no new ones.
+
+        Those aside that they reach only once others are moved, and the corners of the regions of their goals, turned by
+        quarters.
+
+        Parameters
+        ----------
+        problem : things, places and goals, with the places that `places` has offered.
+        """
+        new: dict[tuple[str, str], End] = {}
+        fulfils = dict(problem.fulfils)
+        floor = self._floors.by_kind[FloorKind.SURE]
+        for name in [name for name in self._in_way if name not in self._further]:
+            self._further.add(name)
+            for (thing, place), region in problem.places.items():
+                if (thing, place) not in self.spots and thing == name and place != HERE and isinstance(region, Inside):
+                    for number, end in enumerate(self._turned_within(name, region, problem), 1):
+                        new[name, f"{place}_turned{number}"] = end
+                        fulfils[name, f"{place}_turned{number}"] = problem.fulfils[name, place]
+            known = [problem.places[key] for key in self.aside if key[0] == name]
+            found = [end for end in self._spots(name, problem, floor, floor) if end not in known]
+            for number, end in enumerate(found, len(known) + 1):
+                new[name, f"spot{number}"] = end
+                self.aside.append((name, f"spot{number}"))
+        self.spots |= new.keys()
+        return replace(problem, places={**problem.places, **new}, fulfils=fulfils) if new else None
+
     def _spots_aside(self, name: str, problem: TaskProblem) -> list[Inside]:
         """Return places on sure floor, off the ways of others where that can be, and off other things.
 
@@ -128,10 +157,21 @@ class Offers:
         return self._spots(name, problem, where, open_floor) or self._spots(name, problem, where, floor)
 
     def _spots_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
-        """Return places within the region of a goal."""
+        """Return places within the region of a goal: in its corners, where others find room, and at places apart."""
         floor = self._floors.by_kind[FloorKind.LIKELY]
-        inside = squares(self._carry(region.polygon), self.shape[1], self.shape[0])
-        return self._spots(name, problem, floor & inside, floor)
+        inside = floor & squares(self._carry(region.polygon), self.shape[1], self.shape[0])
+        outline = problem.state.things[name].outline
+        corners = corner_spots(self._carry(outline), inside, floor)
+        moves = list(dict.fromkeys(corners + spots(self._carry(outline), inside, floor, self._needed)))
+        return [end_about(Translate(float(columns), float(rows)).carry(outline)) for columns, rows in moves]
+
+    def _turned_within(self, name: str, region: Inside, problem: TaskProblem) -> list[Inside]:
+        """Return the places of a thing, turned by quarters, in the corners of the region of a goal."""
+        floor = self._floors.by_kind[FloorKind.LIKELY]
+        inside = floor & squares(self._carry(region.polygon), self.shape[1], self.shape[0])
+        back = Translate(-float(self._floors.margin), -float(self._floors.margin))
+        outlines = turned_corner_outlines(self._carry(problem.state.things[name].outline), inside)
+        return [end_about(back.carry(outline)) for outline in outlines]
 
     def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
         """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""

@@ -108,7 +108,7 @@ class PlanSearch:
         self._ruled = rules_reach(TASK_ENCODING.stem, situation.rules)  # whether users' rules are about task plans
         self._offers = Offers(oracle.floors, situation.rooms.labels if self._ruled else None)
         overlaps = tuple(overlaps_of(problem))
-        self._facts = problem_facts(problem, (), situation, overlaps)
+        self._facts = problem_facts(problem, (), situation, frozenset(), overlaps)
         self._cut = False  # whether a search of clingo was cut off by its limit
         self._offers.note_in_way(things_in_way(overlaps))
 
@@ -117,7 +117,7 @@ class PlanSearch:
         self._ask_about_meanings()
         goals = self._problem.goals  # a wish that holds may not hold any more when something else was brought
         out_of_place = {goal.subject for goal in goals if not goal.holds or goal.weight is not None}
-        horizon = max(1, len(out_of_place))
+        horizon = shortest = max(1, len(out_of_place))
         most = horizon + MAX_MORE_ERRANDS
         best: TaskPlan | None = None
         facts: tuple[str, ...] = ()
@@ -131,6 +131,9 @@ class PlanSearch:
                 continue
             if proposal.unmet and best is None and horizon < most:
                 horizon += 1
+                continue
+            if proposal.unmet and best is None and self._take(self._offers.further_places(self._problem)):
+                horizon = shortest
                 continue
             if proposal.unmet:
                 best, proved = best or TaskPlan(proposal.errands, proposal.unmet, meanings=proposal.meanings), True
@@ -210,12 +213,16 @@ class PlanSearch:
         """
         if not {goal.name for goal in self._problem.goals}.issuperset(unmet):
             self._offers.note_in_way(list(self._problem.nodes))
-        offered = self._offers.places(self._problem)
+        return self._take(self._offers.places(self._problem))
+
+    def _take(self, offered: TaskProblem | None) -> bool:
+        """Go on with a problem that has further places; return False for None, and change nothing then."""
         if offered is None:
             return False
         self._problem = offered
-        overlaps = overlaps_of(offered, self._offers.spots)
-        self._facts = problem_facts(offered, self._offers.aside, self._situation, overlaps)
+        spots = self._offers.spots
+        overlaps = overlaps_of(offered, spots)
+        self._facts = problem_facts(offered, self._offers.aside, self._situation, spots, overlaps)
         return True
 
     def _estimated(self, errands: Sequence[Errand]) -> int:

@@ -45,10 +45,10 @@ def situation_of(model: WorldModel, bound: Mapping[str, str] | None = None, task
 
 
 def known_situation(rows: list[str], moved: bool = False, movable: int = 50, held: str | None = None) -> Situation:
-    """Return the situation of a robot that has seen all of a drawing, in which each letter but b is an object."""
+    """Return the situation of a robot that has seen a drawing, `?` left out; each letter but b is an object."""
     marks, model = np.array([list(row) for row in reversed(rows)]), known_model(rows, objects=False)
     nodes = []
-    for letter in sorted(set(marks.ravel()) - set("b.U")):
+    for letter in sorted(set(marks.ravel()) - set("b.U?")):
         south, west = np.argwhere(marks == letter).min(0)
         north, east = np.argwhere(marks == letter).max(0) + 1
         mask = marks[south:north, west:east] == letter

@@ -22,6 +22,9 @@ from benchmarks.worlds.scenes import PlacedThing, write
 # flush: the thing ends with the wall on both sides. recessed: it leaves a niche on one side or both. out: it sticks
 # out. two: two things fill the doorway, one behind the other. closed: a room without any door.
 PLUG_KINDS = ("flush", "recessed", "out", "two", "closed")
+# Kinds whose doorway only a pull opens: the first thing reaches from jamb to jamb and stands against the second, so it
+# cannot be pushed on or aside, nor turned.
+PULL_KINDS = ("two",)
 PLUG_TASKS = ("next", "carry_next")
 ROOM_SIZES = (9, 17)  # squares, the least and one more than the most
 WALL_SIZES, DOOR_SIZES = (2, 5), (3, 6)  # squares, likewise

@@ -10,7 +10,8 @@ from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import At, Inside
 from geometry.motion.se2 import Pose, Translate
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import spots
+from planner.oracles.spots import corner_spots, spots, turned_corner_outlines
+from tests.planner.situations import known_situation
 
 ROOM = [
     "b" * 20,
@@ -27,6 +28,14 @@ CORRIDOR = [
     "b.......U" + "b" * 11,
     *["b" + "." * 8 + "b" * 11] * 2,
     "b" * 20,
+]
+UNSEEN_END = [  # nothing shows whether the corridor leads on
+    "b" * 14 + "?" * 20,
+    "b......bbbbbbb" + "?" * 20,
+    *["b.ggg........." + "?" * 20] * 2,
+    "b.gggU........" + "?" * 20,
+    "b......bbbbbbb" + "?" * 20,
+    "b" * 14 + "?" * 20,
 ]
 
 
@@ -49,6 +58,16 @@ def test_an_answer_is_remembered() -> None:
     oracle = CarryOracle(problem, situation)
     answers = [oracle.bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose") for _ in range(2)]
     assert answers[0] is answers[1] and oracle.asked == 1
+
+
+@pytest.mark.parametrize("on_lattice", [True, False])
+def test_the_robot_does_not_end_behind_a_thing_where_the_floor_is_only_hoped_to_lead_on(on_lattice: bool) -> None:
+    situation = known_situation(UNSEEN_END)
+    problem = drawn_problem(situation, {"g": At(Pose(10.0, 0.0, 0.0))})
+    oracle = CarryOracle(problem, situation, on_lattice=on_lattice)
+    answer = oracle.bring(problem.state, "g", problem.places["g", "g1_pose"], "g1_pose")
+    assert answer.certainty == Certainty.HOPED and answer.after is not None and answer.avoid
+    assert answer.after.robot[0] < answer.after.things["g"].outline.bounds[0]
 
 
 @pytest.mark.parametrize("on_lattice", [True, False])
@@ -101,6 +120,44 @@ def test_spots_lie_on_the_floor_apart_from_each_other_and_off_what_must_stay_cle
     assert len(set(moves)) == len(moves) and (0, 0) not in moves
     on_keep = [bool(keep[int(place.bounds[1]) : int(place.bounds[3]), 2].any()) for place in places]
     assert on_keep == sorted(on_keep)  # places off what must stay clear come first
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_corner_spots_touch_two_walls_and_the_furthest_comes_first(data: st.DataObject) -> None:
+    rows, columns = data.draw(st.integers(8, 16)), data.draw(st.integers(8, 16))
+    width, height = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 4))
+    floor = np.zeros((rows, columns), np.bool_)
+    floor[1:-1, 1:-1] = True
+    x, y = data.draw(st.integers(1, columns - 1 - width)), data.draw(st.integers(1, rows - 1 - height))
+    moves = corner_spots(shapely.box(x, y, x + width, y + height), floor, floor)
+    places = {(x + dx, y + dy) for dx, dy in moves}
+    corners = {(a, b) for a in (1, columns - 1 - width) for b in (1, rows - 1 - height)}
+    assert len(moves) == len(places) and (x, y) not in places
+    assert places == corners - {(x, y)} or ((x, y) in corners and places >= corners - {(x, y)})
+    lengths = [max(abs(dx), abs(dy)) + 0.42 * min(abs(dx), abs(dy)) for dx, dy in moves]
+    assert lengths == pytest.approx(sorted(lengths, reverse=True), abs=1.5)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.data())
+def test_turned_corner_outlines_are_the_thing_turned_by_quarters_in_the_corners_of_the_floor(
+    data: st.DataObject,
+) -> None:
+    rows, columns = data.draw(st.integers(8, 16)), data.draw(st.integers(8, 16))
+    width, height = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 4))
+    floor = np.zeros((rows, columns), np.bool_)
+    floor[1:-1, 1:-1] = True
+    outline = shapely.box(1, 1, 1 + width, 1 + height)
+    if data.draw(st.booleans()):
+        outline = shapely.Polygon([(1, 1), (5, 1), (5, 2), (2, 2), (2, 5), (1, 5)])  # an L
+    found = turned_corner_outlines(outline, floor)
+    assert len(found) == (12 if len(outline.exterior.coords) > 5 else 0 if width == height else 4)
+    for one in found:
+        low, high = np.round(one.bounds[:2]), np.round(one.bounds[2:])
+        assert one.area == pytest.approx(outline.area)
+        assert low[0] == 1 or high[0] == columns - 1
+        assert low[1] == 1 or high[1] == rows - 1
 
 
 def test_a_region_is_reached_where_it_is_free() -> None:

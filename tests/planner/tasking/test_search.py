@@ -60,6 +60,40 @@ WALLED_IN = [  # the robot cannot come to h
 ]
 
 
+EXCHANGED = [  # g must go to where h lies, which leaves the dead end only once g is out of it
+    "b" * 26,
+    *["b..........bbbbbbbbbbbbbbb"] * 4,
+    "b........................b",
+    "b..............ggg.......b",
+    "b..............ggg.hhh...b",
+    "b..............ggg.hhh...b",
+    "b..................hhh...b",
+    "b........................b",
+    "b...U......bbbbbbbbbbbbbbb",
+    *["b..........bbbbbbbbbbbbbbb"] * 4,
+    "b" * 26,
+]
+CLOSET = [  # each of the things fits into the closet by itself, right behind the door; all do only along its walls
+    "b" * 29,
+    "b...............bbbbbbbbbbbbb",
+    "b...............bb..........b",
+    "b.hhhh..........bb..........b",
+    "b.hhhh......................b",
+    "b.hhhh......................b",
+    "b.hhhh......................b",
+    "b......U....................b",
+    "b...........................b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.....bb..........b",
+    "b.ggggggggg.kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b...........kkkkbbbbbbbbbbbbb",
+    "b" * 29,
+]
+
+
 def moved(dx: float, dy: float) -> At:
     """Return the end of a thing that is moved by (dx, dy) squares."""
     return At(Pose(dx, dy, 0.0))
@@ -98,6 +132,29 @@ def test_two_things_change_places_by_way_of_a_third_place() -> None:
     subjects = [errand.subject for errand in made.plan.errands]
     assert len(subjects) == 3 and subjects[0] == subjects[2] != subjects[1]
     assert made.plan.errands[0].action == "clear"
+
+
+def test_two_things_in_a_dead_end_are_exchanged_though_one_can_leave_only_after_the_other() -> None:
+    situation = known_situation(EXCHANGED)
+    problem = drawn_problem(situation, {"g": moved(4, -1), "h": moved(-4, 0)})
+    made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
+    assert [errand.subject for errand in made.plan.errands] == ["g", "h", "g", "h"]
+    assert made.plan.verified and not made.plan.unmet
+
+
+def test_things_are_packed_along_the_walls_of_a_closet_and_no_place_in_a_refuted_region_is_asked_about() -> None:
+    situation = known_situation(CLOSET)
+    problem = drawn_problem(situation, {})
+    west, south = problem.state.things["g"].outline.bounds[:2]
+    closet = Inside(shapely.box(west + 16, south + 1, west + 26, south + 11))
+    problem = drawn_problem(situation, {"g": closet, "h": closet, "k": closet})
+    made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
+    assert not made.plan.unmet and len(made.plan.errands) == 3
+    known: set[tuple[object, ...]] = set()
+    for one in made.plan.refutations:
+        region = "_".join(one.place.split("_")[:2])
+        assert region == one.place or (one.subject, region, one.origin, one.given, one.stood) not in known
+        known.add((one.subject, one.place, one.origin, one.given, one.stood))
 
 
 def test_as_many_goals_as_possible_are_attained_and_the_others_named() -> None:
