@@ -45,11 +45,14 @@ class MapRegions(NamedTuple):
         The number n of each square's region `part<n>`; 0 where nothing was seen.
     kinds : Kinds
         What each region is taken for.
+    unsettled_seams : tuple of (rows, columns) bool
+        Masks of squares on which it is to be felt where exactly one of two things that touch ends.
     """
 
     percept: Percept
     labels: Labels
     kinds: Kinds
+    unsettled_seams: tuple[Bools, ...] = ()
 
 
 def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
@@ -74,7 +77,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
         The numbers of the other regions stay. The result holds the regions, old ones first, the number of each square's
         region on the arrays of the map view, and what each region is taken for.
     """
-    percept, labels, kinds = regions
+    percept, labels, kinds, seams = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
@@ -90,7 +93,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
         kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
-    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind))
+    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), seams)
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:

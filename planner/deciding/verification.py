@@ -164,15 +164,16 @@ def robot_square(model: WorldModel) -> Bools:
 
 
 def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
-    """Return where to feel whether an object that stands against a wall goes on in what seems to be wall.
+    """Return where to feel how far an object goes that touches a wall or another object, or did not move when pushed.
 
     Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
-    to be felt.
+    to be felt. What did not move may be more than one thing, or a thing and a wall: all of its rim is felt.
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
-    Of several pieces of seeming wall beside the object, the first in the order of the model that can be felt.
+    First where exactly it ends beside what it touches; then of several pieces of seeming wall beside it the first in
+    the order of the model that can be felt; at last its own rim, if it did not move.
 
     Parameters
     ----------
@@ -180,10 +181,13 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
-    rim = with_edge_neighbours(model.mask(node.patch))
+    own = model.mask(node.patch)
+    rim = with_edge_neighbours(own)
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
-    for mask in () if alone else model.protruding:
+    unfelt = own & ~model.squares(model.felt)
+    resisting = [unfelt] if node.stuck and not node.moved and model.held is None else []
+    for mask in (*(() if alone else (*model.unsettled_seams, *model.protruding)), *resisting):
         look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
         if (mask & rim).any() and len(look.squares):
             return Subgoal(SubgoalKind.INSPECT, *look)
