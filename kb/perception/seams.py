@@ -107,15 +107,42 @@ def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
     return Parting(parts, tuple(mask for mask in unsettled if mask.any()))
 
 
-def _lines(region: Bools) -> Iterator[SeamLine]:
-    """Yield the lines from rim to rim that are at most MAX_THING_LENGTH squares long, upright ones first."""
+def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
+    """Return the parts with felt squares into which what is solid falls along lines from inner corner to inner corner.
+
+    So a thing that leans on a wall with a long side parts from it, also where it goes on into a gap of another wall.
+
+    Parameters
+    ----------
+    solid : (rows, columns) bool
+        Squares of what bounds the floor, and all squares that were never seen.
+    felt : mapping of (row, column) to str
+        The colour of each square of these arrays that was felt.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The masks of parts on which a colour was felt, those of fewer squares first.
+    """
+    cuts = [
+        line
+        for line in _lines(solid, max(solid.shape))
+        if _is_inner_corner(0, line, solid) and _is_inner_corner(1, line, solid)
+    ]
+    labels = _labels(solid, cuts)
+    numbers = sorted({int(labels[place]) for place in felt} - {0})
+    return sorted((labels == n for n in numbers), key=lambda mask: int(mask.sum()))
+
+
+def _lines(region: Bools, longest: int = MAX_THING_LENGTH) -> Iterator[SeamLine]:
+    """Yield the lines from rim to rim that are at most `longest` squares long, upright ones first."""
     for upright, mask in ((True, region), (False, region.T)):
         joined = mask[:, 1:] & mask[:, :-1]
         for at in range(joined.shape[1]):
             change = np.diff(np.concatenate([[0], joined[:, at].astype(np.int8), [0]]))
             starts, stops = np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist()
             for start, stop in zip(starts, stops, strict=True):
-                if stop - start <= MAX_THING_LENGTH:
+                if stop - start <= longest:
                     yield SeamLine(upright, at + 1, start, stop - 1)
 
 

@@ -277,7 +277,8 @@ class WorldModel:
         standing, near_verge = self.verge.copy(), with_edge_neighbours(self.verge)
         for patch in (self.mask(node.patch) for node in self.objects if not node.moved):
             standing |= patch & (patch & near_verge).any()  # it was felt to be a thing, and may be larger than that
-        return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
+        solid = standing & occupied_squares(self.view)
+        return untouched_parts(protrusions(self.space, solid, self.view.seen, within), within)
 
     def object(self, name: str) -> Node | None:
         """Return the node of the object with this name, `o<n>`; None when there is none.

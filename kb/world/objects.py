@@ -4,7 +4,7 @@ An object that never moved is a region of the map. One that was held has a place
 (kb.objects.held_object); it is laid upon the map as one more region.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -22,8 +22,15 @@ from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things, with_embedded_things
+from kb.perception.protrusions import (
+    VERGE_TOUCH_COLOUR,
+    joined_through_walls,
+    protrusions,
+    separate_things,
+    with_embedded_things,
+)
 from kb.perception.regions import Percept, Region, label_of
+from kb.perception.seams import cornered_parts
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
@@ -85,8 +92,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-    sticking_out = separate_things(protrusions(free_squares(view), occupied, view.seen), colours)
-    for thing in with_embedded_things(sticking_out, colours, occupied):
+    for thing in _felt_things_at_walls(occupied, colours, view):
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(_separated_region(thing, label, view))
@@ -94,6 +100,32 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
     return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), seams)
+
+
+def _felt_things_at_walls(occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView) -> list[Bools]:
+    """Return the masks of the things that were felt and stand against the verge, or in it.
+
+    What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall; else
+    what sticks out further; else the felt squares alone.
+
+    occupied : (rows, columns) bool on the view's arrays, squares of what bounds the floor. colours : the colour of each
+    felt square (row, column) of these arrays.
+    """
+    floor = free_squares(view)
+    things: list[Bools] = []
+    for candidates in (
+        lambda: protrusions(floor, occupied, view.seen),
+        lambda: cornered_parts(~floor, colours),
+        lambda: protrusions(floor, occupied, view.seen, colours),
+    ):
+        left = [c for place, c in colours.items() if not any(thing[place] for thing in things)]
+        if all(colour == VERGE_TOUCH_COLOUR for colour in left):
+            break
+        parts = [part & occupied for part in candidates()]
+        things += separate_things([p for p in parts if not any((p & thing).any() for thing in things)], colours)
+    things = with_embedded_things(things, colours, occupied)
+    behind = protrusions(floor, occupied, view.seen, colours, LONGEST_OBJECT)
+    return joined_through_walls(things, behind, colours, occupied)
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
@@ -143,7 +175,8 @@ def seen_objects(
     BadInputError
         The user's encodings are wrong.
     """
-    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds)]
+    felt = _felt_things(model)
+    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds, felt)]
     windows = _windows(model, [label_of(r.name) for r in regions])
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
@@ -157,12 +190,22 @@ def seen_objects(
     )
 
 
-def _may_be_object(region: Region, kinds: Kinds) -> bool:
+def _may_be_object(region: Region, kinds: Kinds, felt: Container[int]) -> bool:
     """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent.
 
-    Short enough is an extent of at most LONGEST_OBJECT squares. `kinds` has the confidences in what each region is.
+    Short enough is an extent of at most LONGEST_OBJECT squares; what was felt to be an object may be longer. `kinds`
+    has the confidences in what each region is, `felt` the labels of regions that were felt to be no verge.
     """
-    return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
+    short = region.extent <= LONGEST_OBJECT or label_of(region.name) in felt
+    return short and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
+
+
+def _felt_things(model: WorldModel) -> set[int]:
+    """Return the labels of the regions on which a colour was felt, and nowhere that of the verge."""
+    labels: dict[bool, set[int]] = {True: set(), False: set()}
+    for (x, y), colour in model.felt.items():
+        labels[colour == VERGE_TOUCH_COLOUR].add(int(model.labels[model.view.locate(x, y)]))
+    return labels[False] - labels[True]
 
 
 class _Window(NamedTuple):

@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.raster.components import with_edge_neighbours
 from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, Door, rooms_of
@@ -167,31 +166,18 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
     """Return where to feel how far an object goes that touches a wall or another object, or did not move when pushed.
 
     Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
-    to be felt. What did not move may be more than one thing, or a thing and a wall: all of its rim is felt.
+    to be felt (planner.sights.frontiers.rim_viewpoint).
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    First where exactly it ends beside what it touches; then of several pieces of seeming wall beside it the first in
-    the order of the model that can be felt; at last its own rim, if it did not move.
 
     Parameters
     ----------
     node : the object.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
-    model = situation.model
-    own = model.mask(node.patch)
-    rim = with_edge_neighbours(own)
-    standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
-    alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
-    unfelt = own & ~model.squares(model.felt)
-    resisting = [unfelt] if node.stuck and not node.moved and model.held is None else []
-    for mask in (*(() if alone else (*model.unsettled_seams, *model.protruding)), *resisting):
-        look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
-        if (mask & rim).any() and len(look.squares):
-            return Subgoal(SubgoalKind.INSPECT, *look)
-    return None
+    look = frontiers.rim_viewpoint(situation.cost_maps, node)
+    return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
 
 
 def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:

@@ -15,7 +15,7 @@ from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import SPOT_SLACK, covered_by, spots
+from planner.oracles.spots import SPOT_SLACK, Passage, covered_by, passage_of, spots
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -68,12 +68,23 @@ class Offers:
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
+        self._passages: dict[str, list[Passage]] = {}  # ways that must stay possible, by the thing that goes there
         self._in_way: list[str] = []
         self._offered: set[str] = set()
 
     def keep_clear(self, way: Bools) -> None:
         """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
         self._needed |= way
+
+    def keep_passage(self, name: str, start: Any, end: Any) -> None:
+        """Note that a thing must find a way from an outline to another one, shapely Polygons in the frame of the floors.
+
+        Nothing is noted where it is turned on the way.
+        """
+        found = passage_of(start, end, self._floors.by_kind[FloorKind.SURE])
+        noted = self._passages.setdefault(name, [])
+        if found is not None and not any(one.start == found.start and one.end == found.end for one in noted):
+            noted.append(found)
 
     def note_in_way(self, names: Sequence[str]) -> None:
         """Note that things are in the way of others where a plan leaves them."""
@@ -135,7 +146,8 @@ class Offers:
     def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
         """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""
         outline = problem.state.things[name].outline
-        moves = spots(self._carry(outline), floor, around, self._needed)
+        passages = [way for other, ways in self._passages.items() if other != name for way in ways]
+        moves = spots(self._carry(outline), floor, around, self._needed, passages)
         shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
         return [end_about(shape) for shape in shapes]
 
