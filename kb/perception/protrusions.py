@@ -198,7 +198,7 @@ def _upright_bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
     """Return the solid squares between two things of which one lies north of the other; None if they do not match.
 
     They match when in the same columns the one meets what is solid to the south and the other what is solid to the
-    north, and in each of these columns nothing but that lies between them.
+    north, and in each of these columns that lies between them, and nothing else.
     """
     low, high = sorted((one, other), key=lambda thing: int(np.flatnonzero(thing.any(1))[0]))
     columns = low.any(0), high.any(0)
@@ -206,7 +206,7 @@ def _upright_bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
     first = np.argmax(high, axis=0)  # the southernmost row of the northern one
     rows = np.arange(len(solid))[:, None]
     between = (rows > last) & (rows < first) & columns[0] & columns[1]
-    bridging = columns[0] & columns[1] & (last < first) & (solid | ~between).all(0)
+    bridging = columns[0] & columns[1] & (last + 1 < first) & (solid | ~between).all(0)
     across = np.arange(solid.shape[1])
     meets_north = columns[0] & solid[np.minimum(last + 1, len(solid) - 1), across]
     meets_south = columns[1] & solid[np.maximum(first - 1, 0), across]

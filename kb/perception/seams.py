@@ -8,7 +8,7 @@ outlines; then a short line, then the middle between the squares that were felt.
 Masks are (rows, columns) bool on the arrays of the map view, row 0 in the south.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import combinations
 from typing import NamedTuple
 
@@ -86,6 +86,26 @@ def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
     colours = {place: colour for place, colour in felt.items() if region[place]}
     if len(set(colours.values())) < 2:
         return Parting((region,))
+    rows, columns = np.flatnonzero(region.any(1)), np.flatnonzero(region.any(0))
+    south, west = int(rows[0]), int(columns[0])
+    window = slice(south, int(rows[-1]) + 1), slice(west, int(columns[-1]) + 1)
+    inside = _parted(region[window], {(row - south, column - west): c for (row, column), c in colours.items()})
+
+    def whole(mask: Bools) -> Bools:
+        """Return a mask of the window on the arrays of the map view."""
+        full = np.zeros_like(region)
+        full[window] = mask
+        return full
+
+    return Parting(tuple(map(whole, inside.parts)), tuple(map(whole, inside.unsettled)))
+
+
+def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
+    """Return a region cut into parts none of which was felt in two colours; one part where that cannot be.
+
+    region : (rows, columns) bool on its containing rectangle. colours : those of its squares that were felt, at least
+    two different ones.
+    """
     lines = list(_lines(region))
     cuts: list[SeamLine] = []
     labels, mixed = _labels(region, cuts), _mixed(_labels(region, cuts), colours)
@@ -93,8 +113,7 @@ def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
         best = _best(region, cuts, [(line,) for line in lines if line not in cuts], colours, labels, mixed)
         if best is None:
             near = sorted((line for line in lines if line not in cuts), key=lambda line: line.length)
-            pairs = list(combinations(near[:MAX_PAIRED_LINES], 2))
-            best = _best(region, cuts, pairs, colours, labels, mixed)
+            best = _best(region, cuts, combinations(near[:MAX_PAIRED_LINES], 2), colours, labels, mixed)
         if best is None:
             return Parting((region,))
         cuts += best
@@ -174,7 +193,7 @@ def _mixed(labels: Labels, colours: Mapping[RowColumn, str]) -> int:
 def _best(
     region: Bools,
     cuts: list[SeamLine],
-    choices: list[tuple[SeamLine, ...]],
+    choices: Iterable[tuple[SeamLine, ...]],
     colours: Mapping[RowColumn, str],
     labels: Labels,
     mixed: int,
@@ -206,7 +225,8 @@ def _is_inner_corner(end: int, line: SeamLine, region: Bools) -> bool:
     """
     beyond = line.sides(line.last + 1 if end else line.first - 1)
     rows, columns = region.shape
-    return sum(0 <= row < rows and 0 <= column < columns and bool(region[row, column]) for row, column in beyond) == 1
+    inside = [place for place in beyond if 0 <= place[0] < rows and 0 <= place[1] < columns]
+    return sum(int(region[place]) for place in inside) == 1
 
 
 def _lopsided(line: SeamLine, labels: Labels, colours: Mapping[RowColumn, str]) -> int:

@@ -6,6 +6,7 @@ An object that never moved is a region of the map. One that was held has a place
 
 from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -112,12 +113,11 @@ def _felt_things_at_walls(occupied: Bools, colours: Mapping[tuple[int, int], str
     felt square (row, column) of these arrays.
     """
     floor = free_squares(view)
+    near: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen)
+    leaning: Callable[[], list[Bools]] = partial(cornered_parts, ~floor, colours)
+    far: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen, colours)
     things: list[Bools] = []
-    for candidates in (
-        lambda: protrusions(floor, occupied, view.seen),
-        lambda: cornered_parts(~floor, colours),
-        lambda: protrusions(floor, occupied, view.seen, colours),
-    ):
+    for candidates in (near, leaning, far):
         left = [c for place, c in colours.items() if not any(thing[place] for thing in things)]
         if all(colour == VERGE_TOUCH_COLOUR for colour in left):
             break

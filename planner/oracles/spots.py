@@ -114,7 +114,7 @@ def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, passages: Sequenc
     for row, column in where.tolist():
         leaves = True
         for fits, blocked, passage in ways:
-            there = blocked + (row, column)
+            there = blocked + np.array([row, column])
             there = there[(there >= 0).all(1) & (there[:, 0] < rows) & (there[:, 1] < columns)]
             left = fits.copy()
             left[there[:, 0], there[:, 1]] = False

@@ -77,7 +77,7 @@ class Offers:
         self._needed |= way
 
     def keep_passage(self, name: str, start: Any, end: Any) -> None:
-        """Note that a thing must find a way from an outline to another one, shapely Polygons in the frame of the floors.
+        """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors.
 
         Nothing is noted where it is turned on the way.
         """

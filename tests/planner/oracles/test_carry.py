@@ -10,7 +10,7 @@ from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import At, Inside
 from geometry.motion.se2 import Pose, Translate
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import spots
+from planner.oracles.spots import passage_of, spots
 
 ROOM = [
     "b" * 20,
@@ -101,6 +101,27 @@ def test_spots_lie_on_the_floor_apart_from_each_other_and_off_what_must_stay_cle
     assert len(set(moves)) == len(moves) and (0, 0) not in moves
     on_keep = [bool(keep[int(place.bounds[1]) : int(place.bounds[3]), 2].any()) for place in places]
     assert on_keep == sorted(on_keep)  # places off what must stay clear come first
+
+
+def test_among_spots_on_the_ways_of_others_those_come_first_that_leave_them_a_way() -> None:
+    """In a corridor three squares wide with a bay, a thing of two squares lets another one pass in the bay alone."""
+    floor = np.zeros((9, 30), np.bool_)
+    floor[1:4, 1:29] = True
+    floor[4:7, 12:15] = True  # the bay
+    outline = shapely.box(4, 1, 6, 3)
+    passage = passage_of(shapely.box(1, 1, 3, 3), shapely.box(26, 1, 28, 3), floor)
+    assert passage is not None
+    keep = np.ones_like(floor)  # no place is off the ways of others
+    moves = spots(outline, floor, floor, keep, [passage])
+    first = Translate(*map(float, moves[0])).carry(outline)
+    assert first.bounds[1] >= 4.0
+    assert len(moves) > len(spots(outline, floor, floor, keep))
+
+
+def test_a_passage_is_that_of_a_thing_that_is_not_turned() -> None:
+    floor = np.ones((8, 8), np.bool_)
+    assert passage_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 6, 5), floor) is not None
+    assert passage_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 5, 6), floor) is None
 
 
 def test_a_region_is_reached_where_it_is_free() -> None:
