@@ -39,6 +39,9 @@ LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a hel
 PLAY_PROBABILITY = (
     0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 )
+MIN_FELT_SHARE = (
+    2 / 3
+)  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 
@@ -106,26 +109,40 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
 def _felt_things_at_walls(occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView) -> list[Bools]:
     """Return the masks of the things that were felt and stand against the verge, or in it.
 
-    What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall; else
-    what sticks out further; else the felt squares alone.
+    What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall, or what
+    sticks out further, if most of its length was felt; else the felt squares alone.
 
     occupied : (rows, columns) bool on the view's arrays, squares of what bounds the floor. colours : the colour of each
     felt square (row, column) of these arrays.
     """
     floor = free_squares(view)
-    near: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen)
+    things = separate_things(protrusions(floor, occupied, view.seen), colours)
     leaning: Callable[[], list[Bools]] = partial(cornered_parts, ~floor, colours)
     far: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen, colours)
-    things: list[Bools] = []
-    for candidates in (near, leaning, far):
-        left = [c for place, c in colours.items() if not any(thing[place] for thing in things)]
-        if all(colour == VERGE_TOUCH_COLOUR for colour in left):
+    for candidates in (leaning, far):
+        left = [place for place in colours if not any(thing[place] for thing in things)]
+        if all(colours[place] == VERGE_TOUCH_COLOUR for place in left):
             break
-        parts = [part & occupied for part in candidates()]
+        parts = [part & occupied for part in candidates() if _is_felt_along(part, left)]
         things += separate_things([p for p in parts if not any((p & thing).any() for thing in things)], colours)
     things = with_embedded_things(things, colours, occupied)
     behind = protrusions(floor, occupied, view.seen, colours, LONGEST_OBJECT)
     return joined_through_walls(things, behind, colours, occupied)
+
+
+def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
+    """Return whether what was felt of a part stretches over MIN_FELT_SHARE of its longer side.
+
+    part : (rows, columns) bool. felt : the squares (row, column) that were felt.
+    """
+    touched = np.zeros_like(part)
+    for place in felt:
+        touched[place] = part[place]
+    if not touched.any():
+        return False
+    axis = int(np.ptp(np.flatnonzero(part.any(0))) > np.ptp(np.flatnonzero(part.any(1))))
+    whole, known = (int(np.ptp(np.flatnonzero(mask.any(1 - axis)))) + 1 for mask in (part, touched))
+    return known >= MIN_FELT_SHARE * whole
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
