@@ -39,9 +39,7 @@ LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a hel
 PLAY_PROBABILITY = (
     0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 )
-MIN_FELT_SHARE = (
-    2 / 3
-)  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
+MIN_FELT_SHARE = 2 / 3  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 

@@ -20,7 +20,7 @@ MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on 
 MAX_TESTED_SPOTS = 400  # places on ways of others of which it is tested whether these find another way; a bound on time
 
 
-class Passage(NamedTuple):
+class KeptWay(NamedTuple):
     """A way of another object that must stay possible, not turned.
 
     Attributes
@@ -36,8 +36,8 @@ class Passage(NamedTuple):
     floor: Bools
 
 
-def passage_of(start: Any, end: Any, floor: Bools) -> Passage | None:
-    """Return the passage of an object from an outline to another one; None when it covers other squares there.
+def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
+    """Return the way of an object from an outline to another one; None when it covers other squares there.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ def passage_of(start: Any, end: Any, floor: Bools) -> Passage | None:
     if not np.array_equal(covered[0] - lows[0], covered[1] - lows[1]):
         return None
     (row, column), (last_row, last_column) = (tuple(int(v) for v in low) for low in lows)
-    return Passage(covered[0] - lows[0], (row, column), (last_row, last_column), floor)
+    return KeptWay(covered[0] - lows[0], (row, column), (last_row, last_column), floor)
 
 
 def spots(
-    outline: Any, floor: Bools, around: Bools, keep_clear: Bools, passages: Sequence[Passage] = ()
+    outline: Any, floor: Bools, around: Bools, keep_clear: Bools, kept: Sequence[KeptWay] = ()
 ) -> list[tuple[int, int]]:
     """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
 
@@ -70,7 +70,7 @@ def spots(
     floor : (rows, columns) bool, squares on which it may lie.
     around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
     keep_clear : (rows, columns) bool, squares that others need.
-    passages : ways of others that must stay possible.
+    kept : ways of others that must stay possible.
     """
     rows, columns = floor.shape
     own = squares(outline, columns, rows)
@@ -89,16 +89,16 @@ def spots(
     apart = int(max(offsets.max(axis=0)) + 1)
     chosen = _apart(roomy, far, MAX_CLEAR_SPOTS, apart)
     chosen += _apart(clear & ~roomy, far, MAX_CLEAR_SPOTS - len(chosen), apart)
-    if passages and len(chosen) < MAX_CLEAR_SPOTS:
-        leaving = _leaving_ways(usable & ~clear, far, offsets, passages)
+    if kept and len(chosen) < MAX_CLEAR_SPOTS:
+        leaving = _leaving_ways(usable & ~clear, far, offsets, kept)
         chosen += _apart(leaving, far, MAX_CLEAR_SPOTS - len(chosen), apart)
         usable &= ~leaving
     chosen += _apart(usable & ~clear, far, MAX_OTHER_SPOTS, apart)
     return [(x - column, y - row) for x, y in chosen]
 
 
-def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, passages: Sequence[Passage]) -> Bools:
-    """Return which places of an object, of the nearest MAX_TESTED_SPOTS, leave each passage a way of whole squares.
+def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, kept: Sequence[KeptWay]) -> Bools:
+    """Return which places of an object, of the nearest MAX_TESTED_SPOTS, leave each kept way possible.
 
     candidates : (rows, columns) bool, its lowest row and column. far : the way to each. offsets : its squares relative
     to these.
@@ -107,18 +107,18 @@ def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, passages: Sequenc
     where = np.argwhere(candidates)
     where = where[np.argsort(far[candidates], kind="stable")][:MAX_TESTED_SPOTS]
     ways = []
-    for passage in passages:
-        blocked = np.unique((offsets[:, None] - passage.offsets[None]).reshape(-1, 2), axis=0)
-        ways.append((_fits(passage.floor, passage.offsets), blocked, passage))
+    for way in kept:
+        blocked = np.unique((offsets[:, None] - way.offsets[None]).reshape(-1, 2), axis=0)
+        ways.append((_fits(way.floor, way.offsets), blocked, way))
     rows, columns = candidates.shape
     for row, column in where.tolist():
         leaves = True
-        for fits, blocked, passage in ways:
+        for fits, blocked, way in ways:
             there = blocked + np.array([row, column])
             there = there[(there >= 0).all(1) & (there[:, 0] < rows) & (there[:, 1] < columns)]
             left = fits.copy()
             left[there[:, 0], there[:, 1]] = False
-            start, end = passage.start, passage.end
+            start, end = way.start, way.end
             leaves = bool(left[start] and left[end] and reach(left, start[1], start[0])[end] != GEODESIC_UNREACHED)
             if not leaves:
                 break

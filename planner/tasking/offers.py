@@ -15,7 +15,7 @@ from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import SPOT_SLACK, Passage, covered_by, passage_of, spots
+from planner.oracles.spots import SPOT_SLACK, KeptWay, covered_by, kept_way_of, spots
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -68,7 +68,7 @@ class Offers:
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
-        self._passages: dict[str, list[Passage]] = {}  # ways that must stay possible, by the thing that goes there
+        self._kept: dict[str, list[KeptWay]] = {}  # ways that must stay possible, by the thing that goes there
         self._in_way: list[str] = []
         self._offered: set[str] = set()
 
@@ -76,13 +76,13 @@ class Offers:
         """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
         self._needed |= way
 
-    def keep_passage(self, name: str, start: Any, end: Any) -> None:
+    def keep_way(self, name: str, start: Any, end: Any) -> None:
         """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors.
 
         Nothing is noted where it is turned on the way.
         """
-        found = passage_of(start, end, self._floors.by_kind[FloorKind.SURE])
-        noted = self._passages.setdefault(name, [])
+        found = kept_way_of(start, end, self._floors.by_kind[FloorKind.SURE])
+        noted = self._kept.setdefault(name, [])
         if found is not None and not any(one.start == found.start and one.end == found.end for one in noted):
             noted.append(found)
 
@@ -146,8 +146,8 @@ class Offers:
     def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
         """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""
         outline = problem.state.things[name].outline
-        passages = [way for other, ways in self._passages.items() if other != name for way in ways]
-        moves = spots(self._carry(outline), floor, around, self._needed, passages)
+        kept = [way for other, ways in self._kept.items() if other != name for way in ways]
+        moves = spots(self._carry(outline), floor, around, self._needed, kept)
         shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
         return [end_about(shape) for shape in shapes]
 

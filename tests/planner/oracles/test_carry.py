@@ -10,7 +10,7 @@ from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import At, Inside
 from geometry.motion.se2 import Pose, Translate
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import passage_of, spots
+from planner.oracles.spots import kept_way_of, spots
 
 ROOM = [
     "b" * 20,
@@ -109,10 +109,10 @@ def test_among_spots_on_the_ways_of_others_those_come_first_that_leave_them_a_wa
     floor[1:4, 1:29] = True
     floor[4:7, 12:15] = True  # the bay
     outline = shapely.box(4, 1, 6, 3)
-    passage = passage_of(shapely.box(1, 1, 3, 3), shapely.box(26, 1, 28, 3), floor)
-    assert passage is not None
+    way = kept_way_of(shapely.box(1, 1, 3, 3), shapely.box(26, 1, 28, 3), floor)
+    assert way is not None
     keep = np.ones_like(floor)  # no place is off the ways of others
-    moves = spots(outline, floor, floor, keep, [passage])
+    moves = spots(outline, floor, floor, keep, [way])
     first = Translate(*map(float, moves[0])).carry(outline)
     assert first.bounds[1] >= 4.0
     assert len(moves) > len(spots(outline, floor, floor, keep))
@@ -120,8 +120,8 @@ def test_among_spots_on_the_ways_of_others_those_come_first_that_leave_them_a_wa
 
 def test_a_passage_is_that_of_a_thing_that_is_not_turned() -> None:
     floor = np.ones((8, 8), np.bool_)
-    assert passage_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 6, 5), floor) is not None
-    assert passage_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 5, 6), floor) is None
+    assert kept_way_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 6, 5), floor) is not None
+    assert kept_way_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 5, 6), floor) is None
 
 
 def test_a_region_is_reached_where_it_is_free() -> None:
