@@ -31,7 +31,7 @@ from kb.perception.protrusions import (
     with_embedded_things,
 )
 from kb.perception.regions import Percept, Region, label_of
-from kb.perception.seams import cornered_parts
+from kb.perception.seams import cornered_parts, part_by_colour
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
@@ -94,27 +94,35 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-    for thing in _felt_things_at_walls(occupied, colours, view):
+    things, unsettled = _felt_things_at_walls(occupied, colours, view)
+    for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(_separated_region(thing, label, view))
         kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
-    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), seams)
+    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), (*seams, *unsettled))
 
 
-def _felt_things_at_walls(occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView) -> list[Bools]:
-    """Return the masks of the things that were felt and stand against the verge, or in it.
+def _felt_things_at_walls(
+    occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView
+) -> tuple[list[Bools], list[Bools]]:
+    """Return the masks of the things that were felt and stand against the verge, or in it; and of unsettled seams.
 
     What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall, or what
-    sticks out further, if most of its length was felt; else the felt squares alone.
+    sticks out further, if most of its length was felt; else the felt squares alone. What sticks out and was felt in
+    the colours of several things is parted where these touch.
 
     occupied : (rows, columns) bool on the view's arrays, squares of what bounds the floor. colours : the colour of each
     felt square (row, column) of these arrays.
     """
     floor = free_squares(view)
-    things = separate_things(protrusions(floor, occupied, view.seen), colours)
+    parts = protrusions(floor, occupied, view.seen)
+    partings = [part_by_colour(part, colours) for part in parts if _is_mixed(part, colours)] if view.sure else []
+    parts += [part for parting in partings for part in parting.parts]
+    things = separate_things(sorted(parts, key=lambda mask: int(mask.sum())), colours)
+    unsettled = [seam for parting in partings for seam in parting.unsettled]
     leaning: Callable[[], list[Bools]] = partial(cornered_parts, ~floor, colours)
     far: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen, colours)
     for candidates in (leaning, far):
@@ -125,7 +133,12 @@ def _felt_things_at_walls(occupied: Bools, colours: Mapping[tuple[int, int], str
         things += separate_things([p for p in parts if not any((p & thing).any() for thing in things)], colours)
     things = with_embedded_things(things, colours, occupied)
     behind = protrusions(floor, occupied, view.seen, colours, LONGEST_OBJECT)
-    return joined_through_walls(things, behind, colours, occupied)
+    return joined_through_walls(things, behind, colours, occupied), unsettled
+
+
+def _is_mixed(part: Bools, felt: Mapping[tuple[int, int], str]) -> bool:
+    """Return whether squares of a part were felt in two colours that are not the verge's."""
+    return len({colour for place, colour in felt.items() if part[place]} - {VERGE_TOUCH_COLOUR}) > 1
 
 
 def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
