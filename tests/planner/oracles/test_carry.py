@@ -114,7 +114,7 @@ def test_among_spots_on_the_ways_of_others_those_come_first_that_leave_them_a_wa
     keep = np.ones_like(floor)  # no place is off the ways of others
     moves = spots(outline, floor, floor, keep, [way])
     first = Translate(*map(float, moves[0])).carry(outline)
-    assert first.bounds[1] >= 4.0
+    assert first.bounds[1] >= 3.0  # two squares of the corridor stay free
     assert len(moves) > len(spots(outline, floor, floor, keep))
 
 
