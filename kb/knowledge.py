@@ -19,10 +19,12 @@ from kb.localisation.state import TrackerState
 from kb.localisation.tracker import Tracker
 from kb.mapping.object_heat import NO_COMPLETION_SUMMARY, summarise_completions
 from kb.mapping.occupancy import OPEN, MapView
+from kb.objects.held_object import held_or_moved
 from kb.objects.shape_fit import ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.interpretation import interpret_regions
 from kb.perception.regions import map_regions
+from kb.perception.seams import PartedMap, part_mixed_regions
 from kb.world.model import MAX_FREE_PROBABILITY, Node, WorldModel
 from kb.world.object_names import ObjectNames
 from kb.world.objects import (
@@ -193,13 +195,21 @@ class Knowledge:
         return self._with_objects(model), accommodated
 
     def _feel(self, impression: Impression) -> None:
-        """Take in the colours of the 8 adjacent squares, except on squares that held objects may cover.
+        """Take in the colours of the 8 adjacent squares, except on squares that moved or held objects may cover.
 
-        `impression` has these colours, clockwise from north in the robot frame. Changes the touches alone.
+        What was in hand and never moved is given up as one thing when two colours are felt on it: its squares are
+        again what they were seen to be. `impression` has the colours, clockwise from north in the robot frame. Changes
+        the touches, and the tracker's held objects.
         """
         memory = self.memory
-        held = {square for load in memory.held_objects.values() for square in load.possible.squares()}
+        loads = held_or_moved(memory.held_objects, memory.in_hand)
+        held = {square for load in loads.values() for square in load.possible.squares()}
         self._touches.feel(impression.touch, memory.frame, memory.square, held)
+        felt = self._touches.colours
+        for name, load in memory.held_objects.items() if memory.sure else ():
+            colours = {felt[square] for square in load.possible.squares() if square in felt}
+            if name not in loads and len(colours) > 1:
+                self.tracker.withdraw(name)
 
     def _map(self) -> MapView:
         """Return the map view: counts solved, and probabilities of open squares from completions drawn anew.
@@ -225,13 +235,20 @@ class Knowledge:
         Squares that are occupied with a probability above MAX_FREE_PROBABILITY form occupied regions, all other seen
         squares free ones. The result holds the regions `part<n>`, the number n of each square's region on the arrays of
         the map view (0 where nothing was seen), and the confidences in percent in what each region is. Things felt to
-        stand against the verge are regions of their own, with the greatest numbers.
+        stand against the verge are regions of their own, with the greatest numbers, and so are the parts of an isolated
+        region on which two colours were felt.
         """
         occupied = view.seen & (view.probability > MAX_FREE_PROBABILITY)
-        percept, labels = map_regions(occupied, view.seen, view.state != OPEN, view.probability)
+        settled = view.state != OPEN
+        percept, labels = map_regions(occupied, view.seen, settled, view.probability)
         felt = self._touches.colours
+        parted = PartedMap(percept, labels)
+        if view.sure:  # else a colour may have been felt beside the square for which it is taken
+            places = {view.locate(x, y): colour for (x, y), colour in sorted(felt.items())}
+            parted = part_mixed_regions(percept, labels, places, settled, view.probability)
+        percept, labels, _ = parted
         touched = [(f"part{labels[view.locate(x, y)]}", colour) for (x, y), colour in sorted(felt.items())]
-        regions = MapRegions(percept, labels, interpret_regions(percept, touched, self.rules))
+        regions = MapRegions(percept, labels, interpret_regions(percept, touched, self.rules), parted.unsettled)
         return separate_felt_things(regions, view, felt)
 
     def _world(
@@ -260,6 +277,7 @@ class Knowledge:
             imagined=self._completions,
             touch=impression.touch,
             felt=dict(self._touches.colours),
+            unsettled_seams=regions.unsettled_seams,
             lost=memory.lost,
             anew=bool(memory.been),
             shaken=memory.shaken,

@@ -136,6 +136,19 @@ class Tracker:
         """
         self.state = replace(self.state, held_objects={**self.state.held_objects, held.name: held})
 
+    def withdraw(self, name: str) -> None:
+        """Forget an object that was in hand and never moved; `state` is replaced.
+
+        The map is made anew from all observations, as if it had never been held.
+
+        Parameters
+        ----------
+        name : of the object; it is not in hand.
+        """
+        state = self.state
+        left = [held for held in state.held_objects.values() if held.name != name]
+        self.state = _remapped(state, remap(state.frame, state.frame, state.observations, left))
+
     def keep_completions(self, completions: Completions | None) -> None:
         """Keep the newest completions of the map in `state`; the chance of a contact is estimated by them.
 

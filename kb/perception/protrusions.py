@@ -19,10 +19,17 @@ MAX_THING_LENGTH = 10  # squares that a thing may measure between floor and floo
 MAX_THING_EXTENT = 12  # squares: the longer side of a thing's containing rectangle, at most; tuned
 
 
-def protrusions(floor: Bools, solid: Bools, seen: Bools) -> list[Bools]:
+def protrusions(
+    floor: Bools,
+    solid: Bools,
+    seen: Bools,
+    felt: Mapping[RowColumn, str] | None = None,
+    extent: int = MAX_THING_EXTENT,
+) -> list[Bools]:
     """Find the parts of the bounds of the floor that stick out into it. Parts that stand free are left out.
 
-    One may be part of another: where a thing ends cannot be seen.
+    One may be part of another: where a thing ends cannot be seen. What is longer than `extent` is mostly wall, and left
+    out; but not where a colour that is not the verge's was felt on it.
 
     Parameters
     ----------
@@ -32,6 +39,10 @@ def protrusions(floor: Bools, solid: Bools, seen: Bools) -> list[Bools]:
         Squares of what bounds the floor, or stands against what does. Only such squares belong to the parts.
     seen : (rows, columns) bool
         Squares that were seen.
+    felt : mapping of (row, column) to str
+        The colour of each square of these arrays that was felt; None for none.
+    extent : int
+        Squares: the longer side of the containing rectangle of a part, at most.
 
     Returns
     -------
@@ -43,9 +54,16 @@ def protrusions(floor: Bools, solid: Bools, seen: Bools) -> list[Bools]:
     across, along = (short & solid for short in (_short_runs(floor, bounds), _short_runs(floor.T, bounds.T).T))
     pockets = [pocket & solid for pocket in _corner_parts(floor, bounds)]
     between = across, along, across | along
-    found = [*pockets, *(part for mask in between for part in _small_parts(mask))]
+    things = np.zeros_like(bounds)
+    for place, colour in (felt or {}).items():
+        things[place] = colour != VERGE_TOUCH_COLOUR
+    found = [*pockets, *(part for mask in between for part in _likely_parts(mask, things, extent))]
     found += [
-        part for pocket in pockets for mask in between for part in _small_parts(mask | pocket) if (part & pocket).any()
+        part
+        for pocket in pockets
+        for mask in between
+        for part in _likely_parts(mask | pocket, things, extent)
+        if (part & pocket).any()
     ]
     unlike = {mask.tobytes(): mask for mask in found if (with_edge_neighbours(mask) & solid & ~mask).any()}
     return sorted(unlike.values(), key=lambda mask: int(mask.sum()))
@@ -125,6 +143,79 @@ def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], sol
     return found
 
 
+def joined_through_walls(
+    things: list[Bools], parts: list[Bools], felt: Mapping[RowColumn, str], solid: Bools
+) -> list[Bools]:
+    """Return some things, with what sticks out of a wall on the other side joined to those that fill a gap in it.
+
+    The thing meets the wall with the same columns, or rows, as what is behind the wall: another thing of its colour, or
+    a part that was not felt. Then that and what is between is taken for one thing, unless verge was felt there.
+
+    Parameters
+    ----------
+    things : list of (rows, columns) bool
+        The things, as of `with_embedded_things`.
+    parts : list of (rows, columns) bool
+        The parts of the bounds of the floor that stick out into it, as of `protrusions`.
+    felt : mapping of (row, column) to str
+        The colour of each square that was felt; VERGE_TOUCH_COLOUR where it was verge.
+    solid : (rows, columns) bool
+        Squares of what bounds the floor.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The things; two that were joined are one, in the place of the first.
+    """
+    found = list(things)
+    known = np.any(found, axis=0) if found else np.False_
+    unfelt = [part for part in reversed(parts) if not (part & known).any() and not any(part[place] for place in felt)]
+    one = 0
+    while one < len(found):
+        colour = next(colour for place, colour in felt.items() if found[one][place])
+        like = [thing for thing in found[one + 1 :] if any(thing[p] and c == colour for p, c in felt.items())]
+        for other in (*like, *unfelt):
+            bridge = None if (other & found[one]).any() else _bridge(found[one], other, solid)
+            if bridge is not None and not any(bridge[place] and c != colour for place, c in felt.items()):
+                whole = found[one] | other | bridge
+                found[one:] = [whole, *(thing for thing in found[one + 1 :] if not (thing & whole).any())]
+                break
+        else:
+            one += 1
+    return found
+
+
+def _bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
+    """Return the solid squares between two things that match across a wall, the one behind the other; None if not."""
+    found = _upright_bridge(one, other, solid)
+    if found is None:
+        found = _upright_bridge(one.T, other.T, solid.T)
+        found = None if found is None else np.ascontiguousarray(found.T)
+    return found
+
+
+def _upright_bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:
+    """Return the solid squares between two things of which one lies north of the other; None if they do not match.
+
+    They match when in the same columns the one meets what is solid to the south and the other what is solid to the
+    north, and in each of these columns that lies between them, and nothing else.
+    """
+    low, high = sorted((one, other), key=lambda thing: int(np.flatnonzero(thing.any(1))[0]))
+    columns = low.any(0), high.any(0)
+    last = len(solid) - 1 - np.argmax(low[::-1], axis=0)  # the northernmost row of the southern thing, by column
+    first = np.argmax(high, axis=0)  # the southernmost row of the northern one
+    rows = np.arange(len(solid))[:, None]
+    between = (rows > last) & (rows < first) & columns[0] & columns[1]
+    bridging = columns[0] & columns[1] & (last + 1 < first) & (solid | ~between).all(0)
+    across = np.arange(solid.shape[1])
+    meets_north = columns[0] & solid[np.minimum(last + 1, len(solid) - 1), across]
+    meets_south = columns[1] & solid[np.maximum(first - 1, 0), across]
+    if not bridging.any() or (bridging != meets_north).any() or (bridging != meets_south).any():
+        return None
+    mask: Bools = between & bridging
+    return mask
+
+
 def _within_rectangle(thing: Bools, solid: Bools, felt: Mapping[RowColumn, str]) -> Bools:
     """Return a thing with all that is solid in its containing rectangle, unless verge was felt there: then itself."""
     rows, columns = np.flatnonzero(thing.any(1)), np.flatnonzero(thing.any(0))
@@ -189,14 +280,16 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
     return short
 
 
-def _small_parts(mask: Bools) -> Iterator[Bools]:
-    """Yield the mask of each edge-connected part whose longer side is at most MAX_THING_EXTENT squares.
+def _likely_parts(mask: Bools, things: Bools, extent: int) -> Iterator[Bools]:
+    """Yield the mask of each edge-connected part that is likely a thing.
 
-    `mask` and the results are (rows, columns) bool, of one shape; longer parts are left out.
+    Its longer side is at most `extent` squares, or a square of it was felt to be a thing. All masks are (rows,
+    columns) bool, of one shape; `things` has the squares that were felt so.
     """
     parts = components(mask)
+    felt = set(np.unique(parts.labels[things & mask]).tolist())
     for n, (south, west, north, east) in enumerate(bounding_boxes(parts.labels, parts.number)[1:].tolist(), 1):
-        if max(north - south, east - west) < MAX_THING_EXTENT:
+        if max(north - south, east - west) < extent or n in felt:
             yield parts.labels == n
 
 

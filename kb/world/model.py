@@ -161,6 +161,8 @@ class WorldModel:
         The colours felt in the eight DIRECTIONS with this impression, None for floor; () when not known.
     felt : mapping of (x, y) to str
         The colour of each square that was felt not to be floor, map frame.
+    unsettled_seams : tuple of (rows, columns) bool
+        Masks of squares on which it is to be felt where exactly one of two things that touch ends.
     lost : bool
         Whether localisation failed: the last impressions agree with no belief.
     anew : bool
@@ -188,6 +190,7 @@ class WorldModel:
     floor_under_moved: Bools | None = None
     touch: tuple[str | None, ...] = ()
     felt: Mapping[Square, str] = field(default_factory=dict)
+    unsettled_seams: tuple[Bools, ...] = ()
     lost: bool = False
     anew: bool = False
     shaken: bool = False
@@ -274,7 +277,8 @@ class WorldModel:
         standing, near_verge = self.verge.copy(), with_edge_neighbours(self.verge)
         for patch in (self.mask(node.patch) for node in self.objects if not node.moved):
             standing |= patch & (patch & near_verge).any()  # it was felt to be a thing, and may be larger than that
-        return untouched_parts(protrusions(self.space, standing & occupied_squares(self.view), self.view.seen), within)
+        solid = standing & occupied_squares(self.view)
+        return untouched_parts(protrusions(self.space, solid, self.view.seen, within), within)
 
     def object(self, name: str) -> Node | None:
         """Return the node of the object with this name, `o<n>`; None when there is none.

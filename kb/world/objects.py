@@ -4,8 +4,9 @@ An object that never moved is a region of the map. One that was held has a place
 (kb.objects.held_object); it is laid upon the map as one more region.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,8 +23,15 @@ from kb.objects.shape_fit import ShapeMeasurement, ShapeMeasurer
 from kb.objects.touches import Touches
 from kb.perception.frame import ADJACENT_OFFSETS, Frame
 from kb.perception.interpretation import FELT_OBJECT_CONFIDENCE, LONGEST_OBJECT, Kinds, classify_shapes
-from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, separate_things, with_embedded_things
+from kb.perception.protrusions import (
+    VERGE_TOUCH_COLOUR,
+    joined_through_walls,
+    protrusions,
+    separate_things,
+    with_embedded_things,
+)
 from kb.perception.regions import Percept, Region, label_of
+from kb.perception.seams import cornered_parts, part_by_colour
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
@@ -31,6 +39,7 @@ LAID_PROBABILITY = 0.4  # that a square is occupied which the tolerance of a hel
 PLAY_PROBABILITY = (
     0.05  # likewise outside the believed outline: a motion there is hardly stopped, so below MAX_FREE_PROBABILITY
 )
+MIN_FELT_SHARE = 2 / 3  # of the length of a long thing at a wall: where less was felt, it may be wall; a convention
 MIN_STUCK_MOTIONS = 3  # pushes or turns in a row that did not move an object: from then on it cannot be moved; tuned
 
 
@@ -45,11 +54,14 @@ class MapRegions(NamedTuple):
         The number n of each square's region `part<n>`; 0 where nothing was seen.
     kinds : Kinds
         What each region is taken for.
+    unsettled_seams : tuple of (rows, columns) bool
+        Masks of squares on which it is to be felt where exactly one of two things that touch ends.
     """
 
     percept: Percept
     labels: Labels
     kinds: Kinds
+    unsettled_seams: tuple[Bools, ...] = ()
 
 
 def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Square, str]) -> MapRegions:
@@ -74,7 +86,7 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
         The numbers of the other regions stay. The result holds the regions, old ones first, the number of each square's
         region on the arrays of the map view, and what each region is taken for.
     """
-    percept, labels, kinds = regions
+    percept, labels, kinds, seams = regions
     bounds = np.array([kinds.of(f"part{n}", "object") == 0 for n in range(int(labels.max()) + 1)])[labels]
     occupied = occupied_squares(view) & bounds
     colours = {view.locate(x, y): colour for (x, y), colour in felt.items()}
@@ -82,15 +94,66 @@ def separate_felt_things(regions: MapRegions, view: MapView, felt: Mapping[Squar
     if all(colour == VERGE_TOUCH_COLOUR for colour in colours.values()):
         return regions
     labels, separated, kind = labels.copy(), [*percept.regions], dict(kinds.kind)
-    sticking_out = separate_things(protrusions(free_squares(view), occupied, view.seen), colours)
-    for thing in with_embedded_things(sticking_out, colours, occupied):
+    things, unsettled = _felt_things_at_walls(occupied, colours, view)
+    for thing in things:
         label = int(labels.max()) + 1
         labels[thing] = label
         separated.append(_separated_region(thing, label, view))
         kind[f"part{label}"] = {"object": FELT_OBJECT_CONFIDENCE}
     left = set(np.unique(labels).tolist())
     there = tuple(region for region in separated if label_of(region.name) in left)
-    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind))
+    return MapRegions(percept._replace(regions=there), labels, kinds._replace(kind=kind), (*seams, *unsettled))
+
+
+def _felt_things_at_walls(
+    occupied: Bools, colours: Mapping[tuple[int, int], str], view: MapView
+) -> tuple[list[Bools], list[Bools]]:
+    """Return the masks of the things that were felt and stand against the verge, or in it; and of unsettled seams.
+
+    What sticks out a little is likeliest a thing; else what the lines between inner corners part from the wall, or what
+    sticks out further, if most of its length was felt; else the felt squares alone. What sticks out and was felt in
+    the colours of several things is parted where these touch.
+
+    occupied : (rows, columns) bool on the view's arrays, squares of what bounds the floor. colours : the colour of each
+    felt square (row, column) of these arrays.
+    """
+    floor = free_squares(view)
+    parts = protrusions(floor, occupied, view.seen)
+    partings = [part_by_colour(part, colours) for part in parts if _is_mixed(part, colours)] if view.sure else []
+    parts += [part for parting in partings for part in parting.parts]
+    things = separate_things(sorted(parts, key=lambda mask: int(mask.sum())), colours)
+    unsettled = [seam for parting in partings for seam in parting.unsettled]
+    leaning: Callable[[], list[Bools]] = partial(cornered_parts, ~floor, colours)
+    far: Callable[[], list[Bools]] = partial(protrusions, floor, occupied, view.seen, colours)
+    for candidates in (leaning, far):
+        left = [place for place in colours if not any(thing[place] for thing in things)]
+        if all(colours[place] == VERGE_TOUCH_COLOUR for place in left):
+            break
+        parts = [part & occupied for part in candidates() if _is_felt_along(part, left)]
+        things += separate_things([p for p in parts if not any((p & thing).any() for thing in things)], colours)
+    things = with_embedded_things(things, colours, occupied)
+    behind = protrusions(floor, occupied, view.seen, colours, LONGEST_OBJECT)
+    return joined_through_walls(things, behind, colours, occupied), unsettled
+
+
+def _is_mixed(part: Bools, felt: Mapping[tuple[int, int], str]) -> bool:
+    """Return whether squares of a part were felt in two colours that are not the verge's."""
+    return len({colour for place, colour in felt.items() if part[place]} - {VERGE_TOUCH_COLOUR}) > 1
+
+
+def _is_felt_along(part: Bools, felt: Iterable[tuple[int, int]]) -> bool:
+    """Return whether what was felt of a part stretches over MIN_FELT_SHARE of its longer side.
+
+    part : (rows, columns) bool. felt : the squares (row, column) that were felt.
+    """
+    touched = np.zeros_like(part)
+    for place in felt:
+        touched[place] = part[place]
+    if not touched.any():
+        return False
+    axis = int(np.ptp(np.flatnonzero(part.any(0))) > np.ptp(np.flatnonzero(part.any(1))))
+    whole, known = (int(np.ptp(np.flatnonzero(mask.any(1 - axis)))) + 1 for mask in (part, touched))
+    return known >= MIN_FELT_SHARE * whole
 
 
 def _separated_region(thing: Bools, label: int, view: MapView) -> Region:
@@ -140,7 +203,8 @@ def seen_objects(
     BadInputError
         The user's encodings are wrong.
     """
-    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds)]
+    felt = _felt_things(model)
+    regions = [r for r in model.percept.regions if _may_be_object(r, model.kinds, felt)]
     windows = _windows(model, [label_of(r.name) for r in regions])
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
@@ -154,12 +218,22 @@ def seen_objects(
     )
 
 
-def _may_be_object(region: Region, kinds: Kinds) -> bool:
+def _may_be_object(region: Region, kinds: Kinds, felt: Container[int]) -> bool:
     """Return whether a region is short enough for an object, and an object with at least MIN_OBJECT_BELIEF percent.
 
-    Short enough is an extent of at most LONGEST_OBJECT squares. `kinds` has the confidences in what each region is.
+    Short enough is an extent of at most LONGEST_OBJECT squares; what was felt to be an object may be longer. `kinds`
+    has the confidences in what each region is, `felt` the labels of regions that were felt to be no verge.
     """
-    return region.extent <= LONGEST_OBJECT and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
+    short = region.extent <= LONGEST_OBJECT or label_of(region.name) in felt
+    return short and kinds.of(region.name, "object") >= MIN_OBJECT_BELIEF
+
+
+def _felt_things(model: WorldModel) -> set[int]:
+    """Return the labels of the regions on which a colour was felt, and nowhere that of the verge."""
+    labels: dict[bool, set[int]] = {True: set(), False: set()}
+    for (x, y), colour in model.felt.items():
+        labels[colour == VERGE_TOUCH_COLOUR].add(int(model.labels[model.view.locate(x, y)]))
+    return labels[False] - labels[True]
 
 
 class _Window(NamedTuple):

@@ -9,7 +9,7 @@ from planner.carrying.manipulation_oracle import ManipulationPlan
 from planner.goals.placement import CERTAIN_OBJECT
 from planner.screen.moves import orientation_is_uncertain
 from planner.screen.projection import dilate
-from planner.sights.frontiers import Viewpoint, touch_viewpoint, viewpoint_of
+from planner.sights.frontiers import Viewpoint, rim_viewpoint, touch_viewpoint, viewpoint_of
 from planner.sights.viewpoints import TO_TAKE, inspection
 from planner.situation import Situation
 
@@ -59,7 +59,8 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
 def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
     """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none.
 
-    Also None when there is no floor beside it from which the robot did not feel it yet.
+    Also None when there is no floor beside it from which the robot did not feel it yet. Then it is felt how far an
+    obstacle goes that touches a wall or another object.
 
     A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
     arrays of the view), and what is not known in words.
@@ -72,10 +73,10 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     found : the plan; its `aside` names the obstacles.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
-    things = (thing for thing in situation.model.objects if thing.name in found.aside)
-    return _first_see(
-        touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT
-    )
+    things = [thing for thing in situation.model.objects if thing.name in found.aside]
+    unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT)
+    ends = (rim_viewpoint(situation.cost_maps, thing) for thing in things)
+    return _first_see(unsure) or _first_see(look for look in ends if look is not None)
 
 
 def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:

@@ -4,6 +4,7 @@ from geometry.manipulation.goals import End
 from kb.world.model import Node
 from planner.advice import Act
 from planner.deciding.tools import Tools
+from planner.deciding.verification import look_for_more
 from planner.decision import Decision
 from planner.goals.placement import CERTAIN_OBJECT
 from planner.navigation.subgoals import Subgoal
@@ -38,6 +39,9 @@ def bring_to_end(
             return look
     if node.polygon is None:
         return None
+    more = tools.pursuer.pursue_look(look_for_more(node, situation), stage, situation)
+    if more is not None and more.command is not None:
+        return more
     tools.executor.drop_other_plan(node.name)
     advice = tools.executor.advise(node, {name: end}, situation)
     if not isinstance(advice, Act):

@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Floats
-from geometry.raster.components import with_edge_neighbours
 from kb.world.doors import jamb
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, Door, rooms_of
@@ -164,30 +163,21 @@ def robot_square(model: WorldModel) -> Bools:
 
 
 def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
-    """Return where to feel whether an object that stands against a wall goes on in what seems to be wall.
+    """Return where to feel how far an object goes that touches a wall or another object, or did not move when pushed.
 
     Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
-    to be felt.
+    to be felt (planner.sights.frontiers.rim_viewpoint).
 
     A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
     of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Of several pieces of seeming wall beside the object, the first in the order of the model that can be felt.
 
     Parameters
     ----------
     node : the object.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
-    model = situation.model
-    rim = with_edge_neighbours(model.mask(node.patch))
-    standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
-    alone = node.moved or model.held == node.name or not any((rim & mask).any() for mask in standing)
-    for mask in () if alone else model.protruding:
-        look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
-        if (mask & rim).any() and len(look.squares):
-            return Subgoal(SubgoalKind.INSPECT, *look)
-    return None
+    look = frontiers.rim_viewpoint(situation.cost_maps, node)
+    return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
 
 
 def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:

@@ -21,13 +21,52 @@ DIAGONALS = ((1, 1), (1, -1), (-1, 1), (-1, -1))  # (rows, columns) towards the 
 TURN_DECIMALS = 6  # digits of coordinates after a quarter turn that count; bounds rounding
 MAX_CLEAR_SPOTS = 6  # places off the ways of others that are offered for one object; a bound on choices
 MAX_OTHER_SPOTS = 2  # places on such ways, for want of better ones; a bound on choices
+MAX_TESTED_SPOTS = 400  # places on ways of others of which it is tested whether these find another way; a bound on time
 
 
-def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[tuple[int, int]]:
+class KeptWay(NamedTuple):
+    """A way of another object that must stay possible, not turned.
+
+    Attributes
+    ----------
+    offsets : (n, 2), its squares (row, column) relative to its lowest row and column.
+    start, end : its lowest (row, column) where it lies, and where it shall lie.
+    floor : (rows, columns) bool, the squares over which it may be pushed when nothing else lies there.
+    """
+
+    offsets: Ints
+    start: tuple[int, int]
+    end: tuple[int, int]
+    floor: Bools
+
+
+def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
+    """Return the way of an object from an outline to another one; None when it covers other squares there.
+
+    Parameters
+    ----------
+    start, end : shapely Polygon, in squares, frame of the arrays.
+    floor : (rows, columns) bool, the squares over which it may be pushed.
+    """
+    rows, columns = floor.shape
+    covered = [np.argwhere(squares(outline, columns, rows)) for outline in (start, end)]
+    if not all(len(one) for one in covered):
+        return None
+    lows = [one.min(axis=0) for one in covered]
+    if not np.array_equal(covered[0] - lows[0], covered[1] - lows[1]):
+        return None
+    (row, column), (last_row, last_column) = (tuple(int(v) for v in low) for low in lows)
+    return KeptWay(covered[0] - lows[0], (row, column), (last_row, last_column), floor)
+
+
+def spots(
+    outline: Any, floor: Bools, around: Bools, keep_clear: Bools, kept: Sequence[KeptWay] = ()
+) -> list[tuple[int, int]]:
     """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
 
     Places off `keep_clear` with a free square all round come first: the nearest one, then those that are furthest from
-    the ones chosen before; then other places off `keep_clear`, at last those on it, chosen likewise. [] for none.
+    the ones chosen before; then other places off `keep_clear`; then those on it past which others find another way; at
+    last any on it, chosen likewise. [] for none.
 
     Parameters
     ----------
@@ -35,6 +74,7 @@ def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[
     floor : (rows, columns) bool, squares on which it may lie.
     around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
     keep_clear : (rows, columns) bool, squares that others need.
+    kept : ways of others that must stay possible.
     """
     usable = _usable(outline, floor, around)
     if usable is None:
@@ -45,6 +85,10 @@ def spots(outline: Any, floor: Bools, around: Bools, keep_clear: Bools) -> list[
     apart = int(max(offsets.max(axis=0)) + 1)
     chosen = _apart(roomy, far, MAX_CLEAR_SPOTS, apart)
     chosen += _apart(clear & ~roomy, far, MAX_CLEAR_SPOTS - len(chosen), apart)
+    if kept and len(chosen) < MAX_CLEAR_SPOTS:
+        leaving = _leaving_ways(mask & ~clear, far, offsets, kept)
+        chosen += _apart(leaving, far, MAX_CLEAR_SPOTS - len(chosen), apart)
+        mask &= ~leaving
     chosen += _apart(mask & ~clear, far, MAX_OTHER_SPOTS, apart)
     return [(x - column, y - row) for x, y in chosen]
 
@@ -131,6 +175,35 @@ def _usable(outline: Any, floor: Bools, around: Bools) -> _Usable | None:
     mask = _fits(floor, offsets) & (far != GEODESIC_UNREACHED)
     mask[row, column] = False
     return _Usable(offsets, passable, far, mask, (row, column))
+
+
+def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, kept: Sequence[KeptWay]) -> Bools:
+    """Return which places of an object, of the nearest MAX_TESTED_SPOTS, leave each kept way possible.
+
+    candidates : (rows, columns) bool, its lowest row and column. far : the way to each. offsets : its squares relative
+    to these.
+    """
+    found = np.zeros_like(candidates)
+    where = np.argwhere(candidates)
+    where = where[np.argsort(far[candidates], kind="stable")][:MAX_TESTED_SPOTS]
+    ways = []
+    for way in kept:
+        blocked = np.unique((offsets[:, None] - way.offsets[None]).reshape(-1, 2), axis=0)
+        ways.append((_fits(way.floor, way.offsets), blocked, way))
+    rows, columns = candidates.shape
+    for row, column in where.tolist():
+        leaves = True
+        for fits, blocked, way in ways:
+            there = blocked + np.array([row, column])
+            there = there[(there >= 0).all(1) & (there[:, 0] < rows) & (there[:, 1] < columns)]
+            left = fits.copy()
+            left[there[:, 0], there[:, 1]] = False
+            start, end = way.start, way.end
+            leaves = bool(left[start] and left[end] and reach(left, start[1], start[0])[end] != GEODESIC_UNREACHED)
+            if not leaves:
+                break
+        found[row, column] = leaves
+    return found
 
 
 def _fits(mask: Bools, offsets: Ints) -> Bools:

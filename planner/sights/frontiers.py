@@ -173,6 +173,39 @@ def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     return Viewpoint(beside, "whether something stands against the wall was not felt")
 
 
+def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
+    """Return the floor from which the robot feels how far an object goes; None when nothing about it is to be felt.
+
+    That is so for an object that was never moved, is not in hand, and touches a wall or another object, or did not move
+    when it was pushed: that may be more than one thing, or a thing and a wall, so all of its rim is felt.
+
+    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
+    the view), what is not known in words, and its chance in percent.
+
+    First where exactly it ends beside what it touches; then of several pieces of seeming wall beside it the first in
+    the order of the model that can be felt; at last its own rim, if it did not move.
+
+    Parameters
+    ----------
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
+    node : the object, a node of the world model.
+    """
+    model = cost_maps.model
+    if node.moved or model.held == node.name:
+        return None
+    own = model.mask(node.patch)
+    rim = with_edge_neighbours(own)
+    standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
+    touches = any((rim & mask).any() for mask in standing)
+    unfelt = own & ~model.squares(model.felt)
+    resisting = [unfelt] if node.stuck and model.held is None else []
+    for mask in (*((*model.unsettled_seams, *model.protruding) if touches else ()), *resisting):
+        look = wall_touch_viewpoint(cost_maps, mask)
+        if (mask & rim).any() and len(look.squares):
+            return look
+    return None
+
+
 def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     """Return the floor from which some squares are seen best, where the robot did not look yet.
 

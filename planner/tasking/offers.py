@@ -15,7 +15,15 @@ from kb.world.rooms import NO_ROOM
 from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
-from planner.oracles.spots import SPOT_SLACK, corner_spots, covered_by, spots, turned_corner_outlines
+from planner.oracles.spots import (
+    SPOT_SLACK,
+    KeptWay,
+    corner_spots,
+    covered_by,
+    kept_way_of,
+    spots,
+    turned_corner_outlines,
+)
 
 
 def with_returns(problem: TaskProblem) -> TaskProblem:
@@ -69,6 +77,7 @@ class Offers:
         self.shape = (sure.shape[0], sure.shape[1])
         self._floors = floors
         self._needed: Bools = np.zeros(self.shape, np.bool_)  # squares that ways of things need
+        self._kept: dict[str, list[KeptWay]] = {}  # ways that must stay possible, by the thing that goes there
         self._in_way: list[str] = []
         self._offered: set[str] = set()
         self._further: set[str] = set()  # the things for which places past others were offered, too
@@ -76,6 +85,16 @@ class Offers:
     def keep_clear(self, way: Bools) -> None:
         """Note the squares that a thing would cross if no other thing were there, (rows, columns) bool."""
         self._needed |= way
+
+    def keep_way(self, name: str, start: Any, end: Any) -> None:
+        """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors.
+
+        Nothing is noted where it is turned on the way.
+        """
+        found = kept_way_of(start, end, self._floors.by_kind[FloorKind.SURE])
+        noted = self._kept.setdefault(name, [])
+        if found is not None and not any(one.start == found.start and one.end == found.end for one in noted):
+            noted.append(found)
 
     def note_in_way(self, names: Sequence[str]) -> None:
         """Note that things are in the way of others where a plan leaves them."""
@@ -176,7 +195,8 @@ class Offers:
     def _spots(self, name: str, problem: TaskProblem, floor: Bools, around: Bools) -> list[Inside]:
         """Return the ends of an object at spots on a floor to which it can be pushed over squares of another one."""
         outline = problem.state.things[name].outline
-        moves = spots(self._carry(outline), floor, around, self._needed)
+        kept = [way for other, ways in self._kept.items() if other != name for way in ways]
+        moves = spots(self._carry(outline), floor, around, self._needed, kept)
         shapes = [Translate(float(columns), float(rows)).carry(outline) for columns, rows in moves]
         return [end_about(shape) for shape in shapes]
 

@@ -285,6 +285,7 @@ class PlanSearch:
             margin = self._oracle.floors.margin
             outline = Translate(margin, margin).carry(state.things[errand.subject].outline)
             self._offers.keep_clear(swept_squares(alone.plan, outline, self._offers.shape))
+            self._offers.keep_way(errand.subject, outline, alone.plan.polygon)
         for name in sorted(others - gone):
             if self._ask(state.without(gone | {name}), errand, shut).after is None:
                 gone |= {name}

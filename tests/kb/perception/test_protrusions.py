@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from geometry.raster.components import components
 from kb.perception.protrusions import (
     MAX_THING_LENGTH,
+    joined_through_walls,
     protrusions,
     separate_things,
     untouched_parts,
@@ -164,3 +165,54 @@ def test_what_was_felt_beside_a_thing_of_its_colour_belongs_to_it() -> None:
     (part,) = with_embedded_things([thing], {**felt, (7, 1): "b"}, occupied)  # verge was felt between
     assert sorted({tuple(s) for s in np.argwhere(part & ~thing).tolist()}) == [(6, 1), (9, 1)]
     assert len(with_embedded_things([thing], {(6, 4): "k", (6, 1): "g"}, occupied)) == 2  # of another colour
+
+
+def through_wall(high: int, low: int, wide: int, other_wide: int, shift: int) -> tuple[Mask, Mask]:
+    """Return the squares of a room with a wall across it and things on both sides; and the things, the wall between.
+
+    high, low : how far they stick out to the north and to the south. wide, other_wide : their widths.
+    shift : how far the northern one lies further east.
+    """
+    occupied = room()
+    occupied[8:11] = True
+    upper, lower = np.zeros_like(occupied), np.zeros_like(occupied)
+    lower[8 - low : 8, 8 : 8 + wide] = True
+    upper[11 : 11 + high, 8 + shift : 8 + shift + other_wide] = True
+    between = np.zeros_like(occupied)
+    between[8:11, 8 : 8 + wide] = True
+    return occupied | upper | lower, lower | upper | between
+
+
+@given(st.integers(1, 4), st.integers(1, 4), st.integers(1, 5), st.sampled_from([None, "c", "d", "b"]), st.booleans())
+@settings(max_examples=60, deadline=None)
+def test_what_matches_across_a_wall_is_one_thing(
+    high: int, low: int, wide: int, behind: str | None, turn: bool
+) -> None:
+    occupied, whole = through_wall(high, low, wide, wide, 0)
+    felt = {(8 - low, 8): "c"} | ({} if behind is None else {(10 + high, 8): behind})
+    if turn:
+        occupied, whole = np.ascontiguousarray(occupied.T), np.ascontiguousarray(whole.T)
+        felt = {(column, row): colour for (row, column), colour in felt.items()}
+    parts = sticking_out(occupied)
+    joined = joined_through_walls(separate_things(parts, felt), parts, felt, occupied)
+    assert among(joined, whole) == (behind in (None, "c"))
+
+
+@pytest.mark.parametrize(("wide", "other", "shift"), [(2, 3, 0), (3, 2, 0), (3, 3, 1), (3, 3, -2), (2, 2, 6)])
+def test_what_does_not_match_across_a_wall_stays_apart(wide: int, other: int, shift: int) -> None:
+    occupied, _ = through_wall(3, 3, wide, other, shift)
+    felt = {(6, 8): "c", (12, 9 + shift): "c"}
+    parts = sticking_out(occupied)
+    things = separate_things(parts, felt)
+    assert len(things) == 2
+    assert len(joined_through_walls(things, parts, felt, occupied)) == 2
+
+
+def test_a_long_thing_is_parted_from_the_wall_once_it_was_felt() -> None:
+    thing = np.zeros((HIGH, WIDE), np.bool_)
+    thing[2:16, 6:9] = True  # longer than what is taken for a thing unfelt
+    occupied = room() | thing
+    floor, seen = ~occupied, np.ones_like(occupied)
+    assert not among(protrusions(floor, occupied, seen), thing)
+    assert not among(protrusions(floor, occupied, seen, {(9, 6): "b"}), thing)
+    assert among(protrusions(floor, occupied, seen, {(9, 6): "c"}), thing)

@@ -10,7 +10,7 @@ from benchmarks.worlds.drawn import drawn_problem, drawn_situation
 from geometry.manipulation.goals import At, Inside
 from geometry.motion.se2 import Pose, Translate
 from planner.oracles.carry import CarryOracle, Certainty
-from planner.oracles.spots import corner_spots, spots, turned_corner_outlines
+from planner.oracles.spots import corner_spots, kept_way_of, spots, turned_corner_outlines
 from tests.planner.situations import known_situation
 
 ROOM = [
@@ -158,6 +158,27 @@ def test_turned_corner_outlines_are_the_thing_turned_by_quarters_in_the_corners_
         assert one.area == pytest.approx(outline.area)
         assert low[0] == 1 or high[0] == columns - 1
         assert low[1] == 1 or high[1] == rows - 1
+
+
+def test_among_spots_on_the_ways_of_others_those_come_first_that_leave_them_a_way() -> None:
+    """In a corridor three squares wide with a bay, a thing of two squares lets another one pass in the bay alone."""
+    floor = np.zeros((9, 30), np.bool_)
+    floor[1:4, 1:29] = True
+    floor[4:7, 12:15] = True  # the bay
+    outline = shapely.box(4, 1, 6, 3)
+    way = kept_way_of(shapely.box(1, 1, 3, 3), shapely.box(26, 1, 28, 3), floor)
+    assert way is not None
+    keep = np.ones_like(floor)  # no place is off the ways of others
+    moves = spots(outline, floor, floor, keep, [way])
+    first = Translate(*map(float, moves[0])).carry(outline)
+    assert first.bounds[1] >= 3.0  # two squares of the corridor stay free
+    assert len(moves) > len(spots(outline, floor, floor, keep))
+
+
+def test_a_passage_is_that_of_a_thing_that_is_not_turned() -> None:
+    floor = np.ones((8, 8), np.bool_)
+    assert kept_way_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 6, 5), floor) is not None
+    assert kept_way_of(shapely.box(1, 1, 3, 2), shapely.box(4, 4, 5, 6), floor) is None
 
 
 def test_a_region_is_reached_where_it_is_free() -> None:

@@ -1,0 +1,323 @@
+"""Seams: where one thing ends and another begins within a region, as far as the colours felt on it tell.
+
+Things that touch are one region to the eye. A region on which two colours were felt is more than one thing, or an
+island of the verge with things that stand against it. It is cut along straight lines from rim to rim, along the grid,
+until no part was felt in two colours. A line from inner corner to inner corner is preferred, for it leaves the simplest
+outlines; then a short line, then the middle between the squares that were felt.
+
+Masks are (rows, columns) bool on the arrays of the map view, row 0 in the south.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.kernels.arrays import Bools, Labels
+from geometry.raster.components import components
+from kb.perception.protrusions import MAX_THING_LENGTH, RowColumn
+from kb.perception.regions import Percept, Region, label_of
+
+MAX_CUTS = 12  # cuts in one region; a bound on time
+MAX_PAIRED_LINES = 40  # lines of which pairs are tried where no single one parts a region; a bound on time
+
+
+class SeamLine(NamedTuple):
+    """A straight line along the grid between squares of a region, from rim to rim.
+
+    Attributes
+    ----------
+    upright : whether it runs along columns, between two columns; else between two rows.
+    at : the column east of it, or the row north of it.
+    first, last : the first and the last row that it runs along; columns for a level line.
+    """
+
+    upright: bool
+    at: int
+    first: int
+    last: int
+
+    @property
+    def length(self) -> int:
+        """The length in squares."""
+        return self.last - self.first + 1
+
+    def sides(self, along: int) -> tuple[RowColumn, RowColumn]:
+        """Return the squares (row, column) on both sides of the line: west and east, or south and north.
+
+        along : the row of the squares; for a level line their column.
+        """
+        if self.upright:
+            return (along, self.at - 1), (along, self.at)
+        return (self.at - 1, along), (self.at, along)
+
+    @property
+    def ends(self) -> tuple[tuple[RowColumn, RowColumn], ...]:
+        """The pairs of squares on both sides of its first and of its last square length."""
+        return self.sides(self.first), self.sides(self.last)
+
+
+class Parting(NamedTuple):
+    """A region taken apart.
+
+    Attributes
+    ----------
+    parts : the mask of each part, in raster order of their first squares.
+    unsettled : masks of squares on the rim beside seams of which it is not settled where exactly they run; what is felt
+        on them tells more.
+    """
+
+    parts: tuple[Bools, ...]
+    unsettled: tuple[Bools, ...] = ()
+
+
+def part_by_colour(region: Bools, felt: Mapping[RowColumn, str]) -> Parting:
+    """Return a region cut into parts none of which was felt in two colours.
+
+    Where it cannot be parted so, it is one part.
+
+    Parameters
+    ----------
+    region : (rows, columns) bool, an edge-connected set of squares.
+    felt : the colour of each square (row, column) of these arrays that was felt.
+    """
+    colours = {place: colour for place, colour in felt.items() if region[place]}
+    if len(set(colours.values())) < 2:
+        return Parting((region,))
+    rows, columns = np.flatnonzero(region.any(1)), np.flatnonzero(region.any(0))
+    south, west = int(rows[0]), int(columns[0])
+    window = slice(south, int(rows[-1]) + 1), slice(west, int(columns[-1]) + 1)
+    inside = _parted(region[window], {(row - south, column - west): c for (row, column), c in colours.items()})
+
+    def whole(mask: Bools) -> Bools:
+        """Return a mask of the window on the arrays of the map view."""
+        full = np.zeros_like(region)
+        full[window] = mask
+        return full
+
+    return Parting(tuple(map(whole, inside.parts)), tuple(map(whole, inside.unsettled)))
+
+
+def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
+    """Return a region cut into parts none of which was felt in two colours; one part where that cannot be.
+
+    region : (rows, columns) bool on its containing rectangle. colours : those of its squares that were felt, at least
+    two different ones.
+    """
+    lines = list(_lines(region))
+    cuts: list[SeamLine] = []
+    labels, mixed = _labels(region, cuts), _mixed(_labels(region, cuts), colours)
+    while mixed and len(cuts) < MAX_CUTS:
+        best = _best(region, cuts, [(line,) for line in lines if line not in cuts], colours, labels, mixed)
+        if best is None:
+            near = sorted((line for line in lines if line not in cuts), key=lambda line: line.length)
+            best = _best(region, cuts, combinations(near[:MAX_PAIRED_LINES], 2), colours, labels, mixed)
+        if best is None:
+            return Parting((region,))
+        cuts += best
+        labels = _labels(region, cuts)
+        mixed = _mixed(labels, colours)
+    if mixed:
+        return Parting((region,))
+    parts = tuple(labels == n for n in range(1, int(labels.max()) + 1))
+    unsettled = [_unsettled(line, region, colours) for line in cuts]
+    return Parting(parts, tuple(mask for mask in unsettled if mask.any()))
+
+
+def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
+    """Return the parts with felt squares into which what is solid falls along lines from inner corner to inner corner.
+
+    So a thing that leans on a wall with a long side parts from it, also where it goes on into a gap of another wall.
+
+    Parameters
+    ----------
+    solid : (rows, columns) bool
+        Squares of what bounds the floor, and all squares that were never seen.
+    felt : mapping of (row, column) to str
+        The colour of each square of these arrays that was felt.
+
+    Returns
+    -------
+    list of (rows, columns) bool
+        The masks of parts on which a colour was felt, those of fewer squares first.
+    """
+    cuts = [
+        line
+        for line in _lines(solid, max(solid.shape))
+        if _is_inner_corner(0, line, solid) and _is_inner_corner(1, line, solid)
+    ]
+    labels = _labels(solid, cuts)
+    numbers = sorted({int(labels[place]) for place in felt} - {0})
+    return sorted((labels == n for n in numbers), key=lambda mask: int(mask.sum()))
+
+
+def _lines(region: Bools, longest: int = MAX_THING_LENGTH) -> Iterator[SeamLine]:
+    """Yield the lines from rim to rim that are at most `longest` squares long, upright ones first."""
+    for upright, mask in ((True, region), (False, region.T)):
+        joined = mask[:, 1:] & mask[:, :-1]
+        for at in range(joined.shape[1]):
+            change = np.diff(np.concatenate([[0], joined[:, at].astype(np.int8), [0]]))
+            starts, stops = np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist()
+            for start, stop in zip(starts, stops, strict=True):
+                if stop - start <= longest:
+                    yield SeamLine(upright, at + 1, start, stop - 1)
+
+
+def _labels(region: Bools, cuts: list[SeamLine]) -> Labels:
+    """Return the number of the part of each square of a region, when it is cut along some lines; 0 outside."""
+    rows, columns = region.shape
+    fine = np.zeros((2 * rows - 1, 2 * columns - 1), np.bool_)  # squares, and between them the edges that they share
+    fine[::2, ::2] = region
+    fine[::2, 1::2] = region[:, 1:] & region[:, :-1]
+    fine[1::2, ::2] = region[1:] & region[:-1]
+    for line in cuts:
+        if line.upright:
+            fine[2 * line.first : 2 * line.last + 1 : 2, 2 * line.at - 1] = False
+        else:
+            fine[2 * line.at - 1, 2 * line.first : 2 * line.last + 1 : 2] = False
+    labels: Labels = np.ascontiguousarray(components(fine).labels[::2, ::2])
+    return labels
+
+
+def _mixed(labels: Labels, colours: Mapping[RowColumn, str]) -> int:
+    """Return how many pairs of squares that were felt in different colours are in one part."""
+    in_part: dict[int, dict[str, int]] = {}
+    for place, colour in colours.items():
+        counts = in_part.setdefault(int(labels[place]), {})
+        counts[colour] = counts.get(colour, 0) + 1
+    return sum(a * b for counts in in_part.values() for a, b in combinations(counts.values(), 2))
+
+
+def _best(
+    region: Bools,
+    cuts: list[SeamLine],
+    choices: Iterable[tuple[SeamLine, ...]],
+    colours: Mapping[RowColumn, str],
+    labels: Labels,
+    mixed: int,
+) -> tuple[SeamLine, ...] | None:
+    """Return the lines along which a region is cut next; None when no choice parts squares of different colours.
+
+    labels : the parts so far. mixed : how many pairs of squares of different colours are in one part so far.
+    """
+    parts = int(labels.max())
+    best, least = None, (mixed, 0, 0, 0)
+    for choice in choices:
+        after = _labels(region, [*cuts, *choice])
+        if int(after.max()) == parts:
+            continue
+        left = _mixed(after, colours)
+        if left >= mixed:
+            continue
+        loose = sum(not _is_inner_corner(end, line, region) for line in choice for end in (0, 1))
+        cost = left, loose, sum(line.length for line in choice), sum(_lopsided(line, after, colours) for line in choice)
+        if best is None or cost < least:
+            best, least = choice, cost
+    return best
+
+
+def _is_inner_corner(end: int, line: SeamLine, region: Bools) -> bool:
+    """Return whether a line ends at an inner corner of a region: just one of the two squares beyond belongs to it.
+
+    end : 0 for the first end of the line, 1 for the last.
+    """
+    beyond = line.sides(line.last + 1 if end else line.first - 1)
+    rows, columns = region.shape
+    inside = [place for place in beyond if 0 <= place[0] < rows and 0 <= place[1] < columns]
+    return sum(int(region[place]) for place in inside) == 1
+
+
+def _lopsided(line: SeamLine, labels: Labels, colours: Mapping[RowColumn, str]) -> int:
+    """Return by how many squares a line is nearer to what was felt on its one side than on the other.
+
+    labels : the parts with this cut. colours : the squares that were felt.
+    """
+    low, high = (int(labels[place]) for place in line.ends[0])
+    across = 1 if line.upright else 0
+    below = [line.at - 1 - place[across] for place in colours if labels[place] == low and place[across] < line.at]
+    above = [place[across] - line.at for place in colours if labels[place] == high and place[across] >= line.at]
+    return abs(min(below, default=0) - min(above, default=0))
+
+
+def _unsettled(line: SeamLine, region: Bools, colours: Mapping[RowColumn, str]) -> Bools:
+    """Return the unfelt squares on the rim at the ends of a line, where nothing settles that it runs there.
+
+    An end at an inner corner of the region settles it, and so does one where both sides were felt.
+    """
+    mask: Bools = np.zeros_like(region)
+    ends = line.ends
+    if any(_is_inner_corner(number, line, region) or all(p in colours for p in ends[number]) for number in (0, 1)):
+        return mask
+    for place in (place for end in ends for place in end):
+        mask[place] = place not in colours
+    return mask
+
+
+class PartedMap(NamedTuple):
+    """The regions of the map after regions of two colours were parted.
+
+    Attributes
+    ----------
+    percept : the regions; new ones last.
+    labels : (rows, columns) int32, the number n of each square's region `part<n>`; 0 where nothing was seen.
+    unsettled : masks of squares on which it is to be felt where exactly one part ends.
+    """
+
+    percept: Percept
+    labels: Labels
+    unsettled: tuple[Bools, ...] = ()
+
+
+def part_mixed_regions(
+    percept: Percept,
+    labels: Labels,
+    felt: Mapping[RowColumn, str],
+    certain: Bools,
+    probability: NDArray[np.float32],
+) -> PartedMap:
+    """Return the regions of the map, with isolated regions on which two colours were felt parted.
+
+    The largest part keeps the name of the region; the others get names `part<n>` beyond all others. What surrounds the
+    region surrounds each of its parts.
+
+    Parameters
+    ----------
+    percept, labels : the regions as they were seen, as of `map_regions`.
+    felt : the colour of each square (row, column) of the map view that was felt.
+    certain : (rows, columns) bool, squares that the counts settle.
+    probability : (rows, columns) float32, that a square is occupied.
+    """
+    colours: dict[int, dict[RowColumn, str]] = {}
+    for place, colour in felt.items():
+        colours.setdefault(int(labels[place]), {})[place] = colour
+    isolated = {inner for _, inner in percept.surrounds}
+    regions, surrounds = list(percept.regions), set(percept.surrounds)
+    labels, unsettled = labels.copy(), list[Bools]()
+    for index, region in enumerate(percept.regions):
+        there = colours.get(label_of(region.name), {})
+        if not region.occupied or region.name not in isolated or len(set(there.values())) < 2:
+            continue
+        parting = part_by_colour(labels == label_of(region.name), there)
+        unsettled += parting.unsettled
+        first, *others = sorted(parting.parts, key=lambda mask: -int(mask.sum()))
+        regions[index] = _region_of(first, region, certain, probability)
+        for part in others:
+            label = int(labels.max()) + 1
+            labels[part] = label
+            new = _region_of(part, region._replace(name=f"part{label}"), certain, probability)
+            regions.append(new)
+            surrounds |= {(outer, new.name) for outer, inner in percept.surrounds if inner == region.name}
+    changed = percept._replace(regions=tuple(regions), surrounds=frozenset(surrounds))
+    return PartedMap(changed, labels, tuple(unsettled))
+
+
+def _region_of(part: Bools, whole: Region, certain: Bools, probability: NDArray[np.float32]) -> Region:
+    """Return a region of the name and kind of another one that has only the squares of a part."""
+    rows, columns = np.nonzero(part)
+    return whole._replace(
+        certain=int(100 * certain[part].sum() // len(rows)),
+        extent=int(max(np.ptp(rows), np.ptp(columns))) + 1,
+        mass=round(10 * float(probability[part].sum())),
+    )
