@@ -17,6 +17,7 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from kb.language.terms import Fact
 from kb.world.model import MAX_CLEAR_PROBABILITY, Node
 from planner.goals.placement import (
+    CERTAIN_OBJECT,
     NEGLIGIBLE_LENGTH,
     Placement,
     is_off_quarter_turn,
@@ -525,7 +526,8 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
 def _reachable_floor(node: Node, situation: Situation) -> Bools:
     """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool.
 
-    Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object.
+    Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object. Squares
+    under other objects beside them count, for these can be moved aside.
 
     Parameters
     ----------
@@ -533,5 +535,10 @@ def _reachable_floor(node: Node, situation: Situation) -> Bools:
     situation : what is believed: world model, rooms, doors, corners and track.
     """
     cost_maps = situation.cost_maps
-    mask: Bools = reach(cost_maps.free(0) | situation.model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED
+    model = situation.model
+    mask: Bools = reach(cost_maps.free(0) | model.mask(node.patch), *cost_maps.here) != GEODESIC_UNREACHED
+    for other in (one for one in model.objects if one.polygon is not None and one.movable > 0):
+        under = model.mask(other.patch)
+        if other.confidence >= CERTAIN_OBJECT and (dilate(under, 1) & mask).any():
+            mask = mask | under
     return mask

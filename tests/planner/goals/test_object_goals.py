@@ -10,12 +10,13 @@ import shapely.affinity
 
 from kb.language.reader import facts_from_text
 from kb.mapping.patch import patch_of_polygon
+from kb.world.corners import Corner
 from kb.world.model import Node, WorldModel
 from planner.carrying.plan_executor import PlanExecutor
 from planner.goals.object_goals import goal_placement
 from planner.goals.placement import Placement, meets_end
 from tests.kb.drawings import known_model, unclear
-from tests.planner.situations import situation_of
+from tests.planner.situations import known_situation, situation_of
 
 SHUT_IN = [
     "b" * 20,
@@ -51,6 +52,16 @@ def test_walls_do_shut_the_robot_in() -> None:
     found = goal_placement(NORTHEAST, node, (0.0, 0.0), situation_of(replace(model, objects=(node,)), {"x": "o1"}))
     assert not found.ends
     assert "passage" in found.missing
+
+
+def test_a_corner_under_another_thing_that_was_brought_there_is_known() -> None:
+    room = ["b" * 20, *["b" + "." * 15 + "hhhb"] * 3, *["b" + "." * 18 + "b"] * 3]
+    room += ["b..ggg" + "." * 13 + "b"] * 3 + ["b.......U" + "." * 10 + "b", "b" * 20]
+    situation = known_situation(room, moved=True)
+    node = next(one for one in situation.model.objects if one.name == "g")
+    under = {**situation.corners, "northeast": Corner((19.0, 11.0), (18, 10))}  # of the floor under h
+    found = goal_placement(NORTHEAST, node, (0.0, 0.0), replace(situation, binding={"x": "g"}, corners=under))
+    assert "northeast" in found.ends and not found.missing
 
 
 @pytest.mark.parametrize("wide", [2, 4])
