@@ -182,6 +182,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("shape", 3): (NODE_ARGUMENT, SHAPE_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("colour", 3): (NODE_ARGUMENT, COLOUR_ARGUMENT, CONFIDENCE_ARGUMENT),
         ("overlap", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
+        ("within", 3): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
         ("refuted", 4): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT),
         ("given", 3): (REFUTATION_ARGUMENT, MOVER_ARGUMENT, PLACE_ARGUMENT),
         ("stood", 2): (REFUTATION_ARGUMENT, MOVER_ARGUMENT),
@@ -225,8 +226,8 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
 # Predicates of the task plan that the planner alone states. Rules add goals, conditions and prices.
 PLAN_FACTS = frozenset(
     [
-        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "lies", "connects",
-        "size",
+        "horizon", "thing", "place", "aside", "fulfils", "rank", "estimate", "hoped", "overlap", "within", "lies",
+        "connects", "size",
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",

@@ -141,7 +141,8 @@ def next_move(
     cost_maps : CostMaps
         The present world model on arrays of squares, with the ways from where the robot stands.
     path : Sequence[Square]
-        Edge-connected squares (column, row) on the arrays of the view, at least two; the first is the robot's.
+        Edge-connected squares (column, row) on the arrays of the view; the first is the robot's. Of that one alone the
+        move leads to its middle.
     kind : str
         The kind of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square.
     about : XY | None
@@ -157,7 +158,7 @@ def next_move(
     """
     here, longest = path[0], pace.most(kind, cost_maps.model)
     passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
-    there = path[1]
+    there = path[min(1, len(path) - 1)]
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))

@@ -193,16 +193,17 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
     model = cost_maps.model
     if node.moved or model.held == node.name:
         return None
-    own = model.mask(node.patch)
-    rim = with_edge_neighbours(own)
+    own, (column, row) = model.mask(node.patch), cost_maps.here
+    rim, here = with_edge_neighbours(own), row * own.shape[1] + column
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     touches = any((rim & mask).any() for mask in standing)
     unfelt = own & ~model.squares(model.felt)
     resisting = [unfelt] if node.stuck and model.held is None else []
     for mask in (*((*model.unsettled_seams, *model.protruding) if touches else ()), *resisting):
         look = wall_touch_viewpoint(cost_maps, mask)
-        if (mask & rim).any() and len(look.squares):
-            return look
+        squares = look.squares[look.squares != here]  # what is beside the robot is felt already
+        if (mask & rim).any() and len(squares):
+            return look._replace(squares=squares)
     return None
 
 

@@ -16,7 +16,7 @@ from kb.world.rooms import MIN_DOOR_CONFIDENCE
 from planner.agenda.decider import Decider
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.manipulation_oracle import ManipulationOracle, Request
-from planner.carrying.open_facts import qualify
+from planner.carrying.open_facts import open_fact_against
 from planner.deciding.transport import Transporter
 from planner.deciding.verification import (
     Verifier,
@@ -150,7 +150,7 @@ def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> N
     unseen = Reconciliation({}, ("x",), (), ())
     decision = transporter.towards(goal, Stage((goal,)), situation_of(model), unseen, tools_with())
     assert decision is not None
-    found = qualify(decision, situation_of(model))
+    found = open_fact_against(decision, situation_of(model))
     assert (found.command, found.verdict) == (None, "possible_if")
     assert "nothing seen so far is x" in found.why and "never felt" in found.why
 
