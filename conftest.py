@@ -1,15 +1,23 @@
 """Loads the plugin of pytest that collects scenarios, also where Utak is not installed, and the one that tests it.
 
 A module of tests that cannot be imported is an error: pytest would skip it where doctests are collected, too.
+
+Hypothesis tries the same examples each time, so that a test that passes goes on passing; HYPOTHESIS_PROFILE=random
+tries others.
 """
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 pytest_plugins = ["utak_pytest", "pytester"]
 
+settings.register_profile("same", derandomize=True)
+settings.register_profile("random", derandomize=False)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 TESTS = Path(__file__).resolve().parent / "tests"
 NOT_IMPORTED = "unable to import module"  # pytest's reason; what lacks an optional library skips itself for another
 

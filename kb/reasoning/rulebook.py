@@ -166,6 +166,7 @@ class Rulebook:
     def __init__(self, statements: Sequence[Statement]) -> None:
         self.statements = tuple(one for one in statements if one.declares is None)
         self._declared = {one.declares for one in statements if one.declares is not None}
+        self._used = {atom.signature for one in self.statements for atom in one.body}
         self.own_predicates = (
             {atom.signature for one in self.statements for atom in one.heads}
             - INTERFACE_PREDICATES
@@ -245,8 +246,22 @@ class Rulebook:
                 yield one.problem(what, atom.at)
             elif atom.signature in INTERFACE_PREDICATES:
                 yield from self._constants_outside_domains(one, atom)
-            elif atom.name in {name for name, _ in INTERFACE_PREDICATES} and atom.signature in self.own_predicates:
+            elif self._is_misspelt(atom, one):
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES))
+
+    def _is_misspelt(self, atom: RuleAtom, one: Statement) -> bool:
+        """Return whether a head states a known predicate with a wrong number of arguments.
+
+        A predicate that rules use, too, is the user's own, whatever its name; so is one whose name is known only in
+        encodings that the rule does not speak of.
+
+        atom : the head. one : its statement.
+        """
+        if atom.signature not in self.own_predicates or atom.signature in self._used:
+            return False
+        spoken = {other.signature for other in one.body} & INTERFACE_PREDICATES
+        known = [names for names in PREDICATES_BY_ENCODING.values() if not spoken or spoken & names]
+        return any(atom.name == name for names in known for name, _ in names)
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants in a head atom that no encoding accepts at their place.

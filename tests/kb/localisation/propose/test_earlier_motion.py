@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -153,6 +154,11 @@ def test_such_a_push_is_reestimated_together_with_the_origin(seed: int) -> None:
     beside = (round(float(rng.uniform(0.05, 0.95)), 2), round(float(rng.uniform(0.05, 0.95)), 2))
     scene = first_of(pushed_and_walked(rng, beside) for _ in range(300))
     assert right(*scene, propose=reestimate_with_origin)
+
+
+@pytest.mark.xfail(strict=True, reason="the origin that explains both motions is not among the proposals")
+def test_a_push_that_is_not_reestimated_together_with_the_origin() -> None:
+    test_such_a_push_is_reestimated_together_with_the_origin.hypothesis.inner_test(1_003_755_125)
 
 
 @settings(max_examples=5, deadline=None)
