@@ -14,7 +14,7 @@ from kb.language.vocabulary import ROBOT
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
-from kb.world.model import WorldModel
+from kb.world.model import Node, WorldModel
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
 from planner.constraints import (
     CARRY_NOTHING_THROUGH,
@@ -98,6 +98,15 @@ class Situation:
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
+
+    def object_of(self, parameter: str) -> Node | None:
+        """Return the object that a parameter of the task means; None while none is known.
+
+        Parameters
+        ----------
+        parameter : a word of a goal; for one that is no parameter, None is returned, too.
+        """
+        return self.model.object(self.binding.get(parameter, ""))
 
     def along_with(self, patch: Patch) -> "Situation":
         """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way.

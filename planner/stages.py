@@ -8,7 +8,7 @@ as one stage.
 from dataclasses import dataclass, replace
 
 from kb.language.terms import Fact, Number, Symbol, Term
-from kb.language.vocabulary import CONSTRAINT_GOALS, TRACK_GOALS
+from kb.language.vocabulary import CONSTRAINT_GOALS, ROBOT, TRACK_GOALS
 from kb.task.task import WRAPPING_GOALS, Task
 
 ORIGIN_GOALS = ("in", "through", "around")  # goals whose meaning depends on where their subject was at first
@@ -32,12 +32,12 @@ class Stage:
     @property
     def own(self) -> tuple[Fact, ...]:
         """The goals for the robot itself, in order; () for none."""
-        return tuple(goal for goal in self.goals if str(goal.args[0]) == "utak")
+        return tuple(goal for goal in self.goals if str(goal.args[0]) == ROBOT)
 
     @property
     def carried(self) -> tuple[Fact, ...]:
         """The goals for objects, which the robot must carry, in order; () for none."""
-        return tuple(goal for goal in self.goals if str(goal.args[0]) != "utak")
+        return tuple(goal for goal in self.goals if str(goal.args[0]) != ROBOT)
 
     @property
     def goes_on(self) -> bool:

@@ -134,7 +134,7 @@ def with_embedded_things(things: list[Bools], felt: Mapping[RowColumn, str], sol
             like = [
                 number
                 for number, thing in enumerate(found)
-                if (thing & near).any() and any(thing[place] and other == colour for place, other in felt.items())
+                if (thing & near).any() and _is_felt_as(colour, thing, felt)
             ]
             if not like:
                 found.append(part)
@@ -173,7 +173,7 @@ def joined_through_walls(
     one = 0
     while one < len(found):
         colour = next(colour for place, colour in felt.items() if found[one][place])
-        like = [thing for thing in found[one + 1 :] if any(thing[p] and c == colour for p, c in felt.items())]
+        like = [thing for thing in found[one + 1 :] if _is_felt_as(colour, thing, felt)]
         for other in (*like, *unfelt):
             bridge = None if (other & found[one]).any() else _bridge(found[one], other, solid)
             if bridge is not None and not any(bridge[place] and c != colour for place, c in felt.items()):
@@ -183,6 +183,11 @@ def joined_through_walls(
         else:
             one += 1
     return found
+
+
+def _is_felt_as(colour: str, thing: Bools, felt: Mapping[RowColumn, str]) -> bool:
+    """Return whether a colour was felt on some square of a thing."""
+    return any(thing[place] and other == colour for place, other in felt.items())
 
 
 def _bridge(one: Bools, other: Bools, solid: Bools) -> Bools | None:

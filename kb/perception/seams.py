@@ -108,7 +108,8 @@ def _parted(region: Bools, colours: Mapping[RowColumn, str]) -> Parting:
     """
     lines = list(_lines(region))
     cuts: list[SeamLine] = []
-    labels, mixed = _labels(region, cuts), _mixed(_labels(region, cuts), colours)
+    labels = _labels(region, cuts)
+    mixed = _mixed(labels, colours)
     while mixed and len(cuts) < MAX_CUTS:
         best = _best(region, cuts, [(line,) for line in lines if line not in cuts], colours, labels, mixed)
         if best is None:

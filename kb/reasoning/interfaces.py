@@ -64,31 +64,29 @@ REFUTATION_ARGUMENT, TIME_ARGUMENT = _number_argument("refutation"), _number_arg
 PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1}
 
 
-def _check_step(term: Term) -> Complaint | None:
-    """Return the complaint about a term, or None when it is a step of a task plan."""
-    if isinstance(term, Symbol) and PLAN_STEPS.get(term.name) == len(term.args):
-        return None
-    steps = ", ".join(f"{name}/{count}" for name, count in PLAN_STEPS.items())
-    return Complaint(term.span, f"unknown step {abbreviated(term)}", f"steps are {steps}")
+def _compound_argument(name: str, plural: str, forms: Mapping[str, int]) -> ArgumentType:
+    """Return the type of terms with one of some names, each with its number of arguments.
+
+    The type holds its own name, and a check that returns the complaint about a term, or None when the term fits.
+    """
+
+    def check(term: Term) -> Complaint | None:
+        """Return the complaint about a term, or None when it has one of the forms."""
+        if isinstance(term, Symbol) and forms.get(term.name) == len(term.args):
+            return None
+        known = ", ".join(f"{form}/{count}" for form, count in forms.items())
+        return Complaint(term.span, f"unknown {name} {abbreviated(term)}", f"{plural} are {known}")
+
+    return ArgumentType(name, check)
 
 
-STEP_ARGUMENT = ArgumentType("step", _check_step)
+STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
 # The activities of the agenda, with their numbers of arguments.
 ACTIVITIES: Mapping[str, int] = {
     "release": 0, "keep": 0, "resume": 1, "agree": 0, "errand": 0, "find": 1, "examine": 1, "carry": 1, "go": 0,
     "wish": 0, "look": 0, "pull": 1, "clear": 1, "feel": 1, "bare": 1, "blame": 1, "doubt": 1,
 }  # fmt: skip
-
-
-def _check_activity(term: Term) -> Complaint | None:
-    """Return the complaint about a term, or None when it is an activity of the agenda."""
-    if isinstance(term, Symbol) and ACTIVITIES.get(term.name) == len(term.args):
-        return None
-    known = ", ".join(f"{name}/{count}" for name, count in ACTIVITIES.items())
-    return Complaint(term.span, f"unknown activity {abbreviated(term)}", f"activities are {known}")
-
-
-ACTIVITY_ARGUMENT = ArgumentType("activity", _check_activity)
+ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 BEGUN_ARGUMENT = word_argument("begun activity", ("clear", "feel"))

@@ -54,7 +54,7 @@ def solve(
     CannotOpenError : a file with users' rules cannot be read.
     """
     given = tuple(facts)
-    answer = _answer(tuple(files), given, seconds, None, _states(files)).atoms
+    answer = _answer(tuple(files), given, seconds, None, _versions(files)).atoms
     note_answer(files, given, answer, about)
     return None if answer is None else list(answer)
 
@@ -89,7 +89,7 @@ def solve_within(
     EncodingError, BadInputError, CannotOpenError : as for `solve`.
     """
     given = tuple(facts)
-    answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts, _states(files))
+    answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts, _versions(files))
     note_answer(files, given, answer.atoms, about)
     return answer
 
@@ -100,7 +100,7 @@ def _users_files(files: Sequence[Path]) -> list[Path]:
     return [path for path in others if path.resolve().parent not in ENCODING_FOLDERS]
 
 
-def _states(files: Sequence[Path]) -> tuple[tuple[int, int], ...]:
+def _versions(files: Sequence[Path]) -> tuple[tuple[int, int], ...]:
     """Return when each file with users' rules was changed last, in nanoseconds, and its size in bytes."""
     found = (path.stat() for path in _users_files(files) if path.exists())
     return tuple((state.st_mtime_ns, state.st_size) for state in found)
@@ -112,13 +112,13 @@ def _answer(
     facts: tuple[str, ...],
     seconds: float,
     conflicts: int | None,
-    _states: tuple[tuple[int, int], ...],
+    _files_as_of: tuple[tuple[int, int], ...],
 ) -> BoundedAnswer:
     """Return the answer of `solve` or `solve_within`; cached while the files stay as they are.
 
     files : paths of encodings and of files with users' rules. facts : atoms as text, without full stops. seconds : the
         limit of wall-clock time of the search; not used with users' rules. conflicts : the limit of conflicts; None for
-        none. _states : of the users' files.
+        none. _files_as_of : the versions of the users' files.
     """
     users = _users_files(files)
     if users:

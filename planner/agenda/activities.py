@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from kb.body import Grasp, Release
 from kb.language.terms import Fact
+from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from planner.agenda.choice import Activity, Agenda, StageEnd
 from planner.agenda.own_goals import OwnGoals
@@ -25,6 +26,7 @@ from planner.goals.robot_goals import destination
 from planner.per_model import PerModel
 from planner.sights.walls import ALL_WALLS
 from planner.situation import Situation
+from planner.stages import Stage
 
 
 class Activities:
@@ -76,7 +78,7 @@ class Activities:
         model = turn.situation.model
         for number, (name, goal) in enumerate(turn.goals.items(), 1):
             yield f"stage_goal({name},{number})"
-            node = model.object(turn.situation.binding.get(str(goal.args[0]), ""))
+            node = turn.situation.object_of(str(goal.args[0]))
             if node is None:
                 yield f"missing({name})"
             elif node.polygon is None:
@@ -108,9 +110,11 @@ class Activities:
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
-            "find": lambda: self._freed(goals[0], turn, self._transporter.find(goals[0], *carried)),
-            "examine": lambda: self._freed(goals[0], turn, self._transporter.examine(goals[0], stage, ruled, tools)),
-            "carry": lambda: self._freed(goals[0], turn, self._transporter.carry(goals[0], *carried)),
+            "find": lambda: self._freed(goals[0], stage, ruled, self._transporter.find(goals[0], *carried)),
+            "examine": lambda: self._freed(
+                goals[0], stage, ruled, self._transporter.examine(goals[0], stage, ruled, tools)
+            ),
+            "carry": lambda: self._freed(goals[0], stage, ruled, self._transporter.carry(goals[0], *carried)),
             "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
             "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
             "look": lambda: self._own.look(turn, self._transporter, tools),
@@ -130,12 +134,11 @@ class Activities:
         go_on = {"clear": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
         return go_on(turn.stage, turn.situation, self._tools)
 
-    def _freed(self, goal: Fact, turn: StageTurn, decision: Decision) -> Decision:
+    def _freed(self, goal: Fact, stage: Stage, situation: Situation, decision: Decision) -> Decision:
         """Return a decision; in its place the push after which another object in hand no longer shuts the robot in."""
         if decision.command is None and decision.verdict in (None, TaskVerdict.DONE):
             return decision
-        ruled = self.errands.within_rules(turn.situation)
-        return self._transporter.free_robot(str(goal.args[0]), turn.stage, ruled, self._tools) or decision
+        return self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""
@@ -158,7 +161,7 @@ class Activities:
 
     def _doubt_of_done(self, situation: Situation) -> str:
         """Return why the constraints may not have been kept when all goals hold, in words; "" when they surely were."""
-        if situation.forbidden("utak") and not situation.avoided:
+        if situation.forbidden(ROBOT) and not situation.avoided:
             return "the robot went through every door that is sure"
         return self.keeper.doubt_of_done(situation)
 

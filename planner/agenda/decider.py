@@ -125,7 +125,7 @@ class Decider:
         ----------
         model, track : as for `decide`.
         """
-        kept_off = regions_kept_off(self.task, self.bound, model, "utak", lenient=self._lenient)
+        kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
         cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
         self.rooms = rooms_of(model, self.rules)
         reconciled = self._reconcile(cost_maps)

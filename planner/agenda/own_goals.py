@@ -7,7 +7,7 @@ import numpy as np
 
 from kb.body import Release
 from kb.language.terms import Fact
-from kb.language.vocabulary import TRACK_GOALS
+from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from planner.agenda.stage_turn import StageTurn
 from planner.carrying.open_facts import verdict_if_not_found
 from planner.deciding.errands import ErrandRunner
@@ -93,7 +93,7 @@ class OwnGoals:
         doubt = look_at_contradiction(situation)
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
-            node = model.object(situation.binding.get(x, ""))
+            node = situation.object_of(x)
             began = model.frame.origin if node is None else transporter.origin_of(x, node, situation)
             covered = robot_square(model) if node is None else model.mask(node.patch)
             doubt = doubt or check_elsewhere(goal.name, began, covered, situation)
@@ -107,7 +107,7 @@ class OwnGoals:
             why = f"{situation.model.held} is released, because the robot must walk; {stage}"
             return Decision(Release(), why)
         if goals[0].name in TRACK_GOALS:
-            node = situation.model.object(situation.binding.get(str(goals[0].args[1]), ""))
+            node = situation.object_of(str(goals[0].args[1]))
             if node is not None:
                 return self._go_round(node.name, turn, tools)
             where = [self._where(goals[0], situation)]
@@ -127,7 +127,7 @@ class OwnGoals:
         def ask() -> Decision:
             """Return the next command there, or to look for another way where doors are shut; else the verdict."""
             found = tools.pursuer.pursue(subgoals, stage, situation, lambda: missing, verdict)
-            if found.command is not None or not situation.shut("utak"):
+            if found.command is not None or not situation.shut(ROBOT):
                 return found
             within = situation.within_shut_doors()
             unknown = unknown_destination("every way that is known leads through a forbidden door")
@@ -201,7 +201,7 @@ def _make_sure(goals: Sequence[Fact], there: bool, stage: Stage, situation: Situ
     situation : what is believed (world model, rooms, doors, corners, track).
     tools : executor, pursuer and verifier, with which the look is worked out.
     """
-    nodes = [situation.model.object(situation.binding.get(str(goal.args[1]), "")) for goal in goals]
+    nodes = [situation.object_of(str(goal.args[1])) for goal in goals]
     doubted = [n for n in nodes if n is not None and (tools.verifier.is_unsettled(n) or (there and n.vague))]
     subgoals = (tools.verifier.next_look(node, situation) for node in doubted)
     looks = (tools.pursuer.pursue_look(subgoal, stage, situation) for subgoal in subgoals)

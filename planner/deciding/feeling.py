@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools
 from geometry.raster.components import components
-from kb.language.vocabulary import TRACK_GOALS
+from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
@@ -39,7 +39,7 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    forbidden = situation.forbidden("utak")
+    forbidden = situation.forbidden(ROBOT)
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
     parting = bool(stage.carried) or track or bool(forbidden)
     allowed = _floor_this_side(forbidden, situation) if forbidden else None
@@ -51,7 +51,7 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
 def _wanted(stage: Stage, situation: Situation) -> Bools | None:
     """Return the squares of an object at which the robot shall be, and to which no way leads; None for no such."""
     for goal in stage.own:
-        node = situation.model.object(situation.binding.get(str(goal.args[1]), "")) if len(goal.args) > 1 else None
+        node = situation.object_of(str(goal.args[1])) if len(goal.args) > 1 else None
         if node is not None and goal.name in ("at", "beside"):
             mask = situation.model.mask(node.patch)
             if not (dilate(mask, 1) & situation.cost_maps.floor).any():

@@ -87,7 +87,7 @@ class ConstraintKeeper:
             if name == ROBOT and region.intersects(shapely.Point(0.0, 0.0)):
                 why = f"{fact} cannot hold: the robot wakes in that region"
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
-            node = model.object(situation.binding.get(name, ""))
+            node = situation.object_of(name)
             if node is None or node.polygon is None or node.moved or node.vague or not model.view.sure:
                 continue
             surely = in_robot_frame(node.polygon, model.frame).buffer(-_doubt(model, region) - 1.0)
@@ -136,7 +136,7 @@ class ConstraintKeeper:
     def _thing_doubt(self, fact: Fact, name: str, situation: Situation) -> str:
         """Return why the thing of avoid(x, "WKT") may have touched the region; "" when it surely did not."""
         model, region = situation.model, region_of(fact)
-        node = model.object(situation.binding.get(name, ""))
+        node = situation.object_of(name)
         if node is None:
             return f"it cannot be told whether {fact} holds: nothing seen so far is {name}"
         if model.anew and node.moved:

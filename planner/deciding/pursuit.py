@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from kb.body import Command, Release
+from kb.language.vocabulary import ROBOT
 from kb.world.model import WorldModel
 from planner.advice import Go, See
 from planner.carrying.plan_executor import Advice
@@ -215,7 +216,7 @@ class Pursuer:
         situation : what is believed: world model, rooms, doors, corners and track.
         """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
-        return self.choose_route([rest], situation) if rest is not None and situation.shut("utak") else rest
+        return self.choose_route([rest], situation) if rest is not None and situation.shut(ROBOT) else rest
 
     def keep_route(self, route: PlannedRoute, model: WorldModel, towards: SquareIndices | None = None) -> None:
         """Remember the present route.
@@ -245,7 +246,7 @@ class Pursuer:
         if not offered:
             return None
         before = frozenset(self._kept.path(situation.model))
-        forbidden = frozenset(door.name for door in situation.shut("utak"))
+        forbidden = frozenset(door.name for door in situation.shut(ROBOT))
         return choose_route(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)
 
 

@@ -112,7 +112,7 @@ class Transporter:
         tools : executor, pursuer and verifier, with which the decision is worked out.
         end : the name of the one end of the goal to which the object is brought; "" for any.
         """
-        if situation.model.object(situation.binding.get(str(goal.args[0]), "")) is None:
+        if situation.object_of(str(goal.args[0])) is None:
             return self.find(goal, stage, situation, reconciled, tools)
         examined = self.examine(goal, stage, situation, tools)
         return self.carry(goal, stage, situation, reconciled, tools, end) if examined.result == "idle" else examined
@@ -127,7 +127,7 @@ class Transporter:
         ----------
         goal, stage, situation, tools : as for `towards`; what the object is, is known: else AssertionError.
         """
-        node = situation.model.object(situation.binding.get(str(goal.args[0]), ""))
+        node = situation.object_of(str(goal.args[0]))
         assert node is not None
         if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
             return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
@@ -156,7 +156,7 @@ class Transporter:
             AssertionError.
         """
         x = str(goal.args[0])
-        node = situation.model.object(situation.binding.get(x, ""))
+        node = situation.object_of(x)
         assert node is not None and node.polygon is not None
         land = self._place(goal, node, self.origin_of(x, node, situation), situation)
         if end in land.ends:
@@ -210,7 +210,7 @@ class Transporter:
         """
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
-            node = situation.model.object(situation.binding.get(x, ""))
+            node = situation.object_of(x)
             if (
                 len(goals) < 2
                 or node is None

@@ -54,7 +54,7 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
     node : the object to be carried; its outline is known.
     situation : what is believed (world model, rooms, doors, corners, track).
     """
-    target = situation.model.object(situation.binding.get(other, ""))
+    target = situation.object_of(other)
     if target is None:
         return Placement({}, f"nothing seen so far is {other}")
     squares = mask_to_polygon(situation.model.mask(target.patch))

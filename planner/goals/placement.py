@@ -14,6 +14,7 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose, Translate
+from kb.language.vocabulary import ROBOT
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import dilate, shift_mask
@@ -234,10 +235,10 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
         (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False
         when nothing is forbidden.
     """
-    doors = (*situation.shut("utak"), *situation.shut(node.name))
+    doors = (*situation.shut(ROBOT), *situation.shut(node.name))
     mask = situation.region_kept_off(node.name, margin)
     if not situation.lenient:
-        mask |= situation.region_kept_off("utak", margin)
+        mask |= situation.region_kept_off(ROBOT, margin)
     mask |= neck_squares(doors, situation.model.labels.shape, margin)
     return mask & ~np.pad(situation.model.mask(node.patch), margin)
 

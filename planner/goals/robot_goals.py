@@ -376,7 +376,7 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     parameter : the parameter of the task that means the object.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    node = situation.model.object(situation.binding.get(parameter, ""))
+    node = situation.object_of(parameter)
     if node is None:
         return unknown_destination(f"nothing seen so far is {parameter}")
     mask = situation.model.mask(node.patch)

@@ -100,13 +100,18 @@ def test_doors_do_not_depend_on_the_orientation_of_the_floor_and_cut_it_at_their
     assert not doorways.disagreements(doorways.random_floor(np.random.default_rng(seed)))
 
 
+def polygon_of(free):
+    """Return free squares as one geometry."""
+    rows, columns = np.nonzero(free)
+    return shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_floor_has_the_stated_width_on_both_sides_of_a_neck(seed):
     """By shapely: reduced by a little more than half the neck, the floor holds those circles in separate parts."""
     free = doorways.random_floor(np.random.default_rng(seed))
-    rows, columns = np.nonzero(free)
-    floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
+    floor = polygon_of(free)
     for door in Screen(free).passages():
         assert door.width == pytest.approx(math.dist(*door.mouths[0])) == pytest.approx(math.dist(*door.mouths[1]))
         assert door.width <= min(door.sides) + 1e-6
@@ -264,8 +269,7 @@ def test_a_door_exactly_half_as_wide_as_the_room_is_a_door_wherever_it_is(width,
 @given(st.integers(0, 2**32 - 1))
 def test_the_widest_floor_is_about_as_wide_as_the_largest_free_disc_and_never_wider(seed):
     free = doorways.random_floor(np.random.default_rng(seed))
-    rows, columns = np.nonzero(free)
-    floor = shapely.union_all(shapely.box(columns, rows, columns + 1, rows + 1))
+    floor = polygon_of(free)
     largest = 2 * max(shapely.maximum_inscribed_circle(part, 0.001).length for part in shapely.get_parts(floor))
     widest = math.sqrt(find_walls(free).room.max())
     assert largest**2 - 1 <= widest**2

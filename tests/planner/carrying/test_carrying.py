@@ -206,13 +206,19 @@ def test_the_object_is_released_before_a_walk_and_both_goals_hold_at_the_end(tmp
     assert max(done.session.table.polygons["t"].bounds[:2]) <= 3.0 + 1e-6
 
 
-def test_reasons_name_the_thing_in_hand_and_the_one_that_comes_next(tmp_path: Path) -> None:
-    """Two things are carried and pressed into corners, and one of two things is released for the other's sake."""
+def woken_with_two_things(tmp_path: Path, goal: str) -> Session:
+    """Return a run at its first step, with a square x and a brick y on the table."""
     things = SQUARE + f'\nobject(u, r, "{box(20, 5, 25, 7)}").'
     start = "object(x). shape(x, square). object(y). shape(y, brick)."
-    folder = scene(tmp_path, room(things), start, "at(x, corner(southwest)). at(y, corner(southeast)).")
+    folder = scene(tmp_path, room(things), start, goal)
     session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
     session.wake()
+    return session
+
+
+def test_reasons_name_the_thing_in_hand_and_the_one_that_comes_next(tmp_path: Path) -> None:
+    """Two things are carried and pressed into corners, and one of two things is released for the other's sake."""
+    session = woken_with_two_things(tmp_path, "at(x, corner(southwest)). at(y, corner(southeast)).")
     released = []
     while not session.finished:
         held = session.robot.model.held
@@ -227,11 +233,7 @@ def test_reasons_name_the_thing_in_hand_and_the_one_that_comes_next(tmp_path: Pa
 
 
 def test_first_beside_another_object_then_away(tmp_path: Path) -> None:
-    things = SQUARE + f'\nobject(u, r, "{box(20, 5, 25, 7)}").'
-    start = "object(x). shape(x, square). object(y). shape(y, brick)."
-    folder = scene(tmp_path, room(things), start, "first(beside(x, y)). then(at(x, corner(northwest))).")
-    session = Session(read_scenario(folder), Settings(), make_robot, EpisodeLog(None))
-    session.wake()
+    session = woken_with_two_things(tmp_path, "first(beside(x, y)). then(at(x, corner(northwest))).")
     nearest = math.inf
     while not session.finished:
         session.step()
