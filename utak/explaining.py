@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
 from typing import Any
 
 from kb.evidence.reason import Depth, Reason
 from simulator.episode.episode import Episode as EpisodeRecord
-from simulator.explaining.questions import Questions, questions_of_episode
+from simulator.explaining.questions import Questions, questions_of_episode, rule_paths
 
 OPEN_LEVELS = 2  # levels of a tree that a notebook shows unfolded; a convention
 
@@ -71,7 +70,7 @@ class ReasonTree:
 
 def questions(record: EpisodeRecord, rules: tuple[str, ...]) -> Questions:
     """Return what answers questions about a run; rules : the files with users' rules that took part."""
-    return questions_of_episode(record, [str(Path(file).absolute()) for file in rules])
+    return questions_of_episode(record, rule_paths(rules))
 
 
 def _unfolding(reason: Reason, levels: int) -> str:

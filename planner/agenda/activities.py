@@ -26,7 +26,6 @@ from planner.goals.robot_goals import destination
 from planner.per_model import PerModel
 from planner.sights.walls import ALL_WALLS
 from planner.situation import Situation
-from planner.stages import Stage
 
 
 class Activities:
@@ -103,18 +102,16 @@ class Activities:
         """
         stage, situation, tools, clearer = turn.stage, turn.situation, self._tools, self._clearer
         ruled = self.errands.within_rules(situation)
-        goals, carried = turn.goals_of(activity.subject), (stage, ruled, turn.reconciled, tools)
+        goals = turn.goals_of(activity.subject)
         doing: Mapping[str, Callable[[], Decision]] = {
             "release": lambda: _put_down(situation),
             "keep": lambda: self.keeper.broken_at_start(situation),
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
-            "find": lambda: self._freed(goals[0], stage, ruled, self._transporter.find(goals[0], *carried)),
-            "examine": lambda: self._freed(
-                goals[0], stage, ruled, self._transporter.examine(goals[0], stage, ruled, tools)
-            ),
-            "carry": lambda: self._freed(goals[0], stage, ruled, self._transporter.carry(goals[0], *carried)),
+            "find": lambda: self._pursued("find", goals[0], turn, ruled),
+            "examine": lambda: self._pursued("examine", goals[0], turn, ruled),
+            "carry": lambda: self._pursued("carry", goals[0], turn, ruled),
             "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
             "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
             "look": lambda: self._own.look(turn, self._transporter, tools),
@@ -134,11 +131,18 @@ class Activities:
         go_on = {"clear": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
         return go_on(turn.stage, turn.situation, self._tools)
 
-    def _freed(self, goal: Fact, stage: Stage, situation: Situation, decision: Decision) -> Decision:
-        """Return a decision; in its place the push after which another object in hand no longer shuts the robot in."""
-        if decision.command is None and decision.verdict in (None, TaskVerdict.DONE):
-            return decision
-        return self._transporter.free_robot(str(goal.args[0]), stage, situation, self._tools) or decision
+    def _pursued(self, how: str, goal: Fact, turn: StageTurn, situation: Situation) -> Decision:
+        """Return what it comes to that the object of a goal is found, examined or carried, without the task plan.
+
+        how : find, examine or carry.
+        """
+        stage, transporter, tools = turn.stage, self._transporter, self._tools
+        if how == "examine":
+            decision = transporter.examine(goal, stage, situation, tools)
+        else:
+            pursue = transporter.find if how == "find" else transporter.carry
+            decision = pursue(goal, stage, situation, turn.reconciled, tools)
+        return transporter.freed(decision, goal, stage, situation, tools)
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""

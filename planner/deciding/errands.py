@@ -169,6 +169,4 @@ class ErrandRunner:
         goal = found.goal
         stage = stage if goal in stage.goals else replace(stage, goals=(*stage.goals, goal))
         decision = transporter.towards(goal, stage, situation, reconciled, tools, found.end_name)
-        if decision.verdict == TaskVerdict.DONE:
-            return decision
-        return transporter.free_robot(str(goal.args[0]), stage, situation, tools) or decision
+        return transporter.freed(decision, goal, stage, situation, tools)

@@ -229,24 +229,25 @@ class Transporter:
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
         return nothing_to_do("no two goals are known to contradict each other")
 
-    def free_robot(self, x: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
-        """Return the push after which the held object no longer shuts the robot in; None when there is none.
+    def freed(self, decision: Decision, goal: Fact, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return a decision; in its place the push after which the held object no longer shuts the robot in.
 
-        Returns None, too, when nothing is held, when the held object is the one that parameter x means, or when it does
-        not shut the robot in.
+        Only an object that the goal is not about is led out, and nothing where the goal holds or nothing is to be done.
 
         Parameters
         ----------
-        x : the parameter of the task that is pursued next.
+        decision : what was decided towards the goal.
+        goal : the goal that is pursued next.
         stage : of the task: the goals that shall hold now.
         situation : what is believed (world model, rooms, doors, corners, track).
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
-        held = situation.model.held
-        node = situation.model.object(held or "")
-        return (
-            None if node is None or held == situation.binding.get(x) else self._lead_out(node, stage, situation, tools)
-        )
+        held = situation.model.object(situation.model.held or "")
+        if decision.result in ("idle", "done") or held is None:
+            return decision
+        if held.name == situation.binding.get(str(goal.args[0])):
+            return decision
+        return self._lead_out(held, stage, situation, tools) or decision
 
     def find(
         self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools

@@ -2,8 +2,9 @@
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from shapely.errors import ShapelyError
 
@@ -229,6 +230,16 @@ class Questions:
         if not 0 <= step <= self.last_step:
             raise _problem(f"step {step}", f"there is no step {step}: the last is {self.last_step}")
         return step
+
+
+def rule_paths(files: Iterable[Path | str]) -> list[str]:
+    """Return the absolute paths of files with users' rules, as text.
+
+    Parameters
+    ----------
+    files : paths, perhaps relative to the working directory.
+    """
+    return [str(Path(file).absolute()) for file in files]
 
 
 def questions_of_episode(episode: Episode, rule_files: Sequence[str] = ()) -> Questions:

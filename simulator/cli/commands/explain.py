@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simulator.terminal import exits
@@ -64,11 +63,9 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     if options.fix:
         return _fix(options)
-    from simulator.explaining.questions import questions_of_episode
+    from simulator.explaining.questions import questions_of_episode, rule_paths
 
-    questions = questions_of_episode(
-        read_begun_episode(options.episode), [str(Path(path).absolute()) for path in options.kb]
-    )
+    questions = questions_of_episode(read_begun_episode(options.episode), rule_paths(options.kb))
     if questions.lacking:
         print(f"utak: {questions.lacking}; give rules with --kb FILE", file=sys.stderr)
     reason = _answer(questions, options)
@@ -126,8 +123,9 @@ def _fix(options: argparse.Namespace) -> int:
     from simulator.explaining.fixing.report import is_repeated, report_text, report_values
     from simulator.explaining.fixing.search import find_fixes
     from simulator.explaining.fixing.writing import require_empty_folder
+    from simulator.explaining.questions import rule_paths
 
-    rules = [str(Path(path).absolute()) for path in options.kb]
+    rules = rule_paths(options.kb)
     run = recorded_run(options.episode, read_begun_episode(options.episode), rules)
     if options.write is not None:
         require_empty_folder(options.write)

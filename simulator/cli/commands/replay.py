@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from pathlib import Path
 from typing import Any
 
 from simulator.terminal import exits
@@ -36,8 +35,9 @@ def execute(options: argparse.Namespace) -> int:
         return exits.USAGE
     episode = read_replayable(options.episode)
     if options.html is not None:
-        rule_files = [str(Path(path).absolute()) for path in options.kb]
-        if lacking := write_page(options.html, episode, options.force, rule_files):
+        from simulator.explaining.questions import rule_paths
+
+        if lacking := write_page(options.html, episode, options.force, rule_paths(options.kb)):
             print(f"utak: {lacking}; give rules with --kb FILE", file=sys.stderr)
     elif options.gif is not None:
         write_gif(options.gif, episode, options.force)

@@ -100,9 +100,10 @@ def execute(options: argparse.Namespace) -> int:
     run = _run if options.origin is None else _run_fork
     result = run(options, scenario, _progress_printer(options.watch), _listener(options, lines))
     if options.html is not None:
+        from simulator.explaining.questions import rule_paths
         from simulator.replay.output import write_page
 
-        rule_files = [str(Path(path).absolute()) for path in (*options.kb, *options.from_kb)]
+        rule_files = rule_paths((*options.kb, *options.from_kb))
         write_page(options.html, _recorded(lines), options.force, rule_files)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
@@ -125,8 +126,6 @@ def _wrong_usage(options: argparse.Namespace) -> str:
 
 def _is_same_file(one: str, other: str | None) -> bool:
     """Return whether two names mean the same file."""
-    from pathlib import Path
-
     try:
         return other is not None and Path(one).samefile(other)
     except (OSError, ValueError):
@@ -221,8 +220,6 @@ def exit_code(result: "Result") -> int:
 
 def _recorded_header(options: argparse.Namespace) -> dict[str, Any] | None:
     """Return the header of the episode that is to be resumed; None when there is none."""
-    from pathlib import Path
-
     from simulator.episode.episode import complete_lines, read_episode
 
     if not options.resume or not Path(options.log).exists() or not complete_lines(options.log):
