@@ -9,7 +9,7 @@ from kb.evidence.record import Record
 from kb.language.atoms import atom_parts
 from kb.language.vocabulary import PLAN_PREDICATES, ROBOT
 from kb.tracing.decisions import SolverCall
-from kb.world.stated_plan import stated_plan
+from kb.world.stated_plan import SETTLING_WORDS, stated_plan
 
 PLAN_ENCODING = "task"  # the encoding of the task plan
 DOOR_STEP = "go"  # the step of that encoding that passes a door; all others are steps of the plan
@@ -117,6 +117,12 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
     After each that a thing moved aside makes room for, the goals of the steps of the plan for which it does.
     """
     facts = beliefs.record.steps[step].facts
+    action, arguments = atom_parts(planned)
+    if action in SETTLING_WORDS:
+        for fact in facts:
+            if fact.startswith("refuted(") and _place(fact).startswith(f"{arguments[0]}_"):
+                yield from _stated(beliefs, fact, step)
+        return
     thing = _brought(planned)
     rests_on = [atom_parts(fact)[1] for fact in facts if fact.startswith("given(")]
     numbers = {number for number, given in rests_on if given.startswith(f"at({thing},")}

@@ -214,11 +214,14 @@ GOAL_NAME_ARGUMENT = ArgumentType("name of a goal", NAME_ARGUMENT.check)
 TASK_GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
 # A place of the task plan: `here`, a place where a goal holds (g1_...), or a spot that the planner chose.
 PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
+# What a step of the task plan may settle: the name of a goal, or all, robot, plan.
+PLAN_SUBJECT_ARGUMENT = ArgumentType("what a step settles", NAME_ARGUMENT.check)
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "arrive": (PLANNED_PLACE_ARGUMENT,),
+    **dict.fromkeys(("find", "pursue", "pull", "make_way", "feel", "bare"), (PLAN_SUBJECT_ARGUMENT,)),
 }
 PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.

@@ -61,7 +61,8 @@ PLACE_ARGUMENT, GOAL_ARGUMENT = _name_argument("place"), _name_argument("goal")
 PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT = _name_argument("room"), _name_argument("door")
 REFUTATION_ARGUMENT, TIME_ARGUMENT = _number_argument("refutation"), _number_argument("time")
 # The steps of a task plan, with their numbers of arguments.
-PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1}
+SETTLING_STEPS = ("find", "pursue", "pull", "make_way", "feel", "bare")  # those that settle what is open
+PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1} | dict.fromkeys(SETTLING_STEPS, 1)
 
 
 def _compound_argument(name: str, plural: str, forms: Mapping[str, int]) -> ArgumentType:
@@ -82,14 +83,15 @@ def _compound_argument(name: str, plural: str, forms: Mapping[str, int]) -> Argu
 
 STEP_ARGUMENT = _compound_argument("step", "steps", PLAN_STEPS)
 # The activities of the agenda, with their numbers of arguments.
+WHOLE_ACTIVITIES = ("release", "keep", "agree", "errand", "settle", "go", "wish", "look")  # about nothing in particular
 ACTIVITIES: Mapping[str, int] = {
-    "release": 0, "keep": 0, "resume": 1, "agree": 0, "errand": 0, "find": 1, "examine": 1, "carry": 1, "go": 0,
-    "wish": 0, "look": 0, "pull": 1, "clear": 1, "feel": 1, "bare": 1, "blame": 1, "doubt": 1,
-}  # fmt: skip
+    **dict.fromkeys(WHOLE_ACTIVITIES, 0),
+    **dict.fromkeys(("resume", "blame", "doubt", *SETTLING_STEPS), 1),
+}
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
-BEGUN_ARGUMENT = word_argument("begun activity", ("clear", "feel"))
+BEGUN_ARGUMENT = word_argument("begun activity", ("make_way", "feel"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {
@@ -192,6 +194,18 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("occurs", 2): (STEP_ARGUMENT, TIME_ARGUMENT),
         ("brought", 4): (MOVER_ARGUMENT, PLACE_ARGUMENT, PLACE_ARGUMENT, TIME_ARGUMENT),
         ("busy", 1): (TIME_ARGUMENT,),
+        ("acts", 1): (TIME_ARGUMENT,),
+        ("missing", 1): (GOAL_ARGUMENT,),
+        ("unclear", 1): (GOAL_ARGUMENT,),
+        ("waits", 1): (GOAL_ARGUMENT,),
+        ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
+        ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
+        ("holds", 1): (NODE_ARGUMENT,),
+        ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
+        ("price", 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT),
+        ("left", 1): (STEP_ARGUMENT,),
+        ("settling", 1): (TIME_ARGUMENT,),
+        ("settled", 2): (SUBJECT_ARGUMENT, TIME_ARGUMENT),
         ("moved", 2): (MOVER_ARGUMENT, TIME_ARGUMENT),
         ("robot_in", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
         ("needed", 2): (PLAN_ROOM_ARGUMENT, TIME_ARGUMENT),
@@ -214,6 +228,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("robot_lost", 0): (),
         ("map_contradicted", 0): (),
         ("begun", 1): (BEGUN_ARGUMENT,),
+        ("planned", 1): (STEP_ARGUMENT,),
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("stuck", 2): (SUBJECT_ARGUMENT, RESULT_ARGUMENT),
         ("do", 1): (ACTIVITY_ARGUMENT,),

@@ -11,6 +11,14 @@ from kb.language.terms import Fact
 from kb.language.vocabulary import PLAN_PREDICATES, check_facts
 
 PLAN_NAMES = frozenset(name for name, _ in PLAN_PREDICATES)
+SETTLING_WORDS = {  # steps that settle something, in words; {} is what they settle
+    "find": "what {} is about is looked for",
+    "pursue": "the robot sees how {} can hold",
+    "pull": "a thing that may go on in a wall is drawn out of it, for {}",
+    "make_way": "what blocks the robot's way is moved aside, for {}",
+    "feel": "walls are felt that may be things, for {}",
+    "bare": "what stands before walls that were never felt is moved away, for {}",
+}
 HERE_PLACE = "here"  # the place of everything where it was when the plan was made
 START_WORD = "start"  # in stood(start): the robot stands where it was when the plan was made
 
@@ -60,6 +68,8 @@ class PlanStep(NamedTuple):
         """The step in words."""
         name, _, rest = self.step.partition("(")
         subject, _, place = rest.removesuffix(")").partition(",")
+        if name in SETTLING_WORDS:
+            return SETTLING_WORDS[name].format(subject)
         goals = f"to where {' and '.join(self.serves)} holds" if self.serves else f"to {place or subject}"
         if name == "arrive":
             return f"the robot goes {goals}"

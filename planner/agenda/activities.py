@@ -62,6 +62,9 @@ class Activities:
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
+            if found.kind == "settle" and (step := self._step_that_settles(turn, agenda)):
+                agenda.plan(step)
+                continue
             decision = self._allowed(self._do(found, turn, last), turn)
             if decision.command is not None:
                 agenda.record()
@@ -75,13 +78,8 @@ class Activities:
     def _facts(self, turn: StageTurn) -> Iterator[str]:
         """Yield the facts of a stage for the agenda, without full stops."""
         model = turn.situation.model
-        for number, (name, goal) in enumerate(turn.goals.items(), 1):
-            yield f"stage_goal({name},{number})"
-            node = turn.situation.object_of(str(goal.args[0]))
-            if node is None:
-                yield f"missing({name})"
-            elif node.polygon is None:
-                yield f"unclear({name})"
+        yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
+        yield from _unknown(turn)
         yield from (f"begun({activity})" for activity in self._clearer.begun(turn.situation))
         if not turn.stage.goals and self._doubt_of_done(turn.situation):
             yield "constraints_doubtful"
@@ -109,14 +107,14 @@ class Activities:
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
-            "find": lambda: self._pursued("find", goals[0], turn, ruled),
-            "examine": lambda: self._pursued("examine", goals[0], turn, ruled),
-            "carry": lambda: self._pursued("carry", goals[0], turn, ruled),
+            "settle": lambda: self._nothing_settles(turn),
+            "find": lambda: self._pursued(goals[0], turn, ruled),
+            "pursue": lambda: self._pursued(goals[0], turn, ruled),
             "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
             "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
             "look": lambda: self._own.look(turn, self._transporter, tools),
             "pull": lambda: clearer.pull(goals, stage, ruled, tools),
-            "clear": lambda: clearer.clear(goals, stage, ruled, tools),
+            "make_way": lambda: clearer.clear(goals, stage, ruled, tools),
             "feel": lambda: clearer.feel(goals, stage, ruled, tools),
             "bare": lambda: clearer.bare(goals, stage, ruled, tools),
             "blame": lambda: _added(last, clearer.blame(ruled)),
@@ -127,21 +125,26 @@ class Activities:
         return doing[activity.kind]()
 
     def _resume(self, begun: str, turn: StageTurn) -> Decision:
-        """Return the next command of what was begun in an earlier decision: clear or feel."""
-        go_on = {"clear": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
+        """Return the next command of what was begun in an earlier decision: make_way or feel."""
+        go_on = {"make_way": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
         return go_on(turn.stage, turn.situation, self._tools)
 
-    def _pursued(self, how: str, goal: Fact, turn: StageTurn, situation: Situation) -> Decision:
-        """Return what it comes to that the object of a goal is found, examined or carried, without the task plan.
+    def _step_that_settles(self, turn: StageTurn, agenda: Agenda) -> str:
+        """Return the step with which the task plan begins where something is open; "" when nothing settles it."""
+        given = [*_unknown(turn), *agenda.results]
+        return self.errands.settle(turn.stage, turn.situation, self._transporter, given)
 
-        how : find, examine or carry.
-        """
+    def _nothing_settles(self, turn: StageTurn) -> Decision:
+        """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
+        if not self.errands.forbidden:
+            return nothing_to_do("no step of the task plan settles what is open")
+        why = f"{turn.stage} cannot be attained: users' rules forbid {' and '.join(self.errands.forbidden)}"
+        return Decision(None, why, TaskVerdict.LIMIT)
+
+    def _pursued(self, goal: Fact, turn: StageTurn, situation: Situation) -> Decision:
+        """Return what it comes to that the object of a goal is found, examined and carried, one after the other."""
         stage, transporter, tools = turn.stage, self._transporter, self._tools
-        if how == "examine":
-            decision = transporter.examine(goal, stage, situation, tools)
-        else:
-            pursue = transporter.find if how == "find" else transporter.carry
-            decision = pursue(goal, stage, situation, turn.reconciled, tools)
+        decision = transporter.towards(goal, stage, situation, turn.reconciled, tools)
         return transporter.freed(decision, goal, stage, situation, tools)
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
@@ -168,6 +171,16 @@ class Activities:
         if situation.forbidden(ROBOT) and not situation.avoided:
             return "the robot went through every door that is sure"
         return self.keeper.doubt_of_done(situation)
+
+
+def _unknown(turn: StageTurn) -> Iterator[str]:
+    """Yield which goals are about an object that is missing or of which the outline is not known, as facts."""
+    for name, goal in turn.goals.items():
+        node = turn.situation.object_of(str(goal.args[0]))
+        if node is None:
+            yield f"missing({name})"
+        elif node.polygon is None:
+            yield f"unclear({name})"
 
 
 def _put_down(situation: Situation) -> Decision:

@@ -54,11 +54,18 @@ class Agenda:
         """
         self._facts, self._about = list(given), list(about)
         self._files = [PLANNER_ASP / "agenda.lp", *rules]
+        self._stuck: list[str] = []
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """What activities came to, and what the robot is stuck with, as facts without full stops."""
+        return (*(fact for fact in self._facts if fact.startswith("came_to(")), *self._stuck)
 
     def next(self) -> Activity | StageEnd:
         """Return the activity that is chosen now, or the end when nothing is left."""
         with record_decisions():  # of all choices, only the last one is recorded
             answer = solve(self._files, self._facts) or ()
+        self._stuck = [str(atom) for atom in answer if atom.name == "stuck"]
         for atom in answer:
             if atom.name == "do":
                 activity = atom.arguments[0]
@@ -73,6 +80,10 @@ class Agenda:
         """Note that an activity came to no command, and why."""
         self._facts.append(f"came_to({activity},{decision.result})")
         self._about.append(f"{activity}: {decision.why}")
+
+    def plan(self, step: str) -> None:
+        """Note the step with which the task plan begins, as planner/asp/task writes it."""
+        self._facts.append(f"planned({step})")
 
     def record(self) -> None:
         """Write the last choice into the record of decisions: it has the facts of all that were refused before."""

@@ -36,12 +36,12 @@ class ObstacleClearer:
         self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
     def begun(self, situation: Situation) -> tuple[str, ...]:
-        """Return what was begun in an earlier decision and is gone on with: feel, clear, both, or nothing.
+        """Return what was begun in an earlier decision and is gone on with: feel, make_way, both, or nothing.
 
         situation : what is believed (world model, rooms, doors, corners, track).
         """
         feeling = ("feel",) if self._feeling and situation.model.held is None else ()
-        return (*feeling, "clear") if self._moving else feeling
+        return (*feeling, "make_way") if self._moving else feeling
 
     def clear_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision:
         """Return the next command for the obstacle that is being moved; nothing when it blocks no longer.

@@ -4,7 +4,7 @@ A thing that is brought to a place of its own goal is led by planner.deciding.tr
 end. A thing that is moved aside, or to a spot that the plan chose, is brought there by the plan executor.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from kb.language.terms import Fact
@@ -24,7 +24,12 @@ MAX_FAILURES = 3  # errands that fail one after the other within one decision; a
 
 
 class ErrandRunner:
-    """Carries out the errands of the task plan, and owns the plan."""
+    """Carries out the errands of the task plan, and owns the plan.
+
+    Attributes
+    ----------
+    forbidden : the steps that users' rules forbade where something was open, and no step was left to settle it.
+    """
 
     def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
         """Make a runner without a plan.
@@ -33,6 +38,7 @@ class ErrandRunner:
         pull : whether a held object may be pulled.
         """
         self._intention = Intention(where, pull)
+        self.forbidden: tuple[str, ...] = ()
 
     @property
     def plan(self) -> TaskPlan | None:
@@ -83,6 +89,19 @@ class ErrandRunner:
             self._intention.failed(found.errand, ruled)
         tools.executor.unwanted = {}
         return nothing_to_do("the task plan has no errand" if self.plan is None else "the next step is the robot's own")
+
+    def settle(self, stage: Stage, situation: Situation, transporter: Transporter, given: Sequence[str]) -> str:
+        """Return the first step of the task plan where something is open, as planner/asp/task writes it; "" for none.
+
+        Parameters
+        ----------
+        stage, situation, transporter : as for `next`.
+        given : what is not known, what activities came to, and what the robot is stuck with, as facts without full
+            stops.
+        """
+        place, origin = transporter.place, transporter.origin_of
+        step, self.forbidden = self._intention.settle(stage, situation, place, origin, given)
+        return step
 
     def within_rules(self, situation: Situation) -> Situation:
         """Return a situation with the doors closed that users' rules leave to no plan.

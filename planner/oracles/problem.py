@@ -126,6 +126,8 @@ class TaskProblem:
     open : whether it is open where exactly some goal holds, so that it may hold elsewhere, too.
     meanings : by parameter of the task, where a plan may choose: the objects that it may mean, the one that it is bound
         to first.
+    waiting : the names of the goals of which it is not known what they are about, or where they hold: they have no
+        places.
     """
 
     nodes: Mapping[str, Node]
@@ -136,6 +138,7 @@ class TaskProblem:
     state: TableState
     open: bool = False
     meanings: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    waiting: tuple[str, ...] = ()
 
     def places_meant(self, meanings: Mapping[str, str]) -> frozenset[tuple[str, str]]:
         """Return the places of goals, by object and name, of what the goals are about.

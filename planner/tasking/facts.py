@@ -91,6 +91,8 @@ def problem_facts(
         else:
             ranks.setdefault(goal.subject, number)
         facts.append(f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})")
+        if goal.name in problem.waiting:
+            facts.append(f"waits({goal.name})")
         if goal.holds:
             facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
     facts += [f"rank({name},{number})" for name, number in ranks.items()]

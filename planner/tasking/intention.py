@@ -1,7 +1,7 @@
 """The intention: the task plan under way. It is kept while what it rests on stands, and made anew when that falls."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -19,8 +19,9 @@ from planner.oracles.problem import HERE, TaskProblem
 from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
+from planner.tasking.proposal import TASK_ENCODING
 from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
-from planner.tasking.search import TASK_ENCODING, make_plan
+from planner.tasking.search import make_plan
 from planner.tasking.setting import (
     DestinationFunction,
     OriginFunction,
@@ -30,6 +31,7 @@ from planner.tasking.setting import (
     problem_of,
     wish_of_place,
 )
+from planner.tasking.settling import plan_that_settles, step_that_settles
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 MAX_DISPLACEMENT = 0.5  # squares that the bounds of a thing may differ from what the plan expects: half a square
@@ -108,6 +110,7 @@ class Intention:
         """
         self._where, self._pull = where, pull
         self._kept: _Kept | None = None
+        self._settling: TaskPlan | None = None  # the plan that settles something, while that is open
         self._attempt: TaskPlan | None = None  # the last plan that does not attain all goals, while there is no other
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
         self._hopeless: Any = None  # what was believed when no plan was found last
@@ -119,9 +122,9 @@ class Intention:
 
     @property
     def plan(self) -> TaskPlan | None:
-        """The plan under way, from its present errand on; None for none."""
+        """The plan under way, from its present step on; None for none."""
         if self._kept is None:
-            return None
+            return self._settling
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
 
     @property
@@ -140,7 +143,7 @@ class Intention:
     ) -> Situation:
         """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters.
 
-        There is no plan while it is open what a goal means or where it holds.
+        While it is open what a goal means or where it holds there is none but that of `settle`.
 
         Parameters
         ----------
@@ -154,7 +157,8 @@ class Intention:
         self._problem = problem_of(stage, situation, place, origin, self._where)
         if stage != self._stage:
             self._stage, self._tried = stage, []
-        if self._problem is None:
+        self._settling = None
+        if self._problem is None or self._problem.waiting:
             self._kept = self._attempt = None
         else:
             self._kept = self._kept_still(stage, self._problem, situation)
@@ -165,6 +169,25 @@ class Intention:
             situation = with_meanings(situation, meant)
             self._problem = problem_of(stage, situation, place, origin, self._where)
         return situation
+
+    def settle(
+        self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, given: Sequence[str]
+    ) -> tuple[str, tuple[str, ...]]:
+        """Plan what settles what is open; return its first step, and what users' rules forbid where there is none.
+
+        Parameters
+        ----------
+        stage, situation, place, origin : as for `update`.
+        given : what is not known, what activities came to, and what the robot is stuck with, as facts without full
+            stops.
+        """
+        stage = self._without_dropped(stage)
+        problem = problem_of(stage, situation, place, origin, self._where)
+        refuted = () if self._attempt is None else self._attempt.refutations
+        plan, left = plan_that_settles(problem, stage, situation, given, refuted)
+        step = step_that_settles(plan)
+        self._settling = None if step is None else plan
+        return ("", left) if step is None else (str(step), ())
 
     @property
     def meanings(self) -> Mapping[str, str]:
@@ -215,7 +238,7 @@ class Intention:
     @property
     def is_open(self) -> bool:
         """Whether it is open where exactly some goal of the problem holds."""
-        return self._problem is None or self._problem.open
+        return self._problem is None or self._problem.open or bool(self._problem.waiting)
 
     def along_plan(self, situation: Situation) -> Situation:
         """Return the situation with the doors closed that the present errand does not pass, where users' rules count.

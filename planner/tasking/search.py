@@ -16,24 +16,21 @@ from geometry.manipulation.goals import End
 from geometry.motion.se2 import Translate
 from kb.language.vocabulary import ROBOT
 from kb.reasoning.encodings import encoding_constant
-from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach
 from kb.task.binding import NO_MEANINGS
 from kb.tracing.decisions import record_decisions
 from planner.carrying.manipulation_oracle import swept_squares
-from planner.navigation.subgoals import PLANNER_ASP
 from planner.oracles.carry import CarryOracle, Certainty, OracleAnswer
 from planner.oracles.problem import ANYWHERE, HERE, TableState, TaskProblem
 from planner.situation import Situation
 from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts, things_in_way
 from planner.tasking.offers import Offers, with_returns
+from planner.tasking.proposal import TASK_ENCODING, Proposal, propose
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
-TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
 MAX_PROPOSALS = 80  # plans that are proposed for one decision; a bound on rounds, so that all machines do the same
 MAX_BETTER_ROUNDS = 6  # plans that are verified after the first one, to find a cheaper one; likewise
 MAX_MORE_ERRANDS = 5  # errands beyond one for each thing that is out of its place; a bound on the horizon
-MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; likewise
 MAX_QUESTIONS = 150  # questions to geometry for one decision; a bound on work, so that all machines do the same
 LEAST_COMMANDS = 4  # commands of an errand of which nothing is known, as in the encoding: walk, grasp, push, release
 MAX_MEANING_QUESTIONS = 12  # to geometry before the first plan, about things that parameters may mean; likewise
@@ -60,25 +57,6 @@ class MadePlan(NamedTuple):
     ways: tuple[Bools, ...] = ()
     margin: int = 0
     facts: tuple[str, ...] = ()
-
-
-class Proposal(NamedTuple):
-    """A plan as the encoding proposes it.
-
-    Attributes
-    ----------
-    errands : its steps, in order.
-    unmet : the goals that do not hold after them.
-    facts : what the encoding was given.
-    missed : the wishes that do not hold after them, each with the commands that it may cost.
-    meanings : the object that each parameter of the task means: (parameter, object), sorted.
-    """
-
-    errands: tuple[Errand, ...]
-    unmet: tuple[str, ...]
-    facts: tuple[str, ...]
-    missed: Mapping[str, int]
-    meanings: tuple[tuple[str, str], ...] = ()
 
 
 class PlanSearch:
@@ -156,7 +134,7 @@ class PlanSearch:
                 (), tuple(goal.name for goal in self._problem.goals if goal.weight is None and not goal.holds)
             )
         if facts:  # the same answer again, from memory: this decision alone belongs into the record
-            solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS, self._about())
+            propose(facts, self._situation.rules, self._about())
         refutations = self._answers.refutations
         plan = replace(best, least=min(least, best.cost), proved=proved and not self._cut, rounds=number)
         plan = replace(plan, refutations=refutations, goals=self._problem.goals)
@@ -167,22 +145,9 @@ class PlanSearch:
         before = [f"meant_before({parameter},{name})" for parameter, name in sorted(self._meant.items())]
         facts = (f"horizon({horizon})", *self._facts, *before, *answer_facts(self._answers))
         with record_decisions():  # of all proposals, only the last one is recorded
-            answer = solve_within([TASK_ENCODING, *self._situation.rules], facts, MAX_PLAN_CONFLICTS)
-        atoms, self._cut = answer.atoms or (), self._cut or not answer.proved
-        unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
-        doors: dict[int, list[str]] = {}
-        found: dict[int, Errand] = {}
-        for atom in (atom for atom in atoms if atom.name == "occurs"):
-            step, time = atom.arguments[0], atom.arguments[1].number
-            words = [str(word) for word in step.arguments]
-            if step.name == "go":
-                doors.setdefault(time, []).append(words[0])
-            else:
-                found[time] = Errand(step.name, *(words if len(words) > 1 else (ROBOT, *words)))
-        errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
-        missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
-        pairs = [(str(atom.arguments[0]), str(atom.arguments[1])) for atom in atoms if atom.name == "meaning"]
-        return Proposal(errands, unmet, facts, missed, tuple(sorted(pairs)))
+            proposal = propose(facts, self._situation.rules)
+        self._cut = self._cut or not proposal.proved
+        return proposal
 
     def _ask_about_meanings(self) -> None:
         """Ask geometry about the ways of things among which parameters may choose, to compare them at once."""

@@ -30,9 +30,9 @@ DestinationFunction = Callable[[Fact, Situation], Destination]
 def problem_of(
     stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, where: DestinationFunction
 ) -> TaskProblem | None:
-    """Return the problem of a stage; None while it is open what a goal means or where it holds.
+    """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first.
 
-    None, too, while a thing that is askew is in hand: it is set down first.
+    Goals are waiting while it is open what they mean or where they hold.
     Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
 
     Parameters
@@ -58,6 +58,7 @@ def problem_of(
     places: dict[tuple[str, str], End] = {}
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
     open_goals: list[str] = []
+    waiting: list[str] = []
     unlike: set[tuple[str, str]] = set()  # parameters with objects for which it is open where a goal holds
     ruled = rules_reach(RULED_ENCODING, situation.rules)
     for name, goal, weight in _numbered(stage):
@@ -65,9 +66,11 @@ def problem_of(
         ends, is_open, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
         is_open = is_open and not holds
         if node is None or not (holds or ends) or (weight is None and is_open and not ruled):
-            if weight is None:
-                return None
-            continue  # a wish of which nothing is known yet
+            if weight is None:  # else it is a wish of which nothing is known yet
+                subject = "" if node is None else node.name
+                goals.append(PlacedGoal(name, str(goal), subject, False, None, str(goal.args[0])))
+                waiting.append(name)
+            continue
         open_goals += [name] * (is_open and weight is None)
         goals.append(PlacedGoal(name, str(goal), node.name, holds, weight, str(goal.args[0])))
         for other in _also_meant(goal, things, situation):
@@ -99,7 +102,8 @@ def problem_of(
             stands |= {place_name(name, room): part for room, part in parts.items()}
             fulfils |= {(ROBOT, place_name(name, room)): names for room in parts}
     meanings = _meanings(things, unlike, situation)
-    return TaskProblem(things, _goals_before_wishes(goals), places, fulfils, stands, state, bool(open_goals), meanings)
+    is_open, placed = bool(open_goals), _goals_before_wishes(goals)
+    return TaskProblem(things, placed, places, fulfils, stands, state, is_open, meanings, tuple(waiting))
 
 
 def _also_meant(goal: Fact, things: Mapping[str, Node], situation: Situation) -> list[Node]:

@@ -14,13 +14,14 @@ GOAL_PLACE = re.compile(r"(g[0-9]+)_")  # the beginning of the name of a place w
 
 @dataclass(frozen=True)
 class Errand:
-    """One step of a task plan: something is brought to a place, or the robot goes there itself.
+    """One step of a task plan: something is brought to a place, the robot goes there itself, or settles something.
 
     Attributes
     ----------
-    action : carry (to a place where a goal holds), clear (out of the way) or arrive (the robot itself).
-    subject : the object, or `utak`.
-    place : the name of the place.
+    action : carry (to a place where a goal holds), clear (out of the way) or arrive (the robot itself); or a step that
+        settles something, such as find (planner/asp/task/settling.lp).
+    subject : the object, or `utak`; what is settled, such as the name of a goal, for a step that settles something.
+    place : the name of the place; "" for a step that settles something.
     doors : the doors that are passed on the way, sorted.
     certainty : what geometry said: the way is sure, or hoped to be free; None when it was not asked.
     commands : about how many commands it takes.
@@ -30,7 +31,7 @@ class Errand:
 
     action: str
     subject: str
-    place: str
+    place: str = ""
     doors: tuple[str, ...] = ()
     certainty: Certainty | None = None
     commands: int = 0
@@ -38,11 +39,18 @@ class Errand:
 
     @property
     def goal(self) -> str:
-        """The name of the goal that holds at its place; "" for none."""
-        return goal_at(self.place)
+        """The name of the goal that it serves: that holds at its place, or that it may settle; "" for none."""
+        return goal_at(f"{self.subject}_" if self.settles else self.place)
+
+    @property
+    def settles(self) -> bool:
+        """Whether it settles something, and brings nothing anywhere."""
+        return not self.place
 
     def __str__(self) -> str:
-        """Return the step as the encoding writes it, such as carry(o1,g1_r2)."""
+        """Return the step as the encoding writes it, such as carry(o1,g1_r2) or find(g1)."""
+        if self.settles:
+            return f"{self.action}({self.subject})"
         return f"arrive({self.place})" if self.action == "arrive" else f"{self.action}({self.subject},{self.place})"
 
 

@@ -1,0 +1,67 @@
+"""Proposals of the encoding of task plans: one answer of clingo, read as steps in order."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from kb.language.vocabulary import ROBOT
+from kb.reasoning.solver import solve_within
+from planner.navigation.subgoals import PLANNER_ASP
+from planner.tasking.task_plan import Errand
+
+TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
+MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; a bound on work, so that all machines do the same
+
+
+class Proposal(NamedTuple):
+    """A plan as the encoding proposes it.
+
+    Attributes
+    ----------
+    errands : its steps, in order.
+    unmet : the goals that do not hold after them, and what is not settled.
+    facts : what the encoding was given.
+    missed : the wishes that do not hold after them, each with the commands that it may cost.
+    meanings : the object that each parameter of the task means: (parameter, object), sorted.
+    proved : whether the search of clingo ended, so that no plan is cheaper by what the facts say.
+    left : the steps that may settle something, whether they are done or not.
+    """
+
+    errands: tuple[Errand, ...]
+    unmet: tuple[str, ...]
+    facts: tuple[str, ...]
+    missed: Mapping[str, int]
+    meanings: tuple[tuple[str, str], ...] = ()
+    proved: bool = True
+    left: tuple[str, ...] = ()
+
+
+def propose(facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] = ()) -> Proposal:
+    """Return the plan that the encoding finds cheapest; the same answer for the same facts.
+
+    Parameters
+    ----------
+    facts : as planner/asp/task wants them, without full stops.
+    rules : the user's own encodings.
+    about : what the names of goals mean, in words; for the record of decisions alone.
+    """
+    answer = solve_within([TASK_ENCODING, *rules], facts, MAX_PLAN_CONFLICTS, about)
+    atoms = answer.atoms or ()
+    unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
+    doors: dict[int, list[str]] = {}
+    found: dict[int, Errand] = {}
+    for atom in (atom for atom in atoms if atom.name == "occurs"):
+        step, time = atom.arguments[0], atom.arguments[1].number
+        words = [str(word) for word in step.arguments]
+        if step.name == "go":
+            doors.setdefault(time, []).append(words[0])
+        elif step.name == "arrive":
+            found[time] = Errand(step.name, ROBOT, words[0])
+        else:
+            found[time] = Errand(step.name, *words)
+    errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
+    missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
+    pairs = [(str(atom.arguments[0]), str(atom.arguments[1])) for atom in atoms if atom.name == "meaning"]
+    left = tuple(sorted(str(atom.arguments[0]) for atom in atoms if atom.name == "left"))
+    return Proposal(errands, unmet, facts, missed, tuple(sorted(pairs)), answer.proved, left)

@@ -1,0 +1,71 @@
+"""What the task plan settles where something is open: it is found, seen, felt or moved away, the likeliest first."""
+
+from collections.abc import Iterator, Sequence
+
+from planner.oracles.problem import TaskProblem
+from planner.situation import Situation
+from planner.stages import Stage
+from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts
+from planner.tasking.proposal import propose
+from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
+
+
+def plan_that_settles(
+    problem: TaskProblem | None,
+    stage: Stage,
+    situation: Situation,
+    given: Sequence[str],
+    refuted: tuple[RefutedStep, ...] = (),
+) -> tuple[TaskPlan, tuple[str, ...]]:
+    """Return the plan of the encoding where something is open, and the steps that settle something.
+
+    Geometry is not asked about it: what is settled changes all that follows. The plan leaves goals unmet where no step
+    is left that settles what they wait for; where there are such steps nonetheless, users' rules forbid them.
+
+    Parameters
+    ----------
+    problem : things, places and goals; None while they are not known.
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
+    given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
+    refuted : the steps that geometry refuted.
+    """
+    facts = [*given, *_goals(stage, problem)]
+    if situation.model.held is not None:
+        facts.append(f"holds({situation.model.held})")
+    if problem is not None:
+        facts += problem_facts(problem, (), situation, frozenset(), overlaps_of(problem))
+        facts += answer_facts(Answers(refutations=refuted))
+    horizon = max(1, len(stage.goals) + sum(fact.startswith("stuck(") for fact in given))
+    goals = () if problem is None else problem.goals
+    about = [f"{goal.name}: {goal.words}" for goal in goals]
+    found = propose((f"horizon({horizon})", *facts), situation.rules, about)
+    plan = TaskPlan(found.errands, found.unmet, proved=found.proved, rounds=1, goals=goals, refutations=refuted)
+    return plan, found.left
+
+
+def step_that_settles(plan: TaskPlan) -> Errand | None:
+    """Return the first step of a plan that settles something; None for none.
+
+    To bring an object where a goal holds counts as to pursue that goal, where that comes first.
+
+    Parameters
+    ----------
+    plan : from `plan_that_settles`.
+    """
+    for errand in plan.errands:
+        if errand.settles:
+            return errand
+        if errand.goal and errand.action == "carry":
+            return Errand("pursue", errand.goal)
+    return None
+
+
+def _goals(stage: Stage, problem: TaskProblem | None) -> Iterator[str]:
+    """Yield the goals for objects as facts where there is no problem that names them."""
+    if problem is None:
+        for number, goal in enumerate(stage.carried, 1):
+            yield f"goal(g{number})"
+            yield f"waits(g{number})"
+            yield f"about(g{number},{goal.args[0]})"
+            yield f"order({goal.args[0]},{number - 1})"
