@@ -138,8 +138,7 @@ class Activities:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
         if not self.errands.forbidden:
             return nothing_to_do("no step of the task plan settles what is open")
-        why = f"{turn.stage} cannot be attained: users' rules forbid {' and '.join(self.errands.forbidden)}"
-        return Decision(None, why, TaskVerdict.LIMIT)
+        return Decision(None, "users' rules forbid steps of the task plan that settle it", TaskVerdict.LIMIT)
 
     def _pursued(self, goal: Fact, turn: StageTurn, situation: Situation) -> Decision:
         """Return what it comes to that the object of a goal is found, examined and carried, one after the other."""
@@ -159,7 +158,8 @@ class Activities:
             return replace(last, why=f"{turn.stage} holds", verdict=TaskVerdict.DONE)
         why = last.why
         if end.forbidden:
-            why = f"{turn.stage} cannot be attained: users' rules forbid all that may still be done"
+            forbidden = " and ".join(self.errands.forbidden) or "all that may still be done"
+            why = f"{turn.stage} cannot be attained: users' rules forbid {forbidden}"
         elif last.verdict is None:
             why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"
         if self.errands.blamed and not self.errands.is_shut_out:

@@ -58,7 +58,7 @@ class Agenda:
 
     @property
     def results(self) -> tuple[str, ...]:
-        """What activities came to, and what the robot is stuck with, as facts without full stops."""
+        """The results of activities, and what the robot is stuck with, as facts without full stops."""
         return (*(fact for fact in self._facts if fact.startswith("came_to(")), *self._stuck)
 
     def next(self) -> Activity | StageEnd:

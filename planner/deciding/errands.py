@@ -71,6 +71,7 @@ class ErrandRunner:
         transporter : brings objects where goals hold.
         tools : executor, pursuer and verifier, with which the decision is worked out.
         """
+        self.forbidden = ()
         situation = self._update(stage, situation, transporter, tools)
         if self.is_shut_out:
             return Decision(None, f"{stage} cannot be attained: {self.blamed}", TaskVerdict.IMPOSSIBLE, unless=None)

@@ -185,7 +185,7 @@ class Intention:
         problem = problem_of(stage, situation, place, origin, self._where)
         refuted = () if self._attempt is None else self._attempt.refutations
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
-        step = step_that_settles(plan)
+        step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
         self._settling = None if step is None else plan
         return ("", left) if step is None else (str(step), ())
 

@@ -1,4 +1,4 @@
-"""What the task plan settles where something is open: it is found, seen, felt or moved away, the likeliest first."""
+"""The task plan where something is open: steps that find, see, feel or move away what is not settled."""
 
 from collections.abc import Iterator, Sequence
 
@@ -44,19 +44,20 @@ def plan_that_settles(
     return plan, found.left
 
 
-def step_that_settles(plan: TaskPlan) -> Errand | None:
+def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:
     """Return the first step of a plan that settles something; None for none.
 
-    To bring an object where a goal holds counts as to pursue that goal, where that comes first.
+    Where an object is brought to where a goal holds before that, it is to pursue that goal.
 
     Parameters
     ----------
     plan : from `plan_that_settles`.
+    stuck : whether the robot is stuck: then nothing is brought anywhere.
     """
     for errand in plan.errands:
         if errand.settles:
             return errand
-        if errand.goal and errand.action == "carry":
+        if errand.goal and errand.action == "carry" and not stuck:
             return Errand("pursue", errand.goal)
     return None
 
