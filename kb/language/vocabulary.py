@@ -221,7 +221,7 @@ STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "arrive": (PLANNED_PLACE_ARGUMENT,),
-    **dict.fromkeys(("find", "pursue", "pull", "make_way", "feel", "bare"), (PLAN_SUBJECT_ARGUMENT,)),
+    **dict.fromkeys(("find", "pursue", "pull", "make_way", "try", "feel", "bare"), (PLAN_SUBJECT_ARGUMENT,)),
 }
 PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.

@@ -115,6 +115,7 @@ class Activities:
             "look": lambda: self._own.look(turn, self._transporter, tools),
             "pull": lambda: clearer.pull(goals, stage, ruled, tools),
             "make_way": lambda: clearer.clear(goals, stage, ruled, tools),
+            "try": lambda: clearer.feel_things(goals, stage, ruled, tools),
             "feel": lambda: clearer.feel(goals, stage, ruled, tools),
             "bare": lambda: clearer.bare(goals, stage, ruled, tools),
             "blame": lambda: _added(last, clearer.blame(ruled)),

@@ -14,9 +14,8 @@ from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import with_edge_neighbours
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict, nothing_to_do
-from planner.goals.placement import POSSIBLE_OBJECT
 from planner.screen.moves import orientation_is_settled
-from planner.screen.projection import dilate
+from planner.sights.things import things_in_question
 from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
 from planner.situation import Situation
 
@@ -80,10 +79,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
-    unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
-    if not scope.parting and not scope.things:
-        masks = {node.name: model.mask(node.patch) for node in unmoved}
-        unmoved = [node for node in unmoved if (dilate(masks[node.name], 1) & ~masks[node.name] & ~reached).any()]
+    unmoved = things_in_question(model, situation.cost_maps, scope)
     return f"{unmoved[0].name}, which was never moved, is more than one thing" if unmoved else ""
 
 

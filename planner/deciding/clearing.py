@@ -9,7 +9,7 @@ from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end
-from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
+from planner.deciding.feeling import feel_rim, feel_things, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.tools import Tools
 from planner.decision import Decision, TaskVerdict, nothing_to_do
@@ -118,6 +118,16 @@ class ObstacleClearer:
         felt = feel_walls(stage, situation, tools.pursuer)
         self._feeling |= felt is not None
         return felt or nothing_to_do("nothing is left to feel")
+
+    def feel_things(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+        """Return the next command to feel things all round that may be several; nothing when none is left.
+
+        Parameters
+        ----------
+        goals, stage, situation, tools : as for `clear`.
+        """
+        self._let_stay(goals, situation)
+        return feel_things(stage, situation, tools.pursuer) or nothing_to_do("no thing is left to feel all round")
 
     def bare(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none.

@@ -18,6 +18,7 @@ from planner.decision import Decision
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
+from planner.sights.things import rims_to_feel
 from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
 from planner.situation import Situation, neck_squares
 from planner.stages import Stage
@@ -95,6 +96,21 @@ def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision
     """
     halt = choose_halt(feeling_places(situation.cost_maps, feeling_scope(stage, situation)), situation.cost_maps)
     return _walk(halt, stage, situation, pursuer)
+
+
+def feel_things(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+    """Return the next command to feel things all round that may be several; None when none is left that can be reached.
+
+    Parameters
+    ----------
+    stage : of the task: the goals that shall hold now.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    pursuer : walks after the subgoal.
+    """
+    rims = rims_to_feel(situation.cost_maps, feeling_scope(stage, situation))
+    looks = [Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]
+    felt = pursuer.pursue(looks, stage, situation, lambda: "") if looks else None
+    return None if felt is None or felt.command is None else felt
 
 
 def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
