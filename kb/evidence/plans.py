@@ -87,9 +87,10 @@ def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: in
         found = _decision(beliefs.record, step)
         if found is not None and f"unmet({arguments[0]})" in (found[1].answer or ()):
             yield beliefs.prove(found[1], f"unmet({arguments[0]})", found[0])
+        yield from _refutations_of_goal(beliefs, arguments[0], step)
         for fact in beliefs.record.steps[step].facts:
-            if fact.startswith("refuted(") and _place(fact).startswith(f"{arguments[0]}_"):
-                yield from _stated(beliefs, fact, step)
+            if fact.startswith("serves(") and atom_parts(fact)[1][1] == arguments[0]:
+                yield from _stated(beliefs, f"plan({atom_parts(fact)[1][0]},", step)
     elif name == "refuted":
         yield from _stated(beliefs, f"given({arguments[1]},", step)
     elif name == "price":
@@ -111,6 +112,13 @@ def _goals_served(beliefs: PlanExplainer, number: str, step: int) -> Iterator[Re
             yield from _stated(beliefs, f"goal({atom_parts(fact)[1][1]})", step)
 
 
+def _refutations_of_goal(beliefs: PlanExplainer, goal: str, step: int) -> Iterator[Reason]:
+    """Yield the refutations of ways to places where a goal holds. goal : its name."""
+    for fact in beliefs.record.steps[step].facts:
+        if fact.startswith("refuted(") and _place(fact).startswith(f"{goal}_"):
+            yield from _stated(beliefs, fact, step)
+
+
 def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Iterator[Reason]:
     """Yield the refutations that concern what a step of the plan brings: of ways of it, and those that rest on it.
 
@@ -119,9 +127,7 @@ def _refutations_about(beliefs: PlanExplainer, planned: str, step: int) -> Itera
     facts = beliefs.record.steps[step].facts
     action, arguments = atom_parts(planned)
     if action in SETTLING_WORDS:
-        for fact in facts:
-            if fact.startswith("refuted(") and _place(fact).startswith(f"{arguments[0]}_"):
-                yield from _stated(beliefs, fact, step)
+        yield from _refutations_of_goal(beliefs, arguments[0], step)
         return
     thing = _brought(planned)
     rests_on = [atom_parts(fact)[1] for fact in facts if fact.startswith("given(")]

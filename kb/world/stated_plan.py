@@ -65,6 +65,19 @@ class PlanStep(NamedTuple):
         return "verified" if self.verified else "not asked" if self.commands is None else "hoped"
 
     @property
+    def line(self) -> str:
+        """The step with what is known of it, as a line of text; `>` marks the present step."""
+        through = f", through {' and '.join(self.doors)}" if self.doors else ""
+        takes = "" if self.commands is None else f"about {_commands(self.commands)}, "
+        known = "" if self.settles else f"; {takes}{self.certainty}"
+        return f"{'>' if self.number == 0 else ' '} {self.number} {self.step}: {self.words}{through}{known}"
+
+    @property
+    def settles(self) -> bool:
+        """Whether it settles something that is open, and brings nothing anywhere."""
+        return self.step.partition("(")[0] in SETTLING_WORDS
+
+    @property
     def words(self) -> str:
         """The step in words."""
         name, _, rest = self.step.partition("(")
@@ -102,8 +115,8 @@ class PlanRefutation(NamedTuple):
 class StatedPlan:
     """The task plan of a step: what the robot means to do, from its present step on; or that there is none.
 
-    While no plan attains all goals there are no steps and no cost: the goals tell which are not attained, and the
-    refutations why.
+    While no plan attains all goals there is no cost: the goals tell which are not attained, and the refutations why;
+    steps are there where something is open that they settle.
 
     Attributes
     ----------
@@ -125,8 +138,8 @@ class StatedPlan:
 
     @property
     def found(self) -> bool:
-        """Whether there is a plan that the robot follows."""
-        return self.cost is not None or bool(self.steps)
+        """Whether there is a plan that attains all goals."""
+        return self.cost is not None or (bool(self.steps) and not self.unmet)
 
     @property
     def gap(self) -> int | None:
@@ -152,14 +165,11 @@ class StatedPlan:
         for goal in self.goals:
             means = f": {' and '.join(goal.means)}" if goal.means else ""
             yield f"goal {goal.name}{means}{'' if goal.attained else '; not attained'}"
-        for step in self.steps:
-            through = f", through {' and '.join(step.doors)}" if step.doors else ""
-            takes = "" if step.commands is None else f"about {_commands(step.commands)}, "
-            yield f"{'>' if step.number == 0 else ' '} {step.number} {step.step}: {step.words}{through}; {takes}" + (
-                step.certainty
-            )
         if not self.steps:
             yield "no step is left" if self.found else "no plan that was found attains all goals"
+        elif not self.found:
+            yield "no plan that was found attains all goals yet; what is open is settled first"
+        yield from (step.line for step in self.steps)
         if self.cost_words:
             yield f"cost: {self.cost_words}" if self.cost else self.cost_words
         yield from (f"refuted: {refutation.words}" for refutation in self.refutations)

@@ -84,8 +84,11 @@ class Decider:
 
     @property
     def plan(self) -> TaskPlan | None:
-        """The task plan under way, from its present errand on; None while there is none."""
-        return self._activities.errands.plan
+        """The task plan under way, from its present step on; None while there is none.
+
+        Where something is open it is the plan that settles that; goals that depend on it are unmet in it.
+        """
+        return self._activities.errands.plan or self._activities.errands.settling
 
     @property
     def attempt(self) -> TaskPlan | None:

@@ -46,6 +46,11 @@ class ErrandRunner:
         return self._intention.plan
 
     @property
+    def settling(self) -> TaskPlan | None:
+        """The plan that settles what is open, from its present step on; None where nothing is open."""
+        return self._intention.settling
+
+    @property
     def meanings(self) -> Mapping[str, str]:
         """The object that each parameter of the task means in the plan under way, where it chose among several."""
         return self._intention.meanings

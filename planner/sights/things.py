@@ -1,11 +1,10 @@
 """Things that may be several that touch, and the floor from which all of their rims are felt."""
 
 from kb.world.model import Node, WorldModel
-from planner.goals.placement import POSSIBLE_OBJECT
 from planner.screen.projection import CostMaps, dilate
 from planner.sights.frontiers import wall_touch_viewpoint
 from planner.sights.viewpoints import Viewpoint
-from planner.sights.walls import FeelingScope
+from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
 
 def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
@@ -20,7 +19,7 @@ def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingSco
     cost_maps : of that model.
     scope : what matters for the task.
     """
-    unmoved = [node for node in model.objects if not node.moved and node.confidence >= POSSIBLE_OBJECT]
+    unmoved = [node for node in model.objects if not node.moved and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.parting or scope.things:
         return unmoved
     masks = {node.name: model.mask(node.patch) for node in unmoved}

@@ -122,9 +122,9 @@ class Intention:
 
     @property
     def plan(self) -> TaskPlan | None:
-        """The plan under way, from its present step on; None for none."""
+        """The plan under way, from its present errand on; None for none."""
         if self._kept is None:
-            return self._settling
+            return None
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
 
     @property
@@ -143,7 +143,7 @@ class Intention:
     ) -> Situation:
         """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters.
 
-        While it is open what a goal means or where it holds there is none but that of `settle`.
+        There is none while it is open what a goal means or where it holds (`settle`).
 
         Parameters
         ----------
@@ -169,6 +169,11 @@ class Intention:
             situation = with_meanings(situation, meant)
             self._problem = problem_of(stage, situation, place, origin, self._where)
         return situation
+
+    @property
+    def settling(self) -> TaskPlan | None:
+        """The plan that settles what is open, from its present step on; None where nothing is open."""
+        return self._settling
 
     def settle(
         self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, given: Sequence[str]

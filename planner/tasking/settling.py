@@ -19,8 +19,8 @@ def plan_that_settles(
 ) -> tuple[TaskPlan, tuple[str, ...]]:
     """Return the plan of the encoding where something is open, and the steps that settle something.
 
-    Geometry is not asked about it: what is settled changes all that follows. The plan leaves goals unmet where no step
-    is left that settles what they wait for; where there are such steps nonetheless, users' rules forbid them.
+    Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
+    unmet in it. Where no step settles anything though some are left, users' rules forbid these.
 
     Parameters
     ----------
@@ -40,7 +40,9 @@ def plan_that_settles(
     goals = () if problem is None else problem.goals
     about = [f"{goal.name}: {goal.words}" for goal in goals]
     found = propose((f"horizon({horizon})", *facts), situation.rules, about)
-    plan = TaskPlan(found.errands, found.unmet, proved=found.proved, rounds=1, goals=goals, refutations=refuted)
+    hoped = [errand.goal for errand in found.errands if errand.settles and errand.goal]
+    unmet = tuple(dict.fromkeys([*hoped, *found.unmet]))
+    plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=goals, refutations=refuted)
     return plan, found.left
 
 

@@ -174,8 +174,9 @@ class TaskPlan:
                 yield f"verified({number})"
 
     def _search_facts(self) -> Iterator[str]:
-        """Yield what the plan costs, how the search ended, and what was refuted on its way."""
-        yield f"price({self.cost},{self.least},{'proved' if self.proved else 'found'})"
+        """Yield what the plan costs if it attains all goals, how the search ended, and what was refuted on its way."""
+        if not self.unmet:
+            yield f"price({self.cost},{self.least},{'proved' if self.proved else 'found'})"
         yield from self._refutation_facts()
 
     def _refutation_facts(self) -> Iterator[str]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
+from geometry.kernels.arrays import Bools
 from kb.body import Body
 from kb.mapping.patch import Patch
 from kb.task.task import Task
@@ -59,10 +60,17 @@ def known_situation(rows: list[str], moved: bool = False, movable: int = 50, hel
 
 
 def all_felt(model: WorldModel) -> WorldModel:
-    """Return a world model in which every wall that can be felt was felt to be wall."""
-    rows, columns = np.nonzero(unfelt_walls(model))
-    squares = zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True)
-    return replace(model, felt={**model.felt, **dict.fromkeys(squares, "b")})
+    """Return a world model in which every wall that can be felt was felt to be wall, and every object all round."""
+    felt = dict.fromkeys(_squares(unfelt_walls(model), model), "b")
+    for node in model.objects:
+        felt |= dict.fromkeys(_squares(model.mask(node.patch), model), node.colour or "g")
+    return replace(model, felt={**felt, **model.felt})
+
+
+def _squares(mask: Bools, model: WorldModel) -> list[tuple[int, int]]:
+    """Return the squares (x, y) of a mask on the arrays of the view, map frame."""
+    rows, columns = np.nonzero(mask)
+    return list(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
 
 
 def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:

@@ -25,8 +25,8 @@ def add(parts: Any) -> None:
         description="Show the task plan: its steps with their cost and what geometry says of each, the lower bound, "
         "and what was refuted.",
         epilog="Of a scenario, without --at, the robot runs until it has a plan or a verdict; of an episode the last "
-        "plan that has steps left is shown. Where there is no plan, the goals that none attains and what was refuted "
-        "are shown as far as they are known, and the exit code is 1.",
+        "plan that has steps left is shown. Where no plan attains all goals, those that none attains, what was refuted "
+        "and the steps that settle what is open are shown as far as they are known, and the exit code is 1.",
     )
     part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument("--at", type=step_number, metavar="STEP", help="the step whose plan is shown (0: on waking)")
@@ -52,7 +52,7 @@ def execute(options: argparse.Namespace) -> int:
     elif plan is not None:
         print(escape_controls("\n".join([f"step {step}", *plan.lines()])))
     if plan is None or not plan.found:
-        print(_absence(story, options.at), file=sys.stderr)
+        print(_absence(story, options.at, plan), file=sys.stderr)
         return exits.NOT_REACHED
     return exits.SUCCESS
 
@@ -81,7 +81,9 @@ def plan_of(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None
 
 
 def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None":
-    """Return a plan with steps, and let the story be at its step: the first one of a run, the last one of an episode.
+    """Return a plan for all goals that has steps: the first one of a run, the last one of an episode.
+
+    The story is at its step then.
 
     When no step has one, the story is at its end; what that says of unmet goals is returned, or None.
     """
@@ -91,18 +93,22 @@ def _found(story: "LiveStory | RecordedStory", name: str) -> "StatedPlan | None"
         last = len(story.lines) - 1
         for step in range(last, -1, -1):
             story.go_to(step)
-            if (plan := plan_of(story, name)) is not None and plan.steps:
+            if (plan := plan_of(story, name)) is not None and plan.found and plan.steps:
                 return plan
         story.go_to(last)
         return plan_of(story, name)
-    while ((plan := plan_of(story, name)) is None or not plan.steps) and story.advance():
+    while ((plan := plan_of(story, name)) is None or not (plan.found and plan.steps)) and story.advance():
         pass
     return plan
 
 
-def _absence(story: "LiveStory | RecordedStory", asked: int | None) -> str:
-    """Return in words that there is no plan, and why where that is known; asked : the step that was asked for."""
+def _absence(story: "LiveStory | RecordedStory", asked: int | None, plan: "StatedPlan | None") -> str:
+    """Return in words that there is no plan, and why where that is known.
+
+    asked : the step that was asked for. plan : what is stated of a plan there.
+    """
     what = "no step has a plan" if asked is None else f"step {story.at} has no plan"
+    what += " that attains all goals" if plan is not None and plan.steps else ""
     if story.result is not None:
         return f"utak plan: {what}; {story.result['verdict']}: {escape_controls(str(story.result['reason']), False)}"
     return f"utak plan: {what}"

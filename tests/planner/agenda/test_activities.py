@@ -37,6 +37,8 @@ def test_before_a_verdict_walls_are_felt_and_the_record_says_what_was_refused_be
         "came_to(go,impossible)",
         "planned(make_way(robot))",
         "came_to(make_way(robot),idle)",
+        "planned(try(robot))",
+        "came_to(try(robot),idle)",
         "planned(feel(robot))",
     ]
 

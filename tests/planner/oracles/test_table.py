@@ -11,7 +11,18 @@ from planner.tasking.search import TASK_ENCODING
 ROOT = Path(__file__).resolve().parents[3]
 # Inputs of the encoding that do not come from geometry, but from the task and from what is believed; or questions.
 FROM_ELSEWHERE = {"horizon/1", "thing/1", "goal/1", "fulfils/3", "rank/2", "bound/2", "shape/3", "colour/3", "asked/1"}
-FROM_ELSEWHERE |= {"wish/2", "size/2", "may_mean/2", "meant_before/2", "about/2", "order/2"}
+FROM_ELSEWHERE |= {
+    "wish/2",
+    "size/2",
+    "may_mean/2",
+    "meant_before/2",
+    "about/2",
+    "order/2",
+    "missing/1",
+    "unclear/1",
+    "waits/1",
+}
+FROM_ELSEWHERE |= {"stuck/2", "came_to/2", "holds/1"}
 
 
 def test_each_input_of_the_encoding_comes_from_one_place() -> None:

@@ -82,11 +82,28 @@ def test_the_plan_of_a_scenario_is_the_first_one_of_its_run(run: Path, capsys: p
     assert printed(capsys, "plan", str(run / "plug")) == printed(capsys, "plan", str(run / "ep.jsonl"), "--at", "1")
 
 
-def test_a_step_without_a_plan_is_said_to_have_none(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_before_the_object_is_found_the_plan_is_to_find_it(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", str(run / "ep.jsonl"), "--at", "0", "--json"]) == 1
     said = capsys.readouterr()
+    assert "step 0 has no plan that attains all goals" in said.err
+    found = json.loads(said.out)
+    assert accepts(NAMED_FORMS["plan"], found)
+    assert (found["plan"]["found"], found["plan"]["cost"]) == (False, None)
+    assert [step["step"] for step in found["plan"]["steps"]] == ["find(g1)", "arrive(g2_r1)"]
+    assert [goal["attained"] for goal in found["plan"]["goals"]] == [False, True]
+    questions = questions_of_episode(read_episode(run / "ep.jsonl"))
+    assert "occurs(find(g1),0)" in {reason.claim for reason in questions.why("plan(0, S)", 0).walk()}
+
+
+def test_a_step_without_a_plan_is_said_to_have_none(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, text in (("world.txt", WORLD), ("start.lp", START), ("goal.lp", "circled(utak, x).")):
+        (tmp_path / name).write_text(text)
+    assert main(["plan", str(tmp_path), "--at", "0", "--json"]) == 1
+    said = capsys.readouterr()
     assert json.loads(said.out) == {"step": 0, "plan": None}
-    assert "step 0 has no plan" in said.err
+    assert "step 0 has no plan\n" in said.err
     assert main(["plan", str(run / "ep.jsonl"), "--at", "99"]) == 65
 
 
@@ -155,7 +172,7 @@ def test_why_not_knows_what_a_plan_is(run: Path) -> None:
     for fact in ("goal(g7)", "passes(0,d9)", "refuted(arrive(here),9)"):
         assert questions.why_not(fact, 1).because.startswith("the task plan does not state it")
     assert questions.why_not("unmet(g1)", 1).because == "the task plan does not state it"
-    assert questions.why_not("unmet(g1)", 0).because == "there is no task plan at this step"
+    assert "plan(0,find(g1))" in {reason.claim for reason in questions.why("unmet(g1)", 0).walk()}
     cost = questions.why("price(K, L, E)", 1).because
     assert cost.startswith("about 10 commands for the whole plan; lower bound by the estimates of the search ")
     assert cost.endswith("; the search ended with it")
@@ -204,7 +221,7 @@ def test_the_prompt_tells_the_plan_that_the_command_tells(
 
 def test_a_run_in_python_shows_its_plan() -> None:
     now = utak.Run(utak.Scenario.from_text(world=WORLD, start=START, goal=GOAL))
-    assert now.plan.task is None
+    assert now.plan.task is not None and not now.plan.task.found
     now.step()
     plan = now.plan
     assert plan.task is not None
@@ -227,7 +244,7 @@ def test_where_no_plan_was_found_the_unmet_goal_and_what_was_refuted_are_told(
     assert main(["run", str(tmp_path), "--max-steps", "3", "--log", str(log)]) == 75
     found = json.loads(printed(capsys, "plan", str(log), "--json", code=1))
     assert accepts(NAMED_FORMS["plan"], found)
-    assert (found["plan"]["found"], found["plan"]["steps"]) == (False, [])
+    assert found["plan"]["found"] is False and not any("carry" in one["step"] for one in found["plan"]["steps"])
     assert [goal["name"] for goal in found["plan"]["goals"] if not goal["attained"]] == ["g1"]
     assert {one["step"] for one in found["plan"]["refuted"]} == {"carry(o1,g1_r2)"}
     questions = questions_of_episode(read_episode(log))
