@@ -1,7 +1,6 @@
 """The agenda: which activity comes next for the present stage of a task, and with which verdict the robot gives up.
 
 decider       stages of the task, one after the other
-stage_turn    what is decided in one turn: the stage, what is believed, what parameters mean
 activities    what the robot does next for a stage, and what came of that
 choice        planner/asp/agenda.lp asked: the next activity, or the end
 own_goals     where the robot itself shall be

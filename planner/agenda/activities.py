@@ -7,19 +7,17 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from kb.body import Grasp, Release
-from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from planner.agenda.choice import Activity, Agenda, StageEnd
 from planner.agenda.own_goals import OwnGoals
-from planner.agenda.stage_turn import CONSTRAINTS, StageTurn
 from planner.carrying.open_facts import open_fact_against
 from planner.constraints import avoidances
 from planner.deciding.clearing import ObstacleClearer
 from planner.deciding.errands import ErrandRunner
 from planner.deciding.feeling import feeling_scope
 from planner.deciding.keeping import ConstraintKeeper
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import CONSTRAINTS, StageTurn
 from planner.deciding.transport import Transporter
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.robot_goals import destination
@@ -37,18 +35,17 @@ class Activities:
     keeper : tells whether constraints were kept.
     """
 
-    def __init__(self, task: Task, tools: Tools, pull: bool) -> None:
+    def __init__(self, task: Task, pull: bool) -> None:
         """Make activities of which none was begun.
 
         Parameters
         ----------
         task : its constraints are looked at.
-        tools : executor, pursuer and verifier, with which commands are worked out.
         pull : whether a held object may be pulled.
         """
         where = PerModel(destination)
-        self.errands, self.keeper = ErrandRunner(where, pull), ConstraintKeeper(task)
-        self._tools, self._transporter, self._clearer = tools, Transporter(), ObstacleClearer()
+        self._transporter, self._clearer = Transporter(), ObstacleClearer()
+        self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
 
     def decide(self, turn: StageTurn) -> Decision:
@@ -62,9 +59,11 @@ class Activities:
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
-            if found.kind == "settle" and (step := self._step_that_settles(turn, agenda)):
-                agenda.plan(step)
-                continue
+            if found.kind == "settle":
+                step = self.errands.settle(turn, [*_unknown(turn), *agenda.results])
+                if step:
+                    agenda.plan(step)
+                    continue
             decision = self._allowed(self._do(found, turn, last), turn)
             if decision.command is not None:
                 agenda.record()
@@ -98,27 +97,27 @@ class Activities:
 
         activity : what is done. turn : the stage and what is believed. last : the last verdict of an activity.
         """
-        stage, situation, tools, clearer = turn.stage, turn.situation, self._tools, self._clearer
-        ruled = self.errands.within_rules(situation)
+        stage, situation, clearer = turn.stage, turn.situation, self._clearer
+        ruled = turn.within(self.errands.within_rules(situation))
         goals = turn.goals_of(activity.subject)
         doing: Mapping[str, Callable[[], Decision]] = {
             "release": lambda: _put_down(situation),
             "keep": lambda: self.keeper.broken_at_start(situation),
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
-            "errand": lambda: self.errands.next(stage, situation, turn.reconciled, self._transporter, tools),
-            "settle": lambda: self._nothing_settles(turn),
-            "find": lambda: self._pursued(goals[0], turn, ruled),
-            "pursue": lambda: self._pursued(goals[0], turn, ruled),
-            "go": lambda: self._own.go(replace(turn, situation=ruled), self.errands, tools),
-            "wish": lambda: self._own.go_for_wish(replace(turn, situation=ruled), self.errands, tools),
-            "look": lambda: self._own.look(turn, self._transporter, tools),
-            "pull": lambda: clearer.pull(goals, stage, ruled, tools),
-            "make_way": lambda: clearer.clear(goals, stage, ruled, tools),
-            "try": lambda: clearer.feel_things(goals, stage, ruled, tools),
-            "feel": lambda: clearer.feel(goals, stage, ruled, tools),
-            "bare": lambda: clearer.bare(goals, stage, ruled, tools),
-            "blame": lambda: _added(last, clearer.blame(ruled)),
+            "errand": lambda: self.errands.next(turn),
+            "settle": lambda: self._nothing_settles(),
+            "find": lambda: self._transporter.towards(goals[0], ruled),
+            "pursue": lambda: self._transporter.towards(goals[0], ruled),
+            "go": lambda: self._own.go(ruled, self.errands.intention),
+            "wish": lambda: self._own.go_for_wish(ruled, self.errands.intention),
+            "look": lambda: self._own.look(turn, self._transporter),
+            "pull": lambda: clearer.pull(goals, ruled),
+            "make_way": lambda: clearer.clear(goals, ruled),
+            "try": lambda: clearer.feel_things(goals, ruled),
+            "feel": lambda: clearer.feel(goals, ruled),
+            "bare": lambda: clearer.bare(goals, ruled),
+            "blame": lambda: _added(last, clearer.blame(ruled.situation)),
             "doubt": lambda: open_fact_against(
                 last, situation, ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(stage, situation)
             ),
@@ -128,24 +127,13 @@ class Activities:
     def _resume(self, begun: str, turn: StageTurn) -> Decision:
         """Return the next command of what was begun in an earlier decision: make_way or feel."""
         go_on = {"make_way": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
-        return go_on(turn.stage, turn.situation, self._tools)
+        return go_on(turn)
 
-    def _step_that_settles(self, turn: StageTurn, agenda: Agenda) -> str:
-        """Return the step with which the task plan begins where something is open; "" when nothing settles it."""
-        given = [*_unknown(turn), *agenda.results]
-        return self.errands.settle(turn.stage, turn.situation, self._transporter, given)
-
-    def _nothing_settles(self, turn: StageTurn) -> Decision:
+    def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
         if not self.errands.forbidden:
             return nothing_to_do("no step of the task plan settles what is open")
         return Decision(None, "users' rules forbid steps of the task plan that settle it", TaskVerdict.LIMIT)
-
-    def _pursued(self, goal: Fact, turn: StageTurn, situation: Situation) -> Decision:
-        """Return what it comes to that the object of a goal is found, examined and carried, one after the other."""
-        stage, transporter, tools = turn.stage, self._transporter, self._tools
-        decision = transporter.towards(goal, stage, situation, turn.reconciled, tools)
-        return transporter.freed(decision, goal, stage, situation, tools)
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""

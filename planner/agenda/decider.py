@@ -18,10 +18,9 @@ from kb.world.corners import Corner, corners
 from kb.world.model import WorldModel
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.agenda.activities import Activities
-from planner.agenda.stage_turn import StageTurn
 from planner.carrying.plan_executor import PlanExecutor
 from planner.deciding.pursuit import Pursuer
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import Verifier
 from planner.decision import Decision, TaskVerdict
 from planner.screen.projection import CostMaps, costs_to_objects
@@ -78,7 +77,9 @@ class Decider:
         self.corners: Mapping[str, Corner] = {}
         self.pursuer = pursuer or Pursuer(paths)
         self.executor = executor or PlanExecutor(pull)
-        self._activities = Activities(task, Tools(self.executor, self.pursuer, Verifier()), pull)
+        self._verifier = Verifier()
+        self._activities = Activities(task, pull)
+        self._intention = self._activities.errands.intention
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
@@ -88,12 +89,12 @@ class Decider:
 
         Where something is open it is the plan that settles that; goals that depend on it are unmet in it.
         """
-        return self._activities.errands.plan or self._activities.errands.settling
+        return self._intention.plan or self._intention.settling
 
     @property
     def attempt(self) -> TaskPlan | None:
         """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
-        return self._activities.errands.attempt
+        return self._intention.attempt
 
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
@@ -137,8 +138,8 @@ class Decider:
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
         situation = replace(situation, lenient=self._lenient, as_well=as_well_by_parameter(reconciled))
         for stage in self.stages[self.attained :]:
-            decision = self._activities.decide(StageTurn(stage, situation, reconciled, track))
-            meant = self._activities.errands.meanings
+            decision = self._activities.decide(self._turn(stage, situation, reconciled, track))
+            meant = self._intention.meanings
             if any(self.bound.get(parameter) != name for parameter, name in meant.items()):
                 self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
                 self._reconcile(cost_maps)
@@ -150,15 +151,19 @@ class Decider:
             if decision.verdict != TaskVerdict.DONE:
                 return self._activities.keeper.guarded(decision, situation)
             self.attained += 1
-        ended = self._activities.decide(StageTurn(Stage(()), situation, reconciled, track))
+        ended = self._activities.decide(self._turn(Stage(()), situation, reconciled, track))
         return replace(ended, why=self._done_in_words()) if ended.verdict == TaskVerdict.DONE else ended
+
+    def _turn(self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]) -> StageTurn:
+        """Return what a decision for a stage is worked out with."""
+        return StageTurn(stage, situation, reconciled, track, self.executor, self.pursuer, self._verifier)
 
     def _done_in_words(self) -> str:
         """Return that all stages hold, and which wishes do, in words."""
         goals = [str(goal) for stage in self.stages for goal in stage.goals]
         why = f"{' and '.join(goals) or 'all that the task asks for'} {'hold' if len(goals) > 1 else 'holds'}"
         wished = [str(wish) for wish, _ in self.stages[-1].wishes] if self.stages else []
-        hold = self._activities.errands.wishes_that_hold
+        hold = self._intention.wishes_that_hold()
         return why + "".join(f"; the wish {wish} {'holds' if wish in hold else 'is left'}" for wish in wished)
 
     def is_done_without_wishes(self, model: WorldModel, track: Sequence[XY]) -> bool:
@@ -257,7 +262,7 @@ class Decider:
         carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT})
         known = costs_to_objects(cost_maps)
         kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
-        planned, before, given_up = self._activities.errands.meanings, self.bound, self._given_up
+        planned, before, given_up = self._intention.meanings, self.bound, self._given_up
         model, rules = cost_maps.model, self.rules
         reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up)
         self.bound = reconciled.binding

@@ -8,11 +8,9 @@ import numpy as np
 from kb.body import Release
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from planner.agenda.stage_turn import StageTurn
 from planner.carrying.open_facts import verdict_if_not_found
-from planner.deciding.errands import ErrandRunner
 from planner.deciding.search import subgoals_towards
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.deciding.transport import Transporter
 from planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
 from planner.decision import Decision, TaskVerdict, done, nothing_to_do
@@ -21,10 +19,10 @@ from planner.goals.robot_goals import Destination, robot_stands_on, unknown_dest
 from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.screen.moves import next_move
 from planner.sights.viewpoints import TO_REACH
-from planner.situation import Situation
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS, Stage
+from planner.stages import ORIGIN_GOALS
 from planner.subgoal_kind import SubgoalKind
+from planner.tasking.intention import Intention
 from planner.tasking.setting import DestinationFunction
 
 
@@ -40,7 +38,7 @@ class OwnGoals:
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
 
-    def go(self, turn: StageTurn, errands: ErrandRunner, tools: Tools) -> Decision:
+    def go(self, turn: StageTurn, intention: Intention) -> Decision:
         """Return the next command towards where the robot shall be, or the verdict; done when it is there.
 
         It goes through the doors of the task plan; by any way where these fail.
@@ -48,37 +46,36 @@ class OwnGoals:
         Parameters
         ----------
         turn : the stage, which has a goal for the robot itself, and what is believed.
-        errands : knows the doors of the plan.
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        intention : knows the doors of the plan.
         """
-        along = errands.along_plan(turn.situation)
-        decision = self._go(replace(turn, situation=along), tools)
+        along = intention.along_plan(turn.situation)
+        decision = self._go(turn.within(along))
         if decision.verdict in (None, TaskVerdict.DONE) or along.closed == turn.situation.closed:
             return decision
-        return self._go(turn, tools)
+        return self._go(turn)
 
-    def go_for_wish(self, turn: StageTurn, errands: ErrandRunner, tools: Tools) -> Decision:
+    def go_for_wish(self, turn: StageTurn, intention: Intention) -> Decision:
         """Return the next command for a wish about the robot itself that the plan has; nothing for none.
 
         Never a verdict: a wish that cannot be attained is dropped.
 
         Parameters
         ----------
-        turn, errands, tools : as for `go`; the goals of the stage hold.
+        turn, intention : as for `go`; the goals of the stage hold.
         """
-        found = errands.own_wish
+        found = intention.own_wish()
         if found is None:
             return nothing_to_do("the task wishes nothing more of the robot itself")
         errand, wish = found
         goals = tuple(goal for goal in turn.stage.goals if goal.name not in TRACK_GOALS)
-        decision = self._go(replace(turn, stage=replace(turn.stage, goals=(*goals, wish))), tools)
+        decision = self._go(replace(turn, stage=replace(turn.stage, goals=(*goals, wish))))
         if decision.command is not None:
             return decision
         if decision.verdict != TaskVerdict.DONE:
-            errands.drop(errand, turn.situation)
+            intention.failed(errand, turn.situation)
         return nothing_to_do(decision.why)
 
-    def look(self, turn: StageTurn, transporter: Transporter, tools: Tools) -> Decision:
+    def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
         """Return a look at what makes it doubtful that the goals of a stage hold, or the verdict; nothing for no doubt.
 
         First comes what the last impression contradicts, then what the origin of a thing depends on (doors, walls).
@@ -87,7 +84,6 @@ class OwnGoals:
         ----------
         turn : the stage, and what is believed.
         transporter : knows where things lay at first.
-        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         situation, model = turn.situation, turn.situation.model
         doubt = look_at_contradiction(situation)
@@ -97,9 +93,9 @@ class OwnGoals:
             began = model.frame.origin if node is None else transporter.origin_of(x, node, situation)
             covered = robot_square(model) if node is None else model.mask(node.patch)
             doubt = doubt or check_elsewhere(goal.name, began, covered, situation)
-        return tools.pursuer.pursue_look(doubt, turn.stage, situation) or nothing_to_do("nothing is left to look at")
+        return turn.look(doubt) or nothing_to_do("nothing is left to look at")
 
-    def _go(self, turn: StageTurn, tools: Tools) -> Decision:
+    def _go(self, turn: StageTurn) -> Decision:
         """Return the next command towards where the robot itself shall be, or the verdict; done when it is there."""
         stage, situation, reconciled = turn.stage, turn.situation, turn.reconciled
         goals = stage.own
@@ -109,11 +105,11 @@ class OwnGoals:
         if goals[0].name in TRACK_GOALS:
             node = situation.object_of(str(goals[0].args[1]))
             if node is not None:
-                return self._go_round(node.name, turn, tools)
+                return self._go_round(node.name, turn)
             where = [self._where(goals[0], situation)]
         else:
             where = [self._where(goal, situation) for goal in goals]
-            halt = self._halt(where, turn, tools)
+            halt = self._halt(where, turn)
             if halt is not None:
                 return halt
         if opposite := opposite_corners_reason(goals, situation):
@@ -126,19 +122,19 @@ class OwnGoals:
 
         def ask() -> Decision:
             """Return the next command there, or to look for another way where doors are shut; else the verdict."""
-            found = tools.pursuer.pursue(subgoals, stage, situation, lambda: missing, verdict)
+            found = turn.seek(subgoals, lambda: missing, verdict)
             if found.command is not None or not situation.shut(ROBOT):
                 return found
             within = situation.within_shut_doors()
             unknown = unknown_destination("every way that is known leads through a forbidden door")
             others = subgoals_towards([unknown], within, reconciled, TO_REACH)
-            other = tools.pursuer.pursue(others, stage, within, lambda: unknown.missing)
+            other = turn.within(within).seek(others, lambda: unknown.missing)
             return found if other.command is None else other
 
-        decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
+        decision = turn.feel_before_verdict(ask)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
 
-    def _halt(self, where: Sequence[Destination], turn: StageTurn, tools: Tools) -> Decision | None:
+    def _halt(self, where: Sequence[Destination], turn: StageTurn) -> Decision | None:
         """Return what is done where the goals hold or are doubtful: looks, presses, or done; None for a way to go.
 
         where : the squares on which each goal of the stage for the robot holds, in the order of these goals.
@@ -146,7 +142,7 @@ class OwnGoals:
         stage, situation = turn.stage, turn.situation
         there = all(not d.missing and robot_stands_on(d.squares, situation.model) for d in where)
         there = there or self._into_corner.is_pressing(stage, situation)
-        look = _make_sure(stage.own, there, stage, situation, tools)
+        look = _make_sure(stage.own, there, turn)
         if look is not None or not there:
             return look
         nearer = self._into_corner.next(stage, situation)
@@ -154,7 +150,7 @@ class OwnGoals:
             return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
         return done(f"{stage} holds for the robot")
 
-    def _go_round(self, name: str, turn: StageTurn, tools: Tools) -> Decision:
+    def _go_round(self, name: str, turn: StageTurn) -> Decision:
         """Return the next command on the way round an object; done when the robot has gone round it and is back.
 
         The verdict `impossible` when no way leads round it. The sense of rotation, once begun, is kept while a route
@@ -164,7 +160,6 @@ class OwnGoals:
         ----------
         name : of the object; the model knows it: else AssertionError.
         turn : the stage, and what is believed; the first point of the track is where the round began.
-        tools : executor, pursuer and verifier, with which the command is worked out.
         """
         stage, situation, track = turn.stage, turn.situation, turn.track
         model, cost_maps = situation.model, situation.cost_maps
@@ -175,34 +170,28 @@ class OwnGoals:
             return done(f"{stage} holds")
         offered = encircling_routes(cost_maps, track, node)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
-        route = tools.pursuer.choose_route(begun, situation)
+        route = turn.pursuer.choose_route(begun, situation)
         if route is None:
             why = f"{stage} cannot be attained: no way leads round {name}"
             return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         self._turn = next(turn for turn, other in offered.items() if other is route)
-        tools.pursuer.keep_route(route, model)
+        turn.pursuer.keep_route(route, model)
         x, y = encircled_point(node)
         about = (x - model.view.west, y - model.view.south)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
 
 
-def _make_sure(goals: Sequence[Fact], there: bool, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:
     """Return a look at the objects of some goals before these are believed to hold; None when all are settled.
 
     The next command of it, or the verdict `limit` when no way leads to where it is looked from. Objects are asked about
     in the order of the goals; the first look that is left is returned.
 
-    Parameters
-    ----------
-    goals : of the stage, for the robot itself.
-    there : whether the goals seem to hold.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : executor, pursuer and verifier, with which the look is worked out.
+    goals : of the stage, for the robot itself. there : whether they seem to hold.
     """
+    verifier, situation = turn.verifier, turn.situation
     nodes = [situation.object_of(str(goal.args[1])) for goal in goals]
-    doubted = [n for n in nodes if n is not None and (tools.verifier.is_unsettled(n) or (there and n.vague))]
-    subgoals = (tools.verifier.next_look(node, situation) for node in doubted)
-    looks = (tools.pursuer.pursue_look(subgoal, stage, situation) for subgoal in subgoals)
+    doubted = [n for n in nodes if n is not None and (verifier.is_unsettled(n) or (there and n.vague))]
+    looks = (turn.look(verifier.next_look(node, situation)) for node in doubted)
     return next((look for look in looks if look is not None), None)

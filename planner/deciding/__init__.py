@@ -10,7 +10,7 @@ pursuit       subgoals of the robot itself: the best one, the route there, the n
 keeping       whether constraints on the way were kept, by the tracks of the robot and of the things
 search        subgoals while something is missing
 verification  goal verification and active perception: looks that make sure
-tools         the stateful parts that one decision uses
+stage_turn    what one decision is worked out with: the stage, what is believed, and the tools
 
-Public names: Transporter, ErrandRunner, ObstacleClearer, Pursuer, Verifier, Tools, subgoals_towards.
+Public names: Transporter, ErrandRunner, ObstacleClearer, Pursuer, Verifier, StageTurn, subgoals_towards.
 """

@@ -3,20 +3,16 @@
 from geometry.manipulation.goals import End
 from kb.world.model import Node
 from planner.advice import Act
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import look_for_more
 from planner.decision import Decision
 from planner.goals.placement import CERTAIN_OBJECT
 from planner.navigation.subgoals import Subgoal
 from planner.sights.frontiers import touch_viewpoint
-from planner.situation import Situation
-from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
 
-def bring_to_end(
-    node: Node, name: str, end: End, stage: Stage, situation: Situation, tools: Tools, purpose: str = ""
-) -> Decision | None:
+def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str = "") -> Decision | None:
     """Return the next command to bring an object to an end, or to find out what it is; None when there is none.
 
     Parameters
@@ -24,28 +20,25 @@ def bring_to_end(
     node : the object.
     name : the name of the end.
     end : where it shall lie, in squares, view frame.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : executor, pursuer and verifier, with which the command is worked out.
+    turn : the stage, what is believed, and the tools.
     purpose : words before the reason of a command for the object itself; "" for none.
     """
     if node.confidence < CERTAIN_OBJECT:
-        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(situation.cost_maps, node))
-        look = tools.pursuer.pursue_look(touch, stage, situation)
-        return None if look is None or look.command is None else look
+        touch = Subgoal(SubgoalKind.INSPECT, *touch_viewpoint(turn.situation.cost_maps, node))
+        return turn.look_if_reached(touch)
     if node.polygon is None or node.vague:
-        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
-        if look is not None and look.command is not None:
+        look = turn.look_if_reached(turn.verifier.next_look(node, turn.situation))
+        if look is not None:
             return look
     if node.polygon is None:
         return None
-    more = tools.pursuer.pursue_look(look_for_more(node, situation), stage, situation)
-    if more is not None and more.command is not None:
+    more = turn.look_if_reached(look_for_more(node, turn.situation))
+    if more is not None:
         return more
-    tools.executor.drop_other_plan(node.name)
-    advice = tools.executor.advise(node, {name: end}, situation)
+    turn.executor.drop_other_plan(node.name)
+    advice = turn.executor.advise(node, {name: end}, turn.situation)
     if not isinstance(advice, Act):
-        return tools.pursuer.prepare(advice, stage, situation)
-    if tools.pursuer.closes_loop(situation.model, advice.command):
+        return turn.prepare(advice)
+    if turn.pursuer.closes_loop(turn.situation.model, advice.command):
         return None
-    return Decision(advice.command, f"{purpose}{advice.why}; {stage}")
+    return Decision(advice.command, f"{purpose}{advice.why}; {turn.stage}")

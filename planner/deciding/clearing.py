@@ -11,12 +11,11 @@ from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end
 from planner.deciding.feeling import feel_rim, feel_things, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.embedded import Supposition, suppose
 from planner.goals.placement import POSSIBLE_OBJECT
 from planner.situation import Situation
-from planner.stages import Stage
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
 
@@ -43,102 +42,96 @@ class ObstacleClearer:
         feeling = ("feel",) if self._feeling and situation.model.held is None else ()
         return (*feeling, "make_way") if self._moving else feeling
 
-    def clear_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def clear_on(self, turn: StageTurn) -> Decision:
         """Return the next command for the obstacle that is being moved; nothing when it blocks no longer.
 
         Nothing, too, when its command would close a loop: then it is no longer being moved.
 
         Parameters
         ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        node, held = situation.model.object(self._moving), situation.model.held
+        node, held = turn.situation.model.object(self._moving), turn.situation.model.held
         if node is not None and held is None:
-            instead = self._move_first(self._movable(situation), stage, situation, tools, node.name)
+            instead = self._move_first(self._movable(turn.situation), turn, node.name)
             if instead is not None:
                 return instead
         act = None
         if node is not None and held == node.name:
             last = self._supposed
-            again = None if last is None else suppose(node, last.side, last.depth, situation)
-            act = tools.executor.continue_plan(node, situation if again is None else again.situation)
-        if act is None or tools.pursuer.closes_loop(situation.model, act.command):
+            again = None if last is None else suppose(node, last.side, last.depth, turn.situation)
+            act = turn.executor.continue_plan(node, turn.situation if again is None else again.situation)
+        if act is None or turn.pursuer.closes_loop(turn.situation.model, act.command):
             gone, self._moving = self._moving, ""
             return nothing_to_do(f"{gone} is no longer moved aside")
-        return Decision(act.command, f"{act.why}; {stage}")
+        return Decision(act.command, f"{act.why}; {turn.stage}")
 
-    def feel_on(self, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def feel_on(self, turn: StageTurn) -> Decision:
         """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left.
 
         Parameters
         ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        found = self._pull(stage, situation, tools)
-        felt = None if found is not None else feel_walls(stage, situation, tools.pursuer)
+        found = self._pull(turn)
+        felt = None if found is not None else feel_walls(turn)
         self._feeling = felt is not None
         return found or felt or nothing_to_do("nothing is left to feel")
 
-    def clear(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def clear(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move aside what blocks the robot's way; nothing when no such object can be moved.
 
         Parameters
         ----------
         goals : what they speak of stays where it is.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        self._let_stay(goals, situation)
-        instead = self._move_first(self._movable(situation), stage, situation, tools)
+        self._let_stay(goals, turn.situation)
+        instead = self._move_first(self._movable(turn.situation), turn)
         return instead or nothing_to_do("nothing that blocks the robot's way can be moved aside")
 
-    def pull(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def pull(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move what may go on in a wall, as far as that was seen; nothing for no such thing.
 
         Parameters
         ----------
-        goals, stage, situation, tools : as for `clear`.
+        goals, turn : as for `clear`.
         """
-        self._let_stay(goals, situation)
-        return self._pull(stage, situation, tools) or nothing_to_do("nothing that may go on in a wall can be moved")
+        self._let_stay(goals, turn.situation)
+        return self._pull(turn) or nothing_to_do("nothing that may go on in a wall can be moved")
 
-    def feel(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def feel(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to feel walls that may be things; nothing when none is left that can be reached.
 
         Parameters
         ----------
-        goals, stage, situation, tools : as for `clear`.
+        goals, turn : as for `clear`.
         """
-        self._let_stay(goals, situation)
-        felt = feel_walls(stage, situation, tools.pursuer)
+        self._let_stay(goals, turn.situation)
+        felt = feel_walls(turn)
         self._feeling |= felt is not None
         return felt or nothing_to_do("nothing is left to feel")
 
-    def feel_things(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def feel_things(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to feel things all round that may be several; nothing when none is left.
 
         Parameters
         ----------
-        goals, stage, situation, tools : as for `clear`.
+        goals, turn : as for `clear`.
         """
-        self._let_stay(goals, situation)
-        return feel_things(stage, situation, tools.pursuer) or nothing_to_do("no thing is left to feel all round")
+        self._let_stay(goals, turn.situation)
+        return feel_things(turn) or nothing_to_do("no thing is left to feel all round")
 
-    def bare(self, goals: Sequence[Fact], stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none.
 
         Parameters
         ----------
-        goals, stage, situation, tools : as for `clear`.
+        goals, turn : as for `clear`.
         """
-        self._let_stay(goals, situation)
-        hidden = before_walls(self._movable(situation), situation, walls_to_feel(stage, situation))
-        instead = self._move_first_of(hidden, stage, tools)
+        self._let_stay(goals, turn.situation)
+        hidden = before_walls(self._movable(turn.situation), turn.situation, walls_to_feel(turn.stage, turn.situation))
+        instead = self._move_first_of(hidden, turn)
         return instead or nothing_to_do("nothing that stands before walls can be moved away")
 
     def blame(self, situation: Situation) -> Decision:
@@ -156,10 +149,10 @@ class ObstacleClearer:
         """Remember that what some goals speak of stays where it is."""
         self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
 
-    def _pull(self, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    def _pull(self, turn: StageTurn) -> Decision | None:
         """Return the next command to move what may go on in a wall; None for no such thing."""
-        parting = feeling_scope(stage, situation).parting
-        return self._move_first_of(hidden_in_walls(self._movable(situation), situation, parting), stage, tools)
+        parting = feeling_scope(turn.stage, turn.situation).parting
+        return self._move_first_of(hidden_in_walls(self._movable(turn.situation), turn.situation, parting), turn)
 
     def _movable(self, situation: Situation) -> list[Node]:
         """Return the objects that may be moved aside, in the order of the model; [] for none.
@@ -171,53 +164,46 @@ class ObstacleClearer:
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in self._stays]
 
-    def _move_first(
-        self, things: Sequence[Node], stage: Stage, situation: Situation, tools: Tools, name: str = ""
-    ) -> Decision | None:
+    def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
 
         Parameters
         ----------
         things : the objects in question.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         name : only the object of that name is moved; "" for any of `things`.
         """
-        walls, parting = walls_to_feel(stage, situation), feeling_scope(stage, situation).parting
-        found = obstacles(things, situation, walls, parting)
-        return self._move_first_of((one for one in found if name in ("", one.node.name)), stage, tools)
+        parting = feeling_scope(turn.stage, turn.situation).parting
+        found = obstacles(things, turn.situation, walls_to_feel(turn.stage, turn.situation), parting)
+        return self._move_first_of((one for one in found if name in ("", one.node.name)), turn)
 
-    def _move_first_of(self, found: Iterable[Obstacle], stage: Stage, tools: Tools) -> Decision | None:
+    def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision | None:
         """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
 
         Parameters
         ----------
         found : the obstacles, in the order in which they are tried.
-        stage : of the task: the goals that shall hold now.
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
         for one in found:
-            instead = _move_aside(one.node, one.aside, stage, one.situation, tools)
+            instead = _move_aside(one.node, one.aside, turn.within(one.situation))
             if instead is not None:
                 self._moving, self._supposed = one.node.name, one.supposed
                 return instead
         return None
 
 
-def _move_aside(node: Node, aside: End, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none.
 
     Parameters
     ----------
     node : the object.
     aside : where it shall lie, in squares, view frame.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : executor, pursuer and verifier, with which the command is worked out.
+    turn : the stage, what is believed, and the tools.
     """
-    rim = feel_rim(node, stage, situation, tools.pursuer)
+    rim = feel_rim(node, turn)
     if rim is not None:
         return rim
     purpose = f"{node.name} blocks the robot's way: "
-    return bring_to_end(node, ASIDE_TARGET, aside, stage, situation, tools, purpose)
+    return bring_to_end(node, ASIDE_TARGET, aside, turn, purpose)

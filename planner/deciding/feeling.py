@@ -13,7 +13,7 @@ from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
-from planner.deciding.pursuit import Pursuer
+from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
@@ -85,51 +85,45 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
     return mask
 
 
-def feel_walls(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+def feel_walls(turn: StageTurn) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached.
 
     Parameters
     ----------
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    pursuer : walks after the subgoal.
+    turn : the stage, what is believed, and the tools.
     """
-    halt = choose_halt(feeling_places(situation.cost_maps, feeling_scope(stage, situation)), situation.cost_maps)
-    return _walk(halt, stage, situation, pursuer)
+    cost_maps = turn.situation.cost_maps
+    return turn.look_if_reached(
+        choose_halt(feeling_places(cost_maps, feeling_scope(turn.stage, turn.situation)), cost_maps)
+    )
 
 
-def feel_things(stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+def feel_things(turn: StageTurn) -> Decision | None:
     """Return the next command to feel things all round that may be several; None when none is left that can be reached.
 
     Parameters
     ----------
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    pursuer : walks after the subgoal.
+    turn : the stage, what is believed, and the tools.
     """
-    rims = rims_to_feel(situation.cost_maps, feeling_scope(stage, situation))
-    looks = [Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]
-    felt = pursuer.pursue(looks, stage, situation, lambda: "") if looks else None
+    rims = rims_to_feel(turn.situation.cost_maps, feeling_scope(turn.stage, turn.situation))
+    felt = turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]) if rims else None
     return None if felt is None or felt.command is None else felt
 
 
-def feel_rim(node: Node, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
+def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
     """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
 
     Parameters
     ----------
     node : the object.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    pursuer : walks after the subgoal.
+    turn : the stage, what is believed, and the tools.
     """
     if node.moved or node.colour is None:
         return None
-    near = dilate(situation.model.mask(node.patch), 2).ravel()
-    places = [
-        place for place in feeling_places(situation.cost_maps) if WallKind.THING in place.squares and near[place.square]
-    ]
-    return _walk(choose_halt(places, situation.cost_maps), stage, situation, pursuer)
+    cost_maps = turn.situation.cost_maps
+    near = dilate(turn.situation.model.mask(node.patch), 2).ravel()
+    places = [p for p in feeling_places(cost_maps) if WallKind.THING in p.squares and near[p.square]]
+    return turn.look_if_reached(choose_halt(places, cost_maps))
 
 
 def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | None:
@@ -169,13 +163,3 @@ def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | No
         return None
     chosen = places[answer[0].arguments[0].number]
     return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
-
-
-def _walk(halt: Subgoal | None, stage: Stage, situation: Situation, pursuer: Pursuer) -> Decision | None:
-    """Return the next command towards a halt; None for no halt, or when no way leads there.
-
-    A Decision holds the next command (in the robot's own frame) and its reason in words; or no command, but a verdict
-    and its reason.
-    """
-    look = pursuer.pursue_look(halt, stage, situation)
-    return None if look is None or look.command is None else look

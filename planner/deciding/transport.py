@@ -12,14 +12,13 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
-from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Infeasibility
 from planner.carrying.open_facts import verdict_if_not_found
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import subgoals_towards
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import look_before_grasp, look_for_more
 from planner.decision import Decision, TaskVerdict, done, nothing_to_do
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
@@ -90,113 +89,87 @@ class Transporter:
         """The function that tells where a goal holds for an object."""
         return self._place
 
-    def towards(
-        self,
-        goal: Fact,
-        stage: Stage,
-        situation: Situation,
-        reconciled: Reconciliation,
-        tools: Tools,
-        end: str = "",
-    ) -> Decision:
+    def towards(self, goal: Fact, turn: StageTurn, end: str = "") -> Decision:
         """Return the next command towards a goal for an object, or the verdict; done when the goal holds.
 
-        The object is found, looked at, and carried, one after the other.
+        The object is found, looked at, and carried, one after the other. An object in hand that the goal is not about,
+        and that shuts the robot in, is led out before.
 
         Parameters
         ----------
         goal : one goal of the stage; its first argument is the parameter that means the object.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed; its binding tells which object the parameter means, if any is known.
-        reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
-        tools : executor, pursuer and verifier, with which the decision is worked out.
+        turn : the stage, what is believed, and the tools.
         end : the name of the one end of the goal to which the object is brought; "" for any.
         """
-        if situation.object_of(str(goal.args[0])) is None:
-            return self.find(goal, stage, situation, reconciled, tools)
-        examined = self.examine(goal, stage, situation, tools)
-        return self.carry(goal, stage, situation, reconciled, tools, end) if examined.result == "idle" else examined
+        node = turn.situation.object_of(str(goal.args[0]))
+        if node is None:
+            return self._freed(self._find(goal, turn), goal, turn)
+        examined = self._examine(goal, node, turn)
+        decision = self._carry(goal, node, turn, end) if examined.result == "idle" else examined
+        return self._freed(decision, goal, turn)
 
-    def examine(self, goal: Fact, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def _examine(self, goal: Fact, node: Node, turn: StageTurn) -> Decision:
         """Return the next look at the object of a goal of which something is not clear; nothing when all is clear.
 
         What was pressed against walls is not looked at: it is pressed on, or done. The verdict `limit` when the outline
         of the object cannot be told.
-
-        Parameters
-        ----------
-        goal, stage, situation, tools : as for `towards`; what the object is, is known: else AssertionError.
         """
-        node = situation.object_of(str(goal.args[0]))
-        assert node is not None
-        if node.polygon is not None and self._presser.is_pressed(goal, node, situation):
-            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
-        look = _look_at(node, stage, situation, tools)
+        if node.polygon is not None and self._presser.is_pressed(goal, node, turn.situation):
+            return self._press_on(node, turn) or done(f"{goal} holds")
+        look = _look_at(node, turn)
         if look is not None:
             return look
         if node.polygon is None:
-            why = f"{stage} is not attempted: the outline of {node.name} is not known"
+            why = f"{turn.stage} is not attempted: the outline of {node.name} is not known"
             return Decision(None, why, TaskVerdict.LIMIT)
         return nothing_to_do(f"{node.name} is clear")
 
-    def carry(
-        self,
-        goal: Fact,
-        stage: Stage,
-        situation: Situation,
-        reconciled: Reconciliation,
-        tools: Tools,
-        end: str = "",
-    ) -> Decision:
+    def _carry(self, goal: Fact, node: Node, turn: StageTurn, end: str) -> Decision:
         """Return the next command to carry the object of a goal, or the verdict; done when the goal holds.
 
-        Parameters
-        ----------
-        goal, stage, situation, reconciled, tools, end : as for `towards`; the outline of the object is known: else
-            AssertionError.
+        end : the name of the one end to which it is brought; "" for any.
         """
         x = str(goal.args[0])
-        node = situation.object_of(x)
-        assert node is not None and node.polygon is not None
-        land = self._place(goal, node, self.origin_of(x, node, situation), situation)
+        assert node.polygon is not None
+        land = self._place(goal, node, self.origin_of(x, node, turn.situation), turn.situation)
         if end in land.ends:
             land = replace(land, ends={end: land.ends[end]})
-        lost = self._origins.lost(x, node, situation)
+        lost = self._origins.lost(x, node, turn.situation)
         if land.holds:
             if lost and goal.name in ORIGIN_GOALS:
-                why = f"it cannot be told whether {stage} holds: {lost} since {node.name} was grasped"
+                why = f"it cannot be told whether {turn.stage} holds: {lost} since {node.name} was grasped"
                 return Decision(None, why, TaskVerdict.LIMIT)
-            if self._origins.left(x, node, situation) and situation.forbidden(node.name):
-                why = f"{stage} holds, but {node.name} went through a door that is forbidden to it"
+            if self._origins.left(x, node, turn.situation) and turn.situation.forbidden(node.name):
+                why = f"{turn.stage} holds, but {node.name} went through a door that is forbidden to it"
                 return Decision(None, why, TaskVerdict.LIMIT)
-            self._presser.begin(goal, node, land, situation)
-            return self._press_on(node, stage, situation, tools) or done(f"{goal} holds")
-        advice = self._advice(node, land, situation, tools)
+            self._presser.begin(goal, node, land, turn.situation)
+            return self._press_on(node, turn) or done(f"{goal} holds")
+        advice = self._advice(node, land, turn)
         if isinstance(advice, Infeasibility) and land.loose:
-            if meets_any_end(land.loose, to_view_frame(node.polygon, situation)):
-                led = self._lead_out(node, stage, situation, tools) if stage.goes_on else None
+            if meets_any_end(land.loose, to_view_frame(node.polygon, turn.situation)):
+                led = self._lead_out(node, turn) if turn.stage.goes_on else None
                 return led or done(f"{goal} holds")
-            advice = tools.executor.advise(node, land.loose, situation)
+            advice = turn.executor.advise(node, land.loose, turn.situation)
         if isinstance(advice, Infeasibility) and land.some:
             advice = replace(advice, proved=False)
         if isinstance(advice, Act):
             detour = isinstance(advice.command, Push)
-            instead = _look_by_the_way(node, land, stage, situation, tools) if detour else None
-            return instead or self._act(advice, node, stage, situation, tools)
+            instead = _look_by_the_way(node, land, turn) if detour else None
+            return instead or self._act(advice, node, turn)
         if isinstance(advice, Go):
-            walk = tools.pursuer.go(advice, stage, situation)
+            walk = turn.go(advice)
             if walk.command is not None:
                 return walk
             advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
-        situation = situation.along_with(node.patch) if land.shut_in else situation
+        turn = turn.within(turn.situation.along_with(node.patch)) if land.shut_in else turn
         if isinstance(advice, See):
-            along = partial(_take_along, node, stage, situation, tools)
+            along = partial(_take_along, node, turn)
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
-            return tools.pursuer.pursue([subgoal], stage, situation, lambda: "", along=along)
+            return turn.seek([subgoal], along=along)
         unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
-        subgoals = self._search([unknown], situation, reconciled)
-        decision = self._look_for_way(advice, node, land, subgoals, stage, situation, tools)
-        return self._check_proof(advice, decision, node, land, stage, situation, tools)
+        subgoals = self._search([unknown], turn.situation, turn.reconciled)
+        decision = self._look_for_way(advice, node, land, subgoals, turn)
+        return self._check_proof(advice, decision, node, land, turn)
 
     def conflict(self, stage: Stage, situation: Situation) -> Decision:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
@@ -229,58 +202,39 @@ class Transporter:
                 return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
         return nothing_to_do("no two goals are known to contradict each other")
 
-    def freed(self, decision: Decision, goal: Fact, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
         """Return a decision; in its place the push after which the held object no longer shuts the robot in.
 
         Only an object that the goal is not about is led out, and nothing where the goal holds or nothing is to be done.
-
-        Parameters
-        ----------
-        decision : what was decided towards the goal.
-        goal : the goal that is pursued next.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
-        held = situation.model.object(situation.model.held or "")
+        held = turn.situation.model.object(turn.situation.model.held or "")
         if decision.result in ("idle", "done") or held is None:
             return decision
-        if held.name == situation.binding.get(str(goal.args[0])):
+        if held.name == turn.situation.binding.get(str(goal.args[0])):
             return decision
-        return self._lead_out(held, stage, situation, tools) or decision
+        return self._lead_out(held, turn) or decision
 
-    def find(
-        self, goal: Fact, stage: Stage, situation: Situation, reconciled: Reconciliation, tools: Tools
-    ) -> Decision:
+    def _find(self, goal: Fact, turn: StageTurn) -> Decision:
         """Return the next command to find what the parameter of a goal means, or the verdict when nothing can be that.
 
         Before the verdict, an object that may be it if its size were known better is measured.
-
-        Parameters
-        ----------
-        goal : one goal of the stage; its first argument is the parameter.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
-        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
         x = str(goal.args[0])
-        immovable = dict(reconciled.unmovable).get(x)
+        immovable = dict(turn.reconciled.unmovable).get(x)
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
-        goals = [goal for goal in stage.goals if str(goal.args[0]) == x]
-        subgoals = self._search([unseen], situation, reconciled, approach_for_goals(goals, situation))
-        verdict = verdict_if_not_found(situation.model, bool(immovable))
-        ask = partial(tools.pursuer.pursue, subgoals, stage, situation, lambda: unseen.missing, verdict)
-        decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
+        goals = [goal for goal in turn.stage.goals if str(goal.args[0]) == x]
+        subgoals = self._search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
+        verdict = verdict_if_not_found(turn.situation.model, bool(immovable))
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, lambda: unseen.missing, verdict))
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
-        like = [name for parameter, name in reconciled.measurable if parameter == x and decision.verdict]
-        seen = (thing for thing in situation.model.objects if thing.name in like)
-        pushes = (self._measure(thing, stage, situation, tools) for thing in seen)
+        like = [name for parameter, name in turn.reconciled.measurable if parameter == x and decision.verdict]
+        seen = (thing for thing in turn.situation.model.objects if thing.name in like)
+        pushes = (self._measure(thing, turn) for thing in seen)
         return next((push for push in pushes if push is not None), decision)
 
-    def _act(self, advice: Act, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision:
+    def _act(self, advice: Act, node: Node, turn: StageTurn) -> Decision:
         """Return the command of a plan, unless it closes a loop, or a look at the map should come before it.
 
         In a loop the object is released instead.
@@ -289,20 +243,18 @@ class Transporter:
         ----------
         advice : the command that the executor advises, and its reason.
         node : the object that is carried.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        if isinstance(advice.command, Push | Turn) and tools.pursuer.closes_loop(situation.model, advice.command):
-            advice = tools.executor.release_looping(situation.model)
+        if isinstance(advice.command, Push | Turn) and turn.pursuer.closes_loop(turn.situation.model, advice.command):
+            advice = turn.executor.release_looping(turn.situation.model)
         if isinstance(advice.command, Move | Grasp):
-            subgoal = look_before_grasp(node, tools.executor.turns, situation)
-            look = tools.pursuer.pursue_look(subgoal, stage, situation)
+            subgoal = look_before_grasp(node, turn.executor.turns, turn.situation)
+            look = turn.look(subgoal)
             if look is not None:
                 return look
         if isinstance(advice.command, Push | Turn):
             self._presser.forget()
-        return Decision(advice.command, f"{advice.why}; {stage}")
+        return Decision(advice.command, f"{advice.why}; {turn.stage}")
 
     def _look_for_way(
         self,
@@ -310,9 +262,7 @@ class Transporter:
         node: Node,
         land: Placement,
         subgoals: Sequence[Subgoal],
-        stage: Stage,
-        situation: Situation,
-        tools: Tools,
+        turn: StageTurn,
     ) -> Decision:
         """Return the next command to see where an object shall end, or another way there; or the verdict.
 
@@ -326,23 +276,20 @@ class Transporter:
         node : the object.
         land : where the goal holds: ends by name (squares, view frame), and what must be known first.
         subgoals : what is worth a look.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(situation.model))
+        fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(turn.situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
-        along = partial(_take_along, node, stage, situation, tools, fetch=fetch)
+        along = partial(_take_along, node, turn, fetch=fetch)
         brought = None if land.there or again else along
         verdict = TaskVerdict.IMPOSSIBLE if refused.proved else TaskVerdict.LIMIT
-        ask = partial(tools.pursuer.pursue, subgoals, stage, situation, refused.reason, verdict, brought)
-        decision = tools.pursuer.feel_before_verdict(ask, stage, situation)
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, verdict, brought))
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
-            why = f"it cannot be told whether {stage} holds: {land.missing}, and {node.name} shuts the robot in"
+            why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
             decision = Decision(None, why, TaskVerdict.LIMIT)
         if decision.verdict == TaskVerdict.LIMIT:
-            decision = self._lead_out(node, stage, situation, tools, land.shut_in) or decision
+            decision = self._lead_out(node, turn, land.shut_in) or decision
         return decision
 
     def _check_proof(
@@ -351,9 +298,7 @@ class Transporter:
         decision: Decision,
         node: Node,
         land: Placement,
-        stage: Stage,
-        situation: Situation,
-        tools: Tools,
+        turn: StageTurn,
     ) -> Decision:
         """Return a decision whose verdict is `impossible` only where that is proved and nothing is left to check.
 
@@ -366,26 +311,24 @@ class Transporter:
         decision : what was decided; one with a command is returned unchanged.
         node : the object.
         land : where the goal holds: ends by name (squares, view frame), and what must be known first.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
+        turn : the stage, what is believed, and the tools.
         """
         must_reach = land.must_reach.ends() if decision.verdict else {}
         if must_reach:
-            shut_off = tools.executor.infeasibility(node, must_reach, situation)
+            shut_off = turn.executor.infeasibility(node, must_reach, turn.situation)
             if shut_off is not None and shut_off.proved:
-                why = f"{stage} cannot be attained: {shut_off.reason()}"
+                why = f"{turn.stage} cannot be attained: {shut_off.reason()}"
                 refused, decision = shut_off, Decision(None, why, TaskVerdict.IMPOSSIBLE)
         if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
-        recheck = tools.verifier.recheck_passage(refused, situation)
+        recheck = turn.verifier.recheck_passage(refused, turn.situation)
         if recheck is not None:
-            return tools.pursuer.pursue([recheck], stage, situation, refused.reason)
+            return turn.seek([recheck], refused.reason)
         ends = must_reach or land.ends
-        instead = self._measure_refused(node, ends, stage, situation, tools) if ends else None
+        instead = self._measure_refused(node, ends, turn) if ends else None
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
 
-    def _advice(self, node: Node, land: Placement, situation: Situation, tools: Tools) -> Advice:
+    def _advice(self, node: Node, land: Placement, turn: StageTurn) -> Advice:
         """Return what to do to carry an object to where its goal holds; while that is not known, to near it.
 
         After plans that missed their end, and once the object is near, the end is looked at first: then it is an
@@ -393,15 +336,9 @@ class Transporter:
 
         An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
         from, an Infeasibility a reason why nothing can be done; each with words.
-
-        Parameters
-        ----------
-        node : the object.
-        land : where its goal holds, in squares, view frame.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
         """
-        executor, looked = tools.executor, len(situation.model.looked_from)
+        executor, situation = turn.executor, turn.situation
+        looked = len(situation.model.looked_from)
         missed = land.ends and executor.missed >= MAX_MISSED_PLANS
         if land.viewpoints and (looked == self._looked_before or missed):
             executor.forget_misses()
@@ -419,7 +356,7 @@ class Transporter:
         self._looked_before = looked
         return Infeasibility(not situation.model.shaken, land.missing)
 
-    def _press_on(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    def _press_on(self, node: Node, turn: StageTurn) -> Decision | None:
         """Return the next press of a held object against a wall; when none is left, what leads it out; or None.
 
         It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
@@ -427,37 +364,31 @@ class Transporter:
         Parameters
         ----------
         node : the object, a node of the world model.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        act = self._presser.next(node, situation.model)
+        act = self._presser.next(node, turn.situation.model)
         if act is None:
-            return self._lead_out(node, stage, situation, tools) if stage.goes_on else None
-        tools.executor.depart(act)
-        return Decision(act.command, f"{act.why}; {stage}")
+            return self._lead_out(node, turn) if turn.stage.goes_on else None
+        turn.executor.depart(act)
+        return Decision(act.command, f"{act.why}; {turn.stage}")
 
-    def _lead_out(
-        self, node: Node, stage: Stage, situation: Situation, tools: Tools, shut_in: bool = False
-    ) -> Decision | None:
+    def _lead_out(self, node: Node, turn: StageTurn, shut_in: bool = False) -> Decision | None:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
 
         shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
         node : the object, a node of the world model.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        out = tools.executor.lead_out(node, situation) if shut_in or not robot_can_leave(node, situation) else None
+        if not shut_in and robot_can_leave(node, turn.situation):
+            return None
+        out = turn.executor.lead_out(node, turn.situation)
         if out is None:
             return None
         self._presser.forget()
-        tools.executor.depart(out)
-        return Decision(out.command, f"{out.why}; {stage}")
+        turn.executor.depart(out)
+        return Decision(out.command, f"{out.why}; {turn.stage}")
 
-    def _measure_refused(
-        self, node: Node, ends: Mapping[str, End], stage: Stage, situation: Situation, tools: Tools
-    ) -> Decision | None:
+    def _measure_refused(self, node: Node, ends: Mapping[str, End], turn: StageTurn) -> Decision | None:
         """Return the next command to measure an object that seems too large for all ends; None when it surely is.
 
         Returns the verdict `limit` when its size cannot be told.
@@ -466,20 +397,18 @@ class Transporter:
         ----------
         node : the object.
         ends : where it should lie, by name, in squares, view frame.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        tools : executor, pursuer and verifier, with which the decision is worked out.
+        turn : the stage, what is believed, and the tools.
         """
-        if (push := self._measure(node, stage, situation, tools)) is not None:
+        if (push := self._measure(node, turn)) is not None:
             return push
         least = least_outline(node)
-        refused = least and tools.executor.infeasibility(replace(node, polygon=least), ends, situation)
+        refused = least and turn.executor.infeasibility(replace(node, polygon=least), ends, turn.situation)
         if refused and refused.proved:
             return None
-        why = f"it cannot be told whether {stage} can be attained: the size of {node.name} is not known well"
+        why = f"it cannot be told whether {turn.stage} can be attained: the size of {node.name} is not known well"
         return Decision(None, why, TaskVerdict.LIMIT)
 
-    def _measure(self, node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+    def _measure(self, node: Node, turn: StageTurn) -> Decision | None:
         """Return the next command to push an object by a part of a square, to measure it; None when that is done.
 
         None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
@@ -488,21 +417,19 @@ class Transporter:
         Parameters
         ----------
         node : the object, a node of the world model.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
-        tools : executor, pursuer and verifier, with which the command is worked out.
+        turn : the stage, what is believed, and the tools.
         """
         for pose in self._size_estimator.poses(node):
-            advice = tools.executor.advise(node, {SIZE_TARGET: pose}, situation)
+            advice = turn.executor.advise(node, {SIZE_TARGET: pose}, turn.situation)
             if isinstance(advice, Act):
-                return Decision(advice.command, f"the size of {node.name} is not sure, so it is measured; {stage}")
-            walk = tools.pursuer.prepare(advice, stage, situation)
+                return Decision(advice.command, f"the size of {node.name} is not sure, so it is measured; {turn.stage}")
+            walk = turn.prepare(advice)
             if walk is not None:
                 return walk
         return None
 
 
-def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+def _look_at(node: Node, turn: StageTurn) -> Decision | None:
     """Return the next command to look at an object of which something is not clear; None when no look tells more.
 
     What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
@@ -510,19 +437,17 @@ def _look_at(node: Node, stage: Stage, situation: Situation, tools: Tools) -> De
     Parameters
     ----------
     node : the object, a node of the world model.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    tools : executor, pursuer and verifier, with which the command is worked out.
+    turn : the stage, what is believed, and the tools.
     """
-    if node.polygon is None or node.vague or tools.verifier.is_unsettled(node):
-        look = tools.pursuer.pursue_look(tools.verifier.next_look(node, situation), stage, situation)
+    if node.polygon is None or node.vague or turn.verifier.is_unsettled(node):
+        look = turn.look(turn.verifier.next_look(node, turn.situation))
         if look is not None:
             return look
-    look = tools.pursuer.pursue_look(look_for_more(node, situation), stage, situation)
+    look = turn.look(look_for_more(node, turn.situation))
     return None if look is None or look.command is None else look
 
 
-def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision | None:
     """Return a push, in place of one of the plan, that shows on the way what the robot would have to come back for.
 
     None when there is nothing to see so, or no such push.
@@ -533,53 +458,45 @@ def _look_by_the_way(node: Node, land: Placement, stage: Stage, situation: Situa
     ----------
     land : where the goal holds; it names what to see on the way.
     node : the object, a node of the world model.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    tools : executor, pursuer and verifier, with which the command is worked out.
+    turn : the stage, what is believed, and the tools.
     """
     for look in land.by_the_way.viewpoints():
-        act = tools.executor.detour(node, look.squares, situation)
-        led = _push_to_see(act, look.what, stage, situation, tools)
+        act = turn.executor.detour(node, look.squares, turn.situation)
+        led = _push_to_see(act, look.what, turn)
         if led is not None:
             return led
     return None
 
 
-def _take_along(
-    node: Node, stage: Stage, situation: Situation, tools: Tools, subgoal: Subgoal, fetch: bool = False
-) -> Decision | None:
+def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
     Parameters
     ----------
     node : the object.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : executor, pursuer and verifier, with which the decision is worked out.
+    turn : the stage, what is believed, and the tools.
     subgoal : where the robot wants to look from.
     fetch : whether an object that is not held is fetched for that; if not, only a held object is taken along, by one
         straight push.
     """
-    advice = tools.executor.take_along(node, subgoal.squares, fetch, situation)
+    advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
     if isinstance(advice, Go):
         go = replace(advice, why=f"{node.name} is taken along: {subgoal.what}")
-        walk = tools.pursuer.go(go, stage, situation)
+        walk = turn.go(go)
         return None if walk.command is None else walk
-    return _push_to_see(advice, subgoal.what, stage, situation, tools)
+    return _push_to_see(advice, subgoal.what, turn)
 
 
-def _push_to_see(act: Act | None, what: str, stage: Stage, situation: Situation, tools: Tools) -> Decision | None:
+def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None:
     """Return the decision to push a held object in order to see something; None when that would close a loop.
 
     Parameters
     ----------
     act : the push; None when there is none: then None is returned.
     what : what is to be seen, in words.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    tools : what the decision is worked out with; the executor is told that the push is given.
+    turn : the stage, what is believed, and the tools.
     """
-    if act is None or tools.pursuer.closes_loop(situation.model, act.command):
+    if act is None or turn.pursuer.closes_loop(turn.situation.model, act.command):
         return None
-    tools.executor.depart(act)
-    return Decision(act.command, f"{act.why}: {what}; {stage}")
+    turn.executor.depart(act)
+    return Decision(act.command, f"{act.why}: {what}; {turn.stage}")

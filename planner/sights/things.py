@@ -2,8 +2,7 @@
 
 from kb.world.model import Node, WorldModel
 from planner.screen.projection import CostMaps, dilate
-from planner.sights.frontiers import wall_touch_viewpoint
-from planner.sights.viewpoints import Viewpoint
+from planner.sights.frontiers import Viewpoint, wall_touch_viewpoint
 from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
 

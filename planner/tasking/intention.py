@@ -23,9 +23,7 @@ from planner.tasking.proposal import TASK_ENCODING
 from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
 from planner.tasking.search import make_plan
 from planner.tasking.setting import (
-    DestinationFunction,
-    OriginFunction,
-    PlaceFunction,
+    WhereGoalsHold,
     goal_of_place,
     place_name,
     problem_of,
@@ -102,10 +100,10 @@ class Intention:
     rules : what users' rules did to the plan that was made last.
     """
 
-    def __init__(self, where: DestinationFunction, pull: bool = True) -> None:
+    def __init__(self, where: WhereGoalsHold, pull: bool = True) -> None:
         """Make an intention without a plan.
 
-        where : returns the squares on which a goal holds for the robot, from the goal and the situation.
+        where : tells where goals hold.
         pull : whether a held object may be pulled.
         """
         self._where, self._pull = where, pull
@@ -132,15 +130,7 @@ class Intention:
         """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._attempt if self._kept is None else None
 
-    def update(
-        self,
-        stage: Stage,
-        situation: Situation,
-        place: PlaceFunction,
-        origin: OriginFunction,
-        avoid: Mapping[str, Any],
-        turn: float,
-    ) -> Situation:
+    def update(self, stage: Stage, situation: Situation, avoid: Mapping[str, Any], turn: float) -> Situation:
         """Make the plan anew where it no longer holds; return the situation with what the plan means by parameters.
 
         There is none while it is open what a goal means or where it holds (`settle`).
@@ -149,12 +139,11 @@ class Intention:
         ----------
         stage : of the task: the goals that shall hold now.
         situation : what is believed: world model, rooms, doors, corners and track.
-        place, origin : as in planner.tasking.setting.problem_of.
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
         stage = self._without_dropped(stage)
-        self._problem = problem_of(stage, situation, place, origin, self._where)
+        self._problem = problem_of(stage, situation, self._where)
         if stage != self._stage:
             self._stage, self._tried = stage, []
         self._settling = None
@@ -167,7 +156,7 @@ class Intention:
         meant = self.meanings
         if any(situation.binding.get(parameter) != name for parameter, name in meant.items()):
             situation = with_meanings(situation, meant)
-            self._problem = problem_of(stage, situation, place, origin, self._where)
+            self._problem = problem_of(stage, situation, self._where)
         return situation
 
     @property
@@ -175,19 +164,17 @@ class Intention:
         """The plan that settles what is open, from its present step on; None where nothing is open."""
         return self._settling
 
-    def settle(
-        self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, given: Sequence[str]
-    ) -> tuple[str, tuple[str, ...]]:
+    def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         """Plan what settles what is open; return its first step, and what users' rules forbid where there is none.
 
         Parameters
         ----------
-        stage, situation, place, origin : as for `update`.
+        stage, situation : as for `update`.
         given : what is not known, what activities came to, and what the robot is stuck with, as facts without full
             stops.
         """
         stage = self._without_dropped(stage)
-        problem = problem_of(stage, situation, place, origin, self._where)
+        problem = problem_of(stage, situation, self._where)
         refuted = () if self._attempt is None else self._attempt.refutations
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
         step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
@@ -199,14 +186,12 @@ class Intention:
         """The object that each parameter of the task means in the plan under way, where it chose among several."""
         return {} if self._kept is None else dict(self._kept.plan.meanings)
 
-    def next_errand(
-        self, stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction
-    ) -> NextErrand | None:
+    def next_errand(self, stage: Stage, situation: Situation) -> NextErrand | None:
         """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own.
 
         Parameters
         ----------
-        stage, situation, place, origin : as for `update`, which is called before.
+        stage, situation : as for `update`, which is called before.
         """
         kept, problem, stage = self._kept, self._problem, self._without_dropped(stage)
         if kept is None or problem is None or kept.number >= len(kept.plan.errands):
@@ -219,9 +204,21 @@ class Intention:
         turned = kept.turned[errand.subject]
         if spot is not None:
             return NextErrand(errand, node, _moved_to_view(spot, situation), None, "", turned)
-        goal, end_name = _goal_of(errand, stage, problem, situation, place, origin)
+        goal, end_name = self._goal_of(errand, stage, problem, situation)
         end = problem.places[errand.subject, errand.place]
         return NextErrand(errand, node, end, goal, end_name, turned)
+
+    def _goal_of(
+        self, errand: Errand, stage: Stage, problem: TaskProblem, situation: Situation
+    ) -> tuple[Fact | None, str]:
+        """Return the goal or wish that an errand attains, and the name of its end there."""
+        found = goal_of_place(errand.place, stage)
+        if found is None:
+            return None, ""
+        name, goal = found
+        land = self._where.of(goal, problem.nodes[errand.subject], situation)
+        ends = (*land.ends, *land.loose)
+        return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
     def failed(self, errand: Errand, situation: Situation) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
@@ -371,25 +368,6 @@ def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situatio
         for parameter, others in situation.as_well.items()
     }
     return replace(situation, binding=binding, as_well=as_well)
-
-
-def _goal_of(
-    errand: Errand,
-    stage: Stage,
-    problem: TaskProblem,
-    situation: Situation,
-    place: PlaceFunction,
-    origin: OriginFunction,
-) -> tuple[Fact | None, str]:
-    """Return the goal or wish that an errand attains, and the name of its end there."""
-    found = goal_of_place(errand.place, stage)
-    if found is None:
-        return None, ""
-    name, goal = found
-    node = problem.nodes[errand.subject]
-    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
-    ends = (*land.ends, *land.loose)
-    return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
 
 def _moved_to_view(end: End, situation: Situation) -> End:

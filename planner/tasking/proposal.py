@@ -56,10 +56,9 @@ def propose(facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] 
         words = [str(word) for word in step.arguments]
         if step.name == "go":
             doors.setdefault(time, []).append(words[0])
-        elif step.name == "arrive":
-            found[time] = Errand(step.name, ROBOT, words[0])
         else:
-            found[time] = Errand(step.name, *words)
+            subject, place = (ROBOT, words[0]) if step.name == "arrive" else (words[0], "".join(words[1:]))
+            found[time] = Errand(step.name, subject, place)
     errands = tuple(replace(found[time], doors=tuple(sorted(doors.get(time, ())))) for time in sorted(found))
     missed = {str(atom.arguments[0]): atom.arguments[1].number for atom in atoms if atom.name == "missed"}
     pairs = [(str(atom.arguments[0]), str(atom.arguments[1])) for atom in atoms if atom.name == "meaning"]

@@ -9,7 +9,8 @@ from kb.reasoning.solver import solve
 from kb.reasoning.user_rules import rules_reach, rules_to_blame
 from kb.tracing.decisions import record_decisions
 from planner.situation import Situation
-from planner.tasking.search import TASK_ENCODING, MadePlan
+from planner.tasking.proposal import TASK_ENCODING
+from planner.tasking.search import MadePlan
 
 SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,9 +27,27 @@ OriginFunction = Callable[[str, Node, Situation], XY]
 DestinationFunction = Callable[[Fact, Situation], Destination]
 
 
-def problem_of(
-    stage: Stage, situation: Situation, place: PlaceFunction, origin: OriginFunction, where: DestinationFunction
-) -> TaskProblem | None:
+class WhereGoalsHold(NamedTuple):
+    """The functions that tell where goals hold.
+
+    Attributes
+    ----------
+    place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
+        frame) and the situation.
+    origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
+    destination : returns the squares on which a goal holds for the robot, from the goal and the situation.
+    """
+
+    place: PlaceFunction
+    origin: OriginFunction
+    destination: DestinationFunction
+
+    def of(self, goal: Fact, node: Node, situation: Situation) -> Placement:
+        """Return where a goal holds for an object that its parameter means."""
+        return self.place(goal, node, self.origin(str(goal.args[0]), node, situation), situation)
+
+
+def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> TaskProblem | None:
     """Return the problem of a stage; None while a thing that is askew is in hand: it is set down first.
 
     Goals are waiting while it is open what they mean or where they hold.
@@ -39,10 +57,7 @@ def problem_of(
     ----------
     stage : of the task: the goals that shall hold now.
     situation : what is believed: world model, rooms, doors, corners and track.
-    place : returns where a goal holds for an object, from the goal, the object, where its middle was at first (map
-        frame) and the situation.
-    origin : returns where the object of a parameter lay at first, from the parameter, the object and the situation.
-    where : returns the squares on which a goal holds for the robot, from the goal and the situation.
+    where : tells where goals hold.
     """
     model = situation.model
     held = model.object(model.held or "")
@@ -59,11 +74,14 @@ def problem_of(
     fulfils: dict[tuple[str, str], tuple[str, ...]] = {}
     open_goals: list[str] = []
     waiting: list[str] = []
+    as_it_lies = where._replace(origin=_where_it_lies)
     unlike: set[tuple[str, str]] = set()  # parameters with objects for which it is open where a goal holds
     ruled = rules_reach(RULED_ENCODING, situation.rules)
     for name, goal, weight in _numbered(stage):
         node = things.get(situation.binding.get(str(goal.args[0]), ""))
-        ends, is_open, holds = ({}, True, False) if node is None else _ends(goal, node, state, situation, place, origin)
+        ends, is_open, holds = (
+            ({}, True, False) if node is None else _ends(where.of(goal, node, situation), node, state)
+        )
         is_open = is_open and not holds
         if node is None or not (holds or ends) or (weight is None and is_open and not ruled):
             if weight is None:  # else it is a wish of which nothing is known yet
@@ -74,7 +92,7 @@ def problem_of(
         open_goals += [name] * (is_open and weight is None)
         goals.append(PlacedGoal(name, str(goal), node.name, holds, weight, str(goal.args[0])))
         for other in _also_meant(goal, things, situation):
-            other_ends, other_open, other_holds = _ends(goal, other, state, situation, place, _where_it_lies)
+            other_ends, other_open, other_holds = _ends(as_it_lies.of(goal, other, situation), other, state)
             if (other_open and not other_holds) or not (other_ends or other_holds):
                 unlike.add((str(goal.args[0]), other.name))
                 continue
@@ -87,7 +105,7 @@ def problem_of(
             fulfils[node.name, place_name(name, end_name)] = (name,)
     stands: dict[str, Any] = {}
     own = [goal for goal in stage.own if goal.name not in TRACK_GOALS]
-    squares = _common_squares(own, situation, where) if own else None
+    squares = _common_squares(own, situation, where.destination) if own else None
     own_name = f"g{len(stage.carried) + 1}"
     if squares is not None and len(squares):
         goals.append(PlacedGoal(own_name, " and ".join(map(str, own)), ROBOT, robot_stands_on(squares, model)))
@@ -95,7 +113,7 @@ def problem_of(
         stands |= {place_name(own_name, room): part for room, part in parts.items()}
         fulfils |= {(ROBOT, place_name(own_name, room)): (own_name,) for room in parts}
     for name, goal, weight in _numbered_wishes(stage):
-        wished = _common_squares([*own, goal], situation, where) if str(goal.args[0]) == ROBOT else None
+        wished = _common_squares([*own, goal], situation, where.destination) if str(goal.args[0]) == ROBOT else None
         if wished is not None and len(wished):
             goals.append(PlacedGoal(name, str(goal), ROBOT, robot_stands_on(wished, model), weight))
             parts, names = _by_room(wished, situation), (name, own_name) if own else (name,)
@@ -177,16 +195,8 @@ def _goals_before_wishes(goals: list[PlacedGoal]) -> tuple[PlacedGoal, ...]:
     return tuple(sorted(goals, key=lambda goal: goal.weight is not None))
 
 
-def _ends(
-    goal: Fact,
-    node: Node,
-    state: TableState,
-    situation: Situation,
-    place: PlaceFunction,
-    origin: OriginFunction,
-) -> tuple[Mapping[str, End], bool, bool]:
+def _ends(land: Placement, node: Node, state: TableState) -> tuple[Mapping[str, End], bool, bool]:
     """Return the ends of a goal for an object, whether it is open where exactly these are, and whether it holds."""
-    land = place(goal, node, origin(str(goal.args[0]), node, situation), situation)
     ends = {**land.ends, **land.loose}
     holds = land.holds or meets_any_end(land.loose, state.things[node.name].outline)
     return ends, bool(land.missing), holds

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -9,6 +10,7 @@ import shapely
 from geometry.kernels.arrays import Bools
 from kb.body import Body
 from kb.mapping.patch import Patch
+from kb.task.binding import Reconciliation
 from kb.task.task import Task
 from kb.world.corners import corners
 from kb.world.model import Node, WorldModel
@@ -18,15 +20,18 @@ from planner.carrying.plan_executor import PlanExecutor
 from planner.carrying.remaining_plan import PlanOperations
 from planner.cycle import Options, Robot
 from planner.deciding.pursuit import Pursuer
-from planner.deciding.tools import Tools
+from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import Verifier
 from planner.screen.projection import CostMaps
 from planner.sights.walls import unfelt_walls
 from planner.situation import Situation
+from planner.stages import Stage
 from simulator.run.session import RobotMaker
 from simulator.run.warming import warm
 from simulator.scenario.settings import Settings
 from tests.kb.drawings import known_model
+
+NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 
 NO_TASK = Task({}, (), ())
 BESIDE_A_THING = [  # a room, and Utak right beside the only object in it
@@ -61,10 +66,11 @@ def known_situation(rows: list[str], moved: bool = False, movable: int = 50, hel
 
 def all_felt(model: WorldModel) -> WorldModel:
     """Return a world model in which every wall that can be felt was felt to be wall, and every object all round."""
-    felt = dict.fromkeys(_squares(unfelt_walls(model), model), "b")
+    felt: dict[tuple[int, int], str] = {}
     for node in model.objects:
         felt |= dict.fromkeys(_squares(model.mask(node.patch), model), node.colour or "g")
-    return replace(model, felt={**felt, **model.felt})
+    walls = dict.fromkeys(_squares(unfelt_walls(model), model), "b")
+    return replace(model, felt={**felt, **walls, **model.felt})
 
 
 def _squares(mask: Bools, model: WorldModel) -> list[tuple[int, int]]:
@@ -73,9 +79,24 @@ def _squares(mask: Bools, model: WorldModel) -> list[tuple[int, int]]:
     return list(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))
 
 
+class Tools(NamedTuple):
+    """The tools of decisions, as planner.deciding.stage_turn.StageTurn has them."""
+
+    executor: PlanExecutor
+    pursuer: Pursuer
+    verifier: Verifier
+
+
 def tools_with(executor: PlanExecutor | None = None, pursuer: Pursuer | None = None) -> Tools:
     """Return the tools of one decision, new ones where none are given."""
     return Tools(executor or PlanExecutor(), pursuer or Pursuer("skeleton"), Verifier())
+
+
+def turn_of(
+    stage: Stage, situation: Situation, tools: Tools | None = None, reconciled: Reconciliation = NOTHING_DOUBTFUL
+) -> StageTurn:
+    """Return what a decision is worked out with. tools : new ones if None."""
+    return StageTurn(stage, situation, reconciled, (), *(tools or tools_with()))
 
 
 def watched_robot(operations: PlanOperations) -> RobotMaker:

@@ -19,7 +19,7 @@ from planner.decision import Decision
 from planner.goals.placement import possible_extension, pull_out_end, to_view_frame
 from planner.situation import Situation
 from planner.stages import Stage
-from tests.planner.situations import all_felt, situation_of, tools_with
+from tests.planner.situations import all_felt, situation_of, tools_with, turn_of
 from tests.planner.situations import known_situation as known
 
 WALL = "b" * 12 + "bb" + "b" * 12
@@ -46,12 +46,12 @@ class Clearing:
         self._clearer, self._tools = ObstacleClearer(), tools_with()
 
     def on(self, stage: Stage, situation: Situation) -> Decision:
-        return self._clearer.clear_on(stage, situation, self._tools)
+        return self._clearer.clear_on(turn_of(stage, situation, self._tools))
 
     def before(self, stage: Stage, situation: Situation) -> Decision:
         """What helps, if anything, before the goals of the robot itself are called impossible."""
         remedies = (self._clearer.clear, self._clearer.feel, self._clearer.bare)
-        found = [remedy(stage.goals, stage, situation, self._tools) for remedy in remedies]
+        found = [remedy(stage.goals, turn_of(stage, situation, self._tools)) for remedy in remedies]
         return next((one for one in found if one.command is not None), self._clearer.blame(situation))
 
 

@@ -11,14 +11,13 @@ from benchmarks.worlds.scenes import write
 from kb.body import Move
 from kb.language.reader import facts_from_text
 from planner.deciding.feeling import choose_halt, feel_walls, feeling_scope
-from planner.deciding.pursuit import Pursuer
 from planner.sights.walls import feeling_places
 from planner.stages import Stage
 from simulator.run.session import Result, Session
 from simulator.scenario.scenario import read_scenario
 from simulator.scenario.settings import Settings
 from tests.kb.drawings import known_model
-from tests.planner.situations import all_felt, situation_of
+from tests.planner.situations import all_felt, situation_of, turn_of
 
 UTAK = Stage(facts_from_text("in(utak, room(next))."))
 CASES = Path("/work/shared/cases")
@@ -36,8 +35,8 @@ def ended(folder: Path, pull: bool = True) -> Result:
 
 def test_walls_are_felt_until_none_is_left() -> None:
     model = known_model(ROOM)
-    assert isinstance(getattr(feel_walls(UTAK, situation_of(model), Pursuer("skeleton")), "command", None), Move)
-    assert feel_walls(UTAK, situation_of(all_felt(model)), Pursuer("skeleton")) is None
+    assert isinstance(getattr(feel_walls(turn_of(UTAK, situation_of(model))), "command", None), Move)
+    assert feel_walls(turn_of(UTAK, situation_of(all_felt(model)))) is None
     assert choose_halt([], situation_of(model).cost_maps) is None
 
 

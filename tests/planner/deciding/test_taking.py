@@ -28,10 +28,9 @@ from planner.sights.frontiers import FOVEA_RANGE
 from planner.situation import Situation
 from planner.stages import Stage
 from tests.kb.drawings import known_model
-from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with
+from tests.planner.situations import BESIDE_A_THING, situation_of, tools_with, turn_of
 
 NOTHING: tuple[str | None, ...] = (None,) * 8
-NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 EAST, NORTHWEST = 2, 7
 
 
@@ -208,7 +207,7 @@ def test_after_a_restart_an_object_is_not_said_to_be_in_the_next_room(lost: bool
     )
     transporter.origin_of("x", node, situation)
     after = situation_of(replace(situation.model, anew=lost), situation.binding)
-    decision = transporter.towards(stage.goals[0], stage, after, NOTHING_DOUBTFUL, tools_with())
+    decision = transporter.towards(stage.goals[0], turn_of(stage, after))
     assert decision.verdict == (TaskVerdict.LIMIT if lost else TaskVerdict.DONE)
     assert ("the robot was lost" in decision.why) == lost
 
@@ -244,7 +243,7 @@ def test_the_robot_looks_before_it_gets_ready_to_grasp_what_it_will_turn(command
     situation, plan, _, stage = about_to_turn(math.pi, 90.0, 2)
     executor = AdvisingExecutor(PlanExecutor(plan=plan), Act(command, "so"))
     tools = tools_with(cast(PlanExecutor, executor))
-    decision = Transporter().towards(stage.goals[0], stage, situation, NOTHING_DOUBTFUL, tools)
+    decision = Transporter().towards(stage.goals[0], turn_of(stage, situation, tools))
     assert decision is not None
     assert decision.why.startswith("so" if isinstance(command, Push) else "it is not clear how the squares")
 
@@ -260,10 +259,10 @@ def test_an_object_that_does_not_move_proves_nothing_while_the_frame_is_open(
     view = situation.model.view._replace(sure=sure)
     fixed = replace(situation.model, objects=(replace(node, movable=0),), view=view)
     reconciled = Reconciliation({}, ("x",), (), (), (("x", node.name),))
-    looking = Transporter().towards(stage.goals[0], stage, situation_of(fixed, {}), reconciled, tools)
+    looking = Transporter().towards(stage.goals[0], turn_of(stage, situation_of(fixed, {}), tools, reconciled))
     assert looking.command is not None  # for another x
     seen_all = Transporter(search=lambda *_: [])
-    decision = seen_all.towards(stage.goals[0], stage, situation_of(fixed, {}), reconciled, tools)
+    decision = seen_all.towards(stage.goals[0], turn_of(stage, situation_of(fixed, {}), tools, reconciled))
     assert decision is not None
     assert (decision.command, decision.verdict) == (None, verdict)
     assert f"{node.name} cannot be moved" in decision.why

@@ -29,7 +29,7 @@ from planner.deciding.verification import (
 from planner.sights.frontiers import FOVEA_RANGE
 from planner.stages import Stage
 from tests.kb.drawings import known_model, walked
-from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, tools_with
+from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, turn_of
 
 AT_START = replace(NO_TASK, goals=facts_from_text("at(utak, start)."))
 NARROW = [
@@ -148,7 +148,7 @@ def test_an_object_that_is_not_seen_is_not_proved_to_be_missing(sure: bool) -> N
     transporter = Transporter(search=lambda *_: [])
     (goal,) = facts_from_text("in(x, room(next)).")
     unseen = Reconciliation({}, ("x",), (), ())
-    decision = transporter.towards(goal, Stage((goal,)), situation_of(model), unseen, tools_with())
+    decision = transporter.towards(goal, turn_of(Stage((goal,)), situation_of(model), None, unseen))
     assert decision is not None
     found = open_fact_against(decision, situation_of(model))
     assert (found.command, found.verdict) == (None, "possible_if")

@@ -16,13 +16,11 @@ from geometry.motion.se2 import Motion, Rotate, Translate
 from kb.body import Grasp, Move, Push, Release
 from kb.language.reader import facts_from_text
 from kb.mapping.patch import Patch
-from kb.task.binding import Reconciliation
 from kb.world.model import Node
 from planner.advice import Act, See
 from planner.carrying.plan_executor import Advice, PlanExecutor
 from planner.carrying.remaining_plan import RemainingPlan
 from planner.deciding.pursuit import Pursuer
-from planner.deciding.tools import Tools
 from planner.deciding.transport import Transporter
 from planner.decision import Decision, TaskVerdict
 from planner.goals.placement import Placement, to_view_frame
@@ -34,10 +32,9 @@ from planner.skills.take_along import VIEWPOINT_RADIUS, detour_push, escape_push
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 from tests.kb.drawings import known_model
-from tests.planner.situations import situation_of, tools_with
+from tests.planner.situations import Tools, situation_of, tools_with, turn_of
 
 EAST = 2
-NOTHING_DOUBTFUL = Reconciliation({}, (), (), ())
 ROOM = [
     "b" * 24,
     *["b" + "." * 22 + "b"] * 5,
@@ -104,7 +101,7 @@ def asked_to_see(situation: Situation, squares: SquareIndices, pull: bool = True
 def command_to_see(transporter: Transporter, situation: Situation, tools: Tools) -> object:
     """Return the command towards a goal for the held object."""
     (goal,) = facts_from_text("at(x, corner(northeast)).")
-    decision = transporter.towards(goal, Stage((goal,)), situation, NOTHING_DOUBTFUL, tools)
+    decision = transporter.towards(goal, turn_of(Stage((goal,)), situation, tools))
     assert decision is not None
     return decision.command
 
@@ -136,7 +133,7 @@ def exploring(
     transporter = Transporter(lambda *_: nowhere, lambda *_: subgoals)
     (goal,) = facts_from_text("around(x, corner).")
     tools = tools_with(pursuer=pursuer)
-    decision = transporter.towards(goal, Stage((goal,)), situation, NOTHING_DOUBTFUL, tools)
+    decision = transporter.towards(goal, turn_of(Stage((goal,)), situation, tools))
     assert decision is not None
     return decision
 
@@ -240,7 +237,7 @@ def test_an_object_that_shuts_the_robot_in_is_taken_along_once() -> None:
     transporter, tools = Transporter(lambda *_: land, lambda *_: subgoals), tools_with()
     (goal,) = facts_from_text("at(x, corner(northeast)).")
     stage = Stage((goal,))
-    decisions = [transporter.towards(goal, stage, situation, NOTHING_DOUBTFUL, tools) for _ in range(2)]
+    decisions = [transporter.towards(goal, turn_of(stage, situation, tools)) for _ in range(2)]
     assert [decision and decision.command for decision in decisions] == [Push(-5.0, -5.0), Push(-1.0, 0.0)]
 
 

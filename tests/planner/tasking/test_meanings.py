@@ -17,7 +17,7 @@ from planner.stages import parameters_that_keep_meaning
 from planner.tasking.intention import Intention, with_meanings
 from planner.tasking.rule_effects import effects_of_rules
 from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import problem_of
+from planner.tasking.setting import WhereGoalsHold, problem_of
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_wishes import origin, stage_of
 
@@ -72,9 +72,12 @@ def situation_with(rows: list[str], as_well: Mapping[str, tuple[str, ...]], rule
     return replace(known_situation(rows), binding=binding, as_well=as_well, rules=rules)
 
 
+WHERE = WhereGoalsHold(goal_placement, origin, destination)
+
+
 def planned(situation: Situation, text: str, meant: Mapping[str, str] | None = None) -> MadePlan:
     """Return the plan for a task. text : as in goal.lp. meant : what the plan before meant."""
-    problem = problem_of(stage_of(text), situation, goal_placement, origin, destination)
+    problem = problem_of(stage_of(text), situation, WHERE)
     assert problem is not None
     return make_plan(problem, situation, CarryOracle(problem, situation), (), meant or {})
 
@@ -136,23 +139,23 @@ def test_what_the_plan_before_meant_is_given_up_for_many_commands_alone() -> Non
 
 def test_the_robot_pursues_what_the_plan_means_and_keeps_to_it() -> None:
     situation, stage = situation_with(IN_POCKET, {"x": ("h",)}), stage_of(POCKET_GOAL)
-    intention = Intention(destination)
-    after = intention.update(stage, situation, goal_placement, origin, {}, 1.0)
+    intention = Intention(WHERE)
+    after = intention.update(stage, situation, {}, 1.0)
     assert after.binding == {"x": "h"} and after.as_well == {"x": ("g",)} and intention.meanings == {"x": "h"}
-    found = intention.next_errand(stage, after, goal_placement, origin)
+    found = intention.next_errand(stage, after)
     assert found is not None and found.node.name == "h" and found.goal == stage.goals[0]
     plan = intention.plan
-    again = intention.update(stage, after, goal_placement, origin, {}, 1.0)
+    again = intention.update(stage, after, {}, 1.0)
     assert again.binding == {"x": "h"} and intention.plan == plan
     # Where reconciliation takes x for g after all, nothing of the plan is left.
-    back = intention.update(stage, replace(situation, as_well={}), goal_placement, origin, {}, 1.0)
+    back = intention.update(stage, replace(situation, as_well={}), {}, 1.0)
     assert back.binding == {"x": "g"} and intention.meanings == {}
 
 
 def test_what_is_in_hand_is_what_its_parameter_means() -> None:
     situation = situation_with(ACROSS, BOTH)
     held = replace(situation, model=replace(situation.model, held="g"))
-    problem = problem_of(stage_of(ACROSS_GOALS), held, goal_placement, origin, destination)
+    problem = problem_of(stage_of(ACROSS_GOALS), held, WHERE)
     assert problem is not None and "x" not in problem.meanings and problem.meanings["y"] == ("h", "g")
     made = make_plan(problem, held, CarryOracle(problem, held))
     assert dict(made.plan.meanings) == {"x": "g", "y": "h"}

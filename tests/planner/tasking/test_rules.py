@@ -18,7 +18,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.rule_effects import doors_led_round, effects_of_rules
 from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import problem_of
+from planner.tasking.setting import WhereGoalsHold, problem_of
 from simulator.scenario.settings import Settings
 from tests.planner.carrying.test_carrying import run, scene
 from tests.planner.situations import known_situation
@@ -80,7 +80,7 @@ def walk_with(rules: tuple[Path, ...]) -> tuple[MadePlan, Situation]:
     """Return the plan of a robot that shall go to a room next to that in which it is."""
     situation = situation_with(WALKER, rules, {})
     stage = Stage(facts_from_text("in(utak, room(next))."))
-    problem = problem_of(stage, situation, goal_placement, lambda _x, _node, _situation: (0.5, 0.5), destination)
+    problem = problem_of(stage, situation, WhereGoalsHold(goal_placement, lambda *_: (0.5, 0.5), destination))
     assert problem is not None and len(problem.stands) == 2
     return make_plan(problem, situation, CarryOracle(problem, situation)), situation
 

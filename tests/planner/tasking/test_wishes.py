@@ -15,7 +15,7 @@ from planner.situation import Situation
 from planner.stages import Stage, stages
 from planner.tasking.intention import Intention
 from planner.tasking.search import MadePlan, make_plan
-from planner.tasking.setting import goal_of_place, problem_of, wish_of_place
+from planner.tasking.setting import WhereGoalsHold, goal_of_place, problem_of, wish_of_place
 from tests.planner.situations import known_situation
 from tests.planner.tasking.test_search import SWAPPED, WALLED_IN
 
@@ -32,10 +32,13 @@ def origin(parameter: str, node: object, situation: Situation) -> tuple[float, f
     return found.polygon.centroid.x, found.polygon.centroid.y
 
 
+WHERE = WhereGoalsHold(goal_placement, origin, destination)
+
+
 def planned(rows: list[str], text: str) -> MadePlan:
     """Return the plan for a task in a drawn world, whose things g and h the task calls x and y."""
     situation = replace(known_situation(rows), binding={"x": "g", "y": "h"})
-    problem = problem_of(stage_of(text), situation, goal_placement, origin, destination)
+    problem = problem_of(stage_of(text), situation, WHERE)
     assert problem is not None
     return make_plan(problem, situation, CarryOracle(problem, situation))
 
@@ -93,17 +96,17 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
     situation = replace(known_situation(SWAPPED), binding={"x": "g", "y": "h"})
     x, y = origin("x", None, situation)
     east, north = situation.model.frame.place_to_utak(x, y)
-    stage, intention = stage_of(f'pose(x, "POINT ({east} {north})", 0). prefer({WISH}, 50).'), Intention(destination)
-    intention.update(stage, situation, goal_placement, origin, {}, 1.0)
-    found = intention.next_errand(stage, situation, goal_placement, origin)
+    stage, intention = stage_of(f'pose(x, "POINT ({east} {north})", 0). prefer({WISH}, 50).'), Intention(WHERE)
+    intention.update(stage, situation, {}, 1.0)
+    found = intention.next_errand(stage, situation)
     assert found is not None and found.goal == stage.wishes[0][0]
     intention.failed(found.errand, situation)
-    intention.update(stage, situation, goal_placement, origin, {}, 1.0)
-    assert intention.next_errand(stage, situation, goal_placement, origin) is None
+    intention.update(stage, situation, {}, 1.0)
+    assert intention.next_errand(stage, situation) is None
 
 
 @pytest.mark.parametrize("weight", [0, 3])
 def test_a_wish_of_which_nothing_is_known_changes_nothing(weight: int, tmp_path: Path) -> None:
     situation = replace(known_situation(SWAPPED), binding={"x": "g"})
-    problem = problem_of(stage_of(f"{GOAL} prefer({WISH}, {weight})."), situation, goal_placement, origin, destination)
+    problem = problem_of(stage_of(f"{GOAL} prefer({WISH}, {weight})."), situation, WHERE)
     assert problem is not None and [goal.name for goal in problem.goals] == ["g1"]

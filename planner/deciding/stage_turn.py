@@ -1,0 +1,92 @@
+"""The basis of a decision: a stage of the task, what is believed, and the tools with which commands are worked out."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from geometry.kernels.arrays import XY
+from kb.language.terms import Fact
+from kb.task.binding import Reconciliation
+from planner.advice import Go
+from planner.carrying.plan_executor import Advice, PlanExecutor
+from planner.deciding.pursuit import Pursuer
+from planner.deciding.verification import Verifier
+from planner.decision import Decision, TaskVerdict
+from planner.navigation.subgoals import Subgoal
+from planner.situation import Situation
+from planner.stages import Stage
+
+ALL_OBJECTS, ROBOT_ITSELF, CONSTRAINTS = "all", "robot", "task"  # what planner/asp/agenda.lp calls them
+
+
+@dataclass(frozen=True)
+class StageTurn:
+    """All that one decision is worked out with. The decider owns the tools, and lends them for the time of a decision.
+
+    Attributes
+    ----------
+    stage : of the task: the goals that shall hold now; none when all stages are attained.
+    situation : what is believed: world model, rooms, doors, corners and track.
+    reconciled : what the parameters of the task mean, and which objects may match those that nothing matches yet.
+    track : where the robot has been, (x, y) in squares, map frame.
+    executor : follows manipulation plans, and remembers the one under way.
+    pursuer : walks after subgoals, and remembers the present route.
+    verifier : makes sure of what is believed, and remembers what was looked at for that.
+    """
+
+    stage: Stage
+    situation: Situation
+    reconciled: Reconciliation
+    track: Sequence[XY]
+    executor: PlanExecutor
+    pursuer: Pursuer
+    verifier: Verifier
+
+    @cached_property
+    def goals(self) -> Mapping[str, Fact]:
+        """The goals for objects by name: g1, g2, ... in the order of the task."""
+        return {f"g{number}": goal for number, goal in enumerate(self.stage.carried, 1)}
+
+    def goals_of(self, subject: str) -> tuple[Fact, ...]:
+        """Return the goals that the robot is stuck with.
+
+        subject : the name of a goal, or one of ALL_OBJECTS, ROBOT_ITSELF and CONSTRAINTS.
+        """
+        if subject in self.goals:
+            return (self.goals[subject],)
+        return {ALL_OBJECTS: self.stage.carried, ROBOT_ITSELF: self.stage.own}.get(subject, ())
+
+    def within(self, situation: Situation) -> "StageTurn":
+        """Return the turn with something else believed."""
+        return replace(self, situation=situation)
+
+    def seek(
+        self,
+        subgoals: Sequence[Subgoal],
+        missing: Callable[[], str] = str,
+        verdict: TaskVerdict = TaskVerdict.IMPOSSIBLE,
+        along: Callable[[Subgoal], Decision | None] | None = None,
+    ) -> Decision:
+        """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue."""
+        return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, verdict, along)
+
+    def look(self, look: Subgoal | None) -> Decision | None:
+        """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
+        return self.pursuer.pursue_look(look, self.stage, self.situation)
+
+    def look_if_reached(self, look: Subgoal | None) -> Decision | None:
+        """Return the next command towards a look; None for no look, or when no way leads there."""
+        found = self.look(look)
+        return None if found is None or found.command is None else found
+
+    def go(self, go: Go) -> Decision:
+        """Return the next command to where an object is grasped, or the verdict: see Pursuer.go."""
+        return self.pursuer.go(go, self.stage, self.situation)
+
+    def prepare(self, advice: Advice) -> Decision | None:
+        """Return the next command to where an object is grasped or seen; None for neither: see Pursuer.prepare."""
+        return self.pursuer.prepare(advice, self.stage, self.situation)
+
+    def feel_before_verdict(self, ask: Callable[[], Decision]) -> Decision:
+        """Return what is decided; what may be an object is felt before a verdict: see Pursuer.feel_before_verdict."""
+        return self.pursuer.feel_before_verdict(ask, self.stage, self.situation)
