@@ -91,7 +91,7 @@ ACTIVITIES: Mapping[str, int] = {
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
 SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
-BEGUN_ARGUMENT = word_argument("begun activity", ("make_way", "feel"))
+BEGUN_ARGUMENT = word_argument("begun activity", ("make_way", "try", "feel"))
 VERDICT_ARGUMENT = word_argument("verdict", ("done", "limit", "impossible", "possible_if"))
 # By the name of an argument type: the predicates whose facts name all such things, and the index of that argument.
 DEFINING_FACTS: Mapping[str, tuple[tuple[Signature, int], ...]] = {

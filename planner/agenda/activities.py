@@ -19,6 +19,7 @@ from planner.deciding.feeling import feeling_scope
 from planner.deciding.keeping import ConstraintKeeper
 from planner.deciding.stage_turn import CONSTRAINTS, StageTurn
 from planner.deciding.transport import Transporter
+from planner.deciding.trials import Trials
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.robot_goals import destination
 from planner.per_model import PerModel
@@ -44,7 +45,7 @@ class Activities:
         pull : whether a held object may be pulled.
         """
         where = PerModel(destination)
-        self._transporter, self._clearer = Transporter(), ObstacleClearer()
+        self._transporter, self._clearer, self._trials = Transporter(), ObstacleClearer(), Trials()
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
 
@@ -79,7 +80,8 @@ class Activities:
         model = turn.situation.model
         yield from (f"stage_goal({name},{number})" for number, name in enumerate(turn.goals, 1))
         yield from _unknown(turn)
-        yield from (f"begun({activity})" for activity in self._clearer.begun(turn.situation))
+        begun = (*self._clearer.begun(turn.situation), *self._trials.begun(turn.situation))
+        yield from (f"begun({activity})" for activity in begun)
         if not turn.stage.goals and self._doubt_of_done(turn.situation):
             yield "constraints_doubtful"
         given = {
@@ -114,7 +116,7 @@ class Activities:
             "look": lambda: self._own.look(turn, self._transporter),
             "pull": lambda: clearer.pull(goals, ruled),
             "make_way": lambda: clearer.clear(goals, ruled),
-            "try": lambda: clearer.feel_things(goals, ruled),
+            "try": lambda: self._trials.next(goals, ruled),
             "feel": lambda: clearer.feel(goals, ruled),
             "bare": lambda: clearer.bare(goals, ruled),
             "blame": lambda: _added(last, clearer.blame(ruled.situation)),
@@ -125,8 +127,10 @@ class Activities:
         return doing[activity.kind]()
 
     def _resume(self, begun: str, turn: StageTurn) -> Decision:
-        """Return the next command of what was begun in an earlier decision: make_way or feel."""
-        go_on = {"make_way": self._clearer.clear_on, "feel": self._clearer.feel_on}[begun]
+        """Return the next command of what was begun in an earlier decision: make_way, try or feel."""
+        go_on = {"make_way": self._clearer.clear_on, "try": self._clearer.clear_on, "feel": self._clearer.feel_on}[
+            begun
+        ]
         return go_on(turn)
 
     def _nothing_settles(self) -> Decision:

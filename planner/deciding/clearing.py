@@ -9,7 +9,7 @@ from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end
-from planner.deciding.feeling import feel_rim, feel_things, feel_walls, feeling_scope, walls_to_feel
+from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, TaskVerdict, nothing_to_do
@@ -111,16 +111,6 @@ class ObstacleClearer:
         felt = feel_walls(turn)
         self._feeling |= felt is not None
         return felt or nothing_to_do("nothing is left to feel")
-
-    def feel_things(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
-        """Return the next command to feel things all round that may be several; nothing when none is left.
-
-        Parameters
-        ----------
-        goals, turn : as for `clear`.
-        """
-        self._let_stay(goals, turn.situation)
-        return feel_things(turn) or nothing_to_do("no thing is left to feel all round")
 
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move away what stands before walls that were never felt; nothing for none.

@@ -1,0 +1,95 @@
+"""Trials: what seems one thing may be several that touch. It is felt all round, or moved by a square to find out."""
+
+from collections.abc import Callable, Sequence
+from itertools import product
+
+from geometry.manipulation.goals import At
+from geometry.motion.se2 import Pose
+from kb.language.terms import Fact
+from kb.world.model import Node
+from planner.deciding.bringing import bring_to_end
+from planner.deciding.feeling import feel_rims, feeling_scope
+from planner.deciding.stage_turn import StageTurn
+from planner.decision import Decision, nothing_to_do
+from planner.sights.things import things_in_question, unfelt_rims
+from planner.sights.walls import EDGE_STEPS
+from planner.situation import Situation
+
+TRIAL_TARGET = "trial"  # the ends of plans that move a thing by a square, with the number of the direction after it
+TRIAL_COMMANDS = 4  # commands that it takes to move a thing by a square: walk, grasp, push, release
+
+Trial = tuple[str, int]  # the name of a thing, and the number of the direction in EDGE_STEPS
+
+
+class Trials:
+    """Finds out whether what seems one thing is several, and remembers which way things did not move."""
+
+    def __init__(self) -> None:
+        """Make one that tried nothing."""
+        self._moving = ""
+        self._stuck_before: dict[Trial, int] = {}  # how often a thing had not moved when a trial was begun
+        self._vain: set[Trial] = set()  # trials in which a thing did not move
+
+    def begun(self, situation: Situation) -> tuple[str, ...]:
+        """Return ("try",) while a thing that is to be moved is in hand, as planner/asp/agenda.lp calls it; else ()."""
+        return ("try",) if self._moving and situation.model.held == self._moving else ()
+
+    def go_on(self, turn: StageTurn) -> Decision:
+        """Return the next command for the thing in hand that is moved by a square; nothing when that is done.
+
+        Parameters
+        ----------
+        turn : the stage, what is believed, and the tools.
+        """
+        name, model = self._moving, turn.situation.model
+        node = model.object(name)
+        act = None if node is None else turn.executor.continue_plan(node, turn.situation)
+        if act is None or turn.pursuer.closes_loop(model, act.command):
+            self._moving = ""
+            return nothing_to_do(f"{name} is no longer tried")
+        return Decision(act.command, f"{act.why}; {turn.stage}")
+
+    def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
+        """Return the next command to find out whether what seems one thing is several; nothing when nothing is left.
+
+        Such a thing is felt all round where that takes fewer commands than to move it, and moved else: what moves
+        together is one thing. What the goals speak of stays where it is.
+
+        Parameters
+        ----------
+        goals : that the robot is stuck with.
+        turn : the stage, what is believed, and the tools.
+        """
+        situation = turn.situation
+        scope = feeling_scope(turn.stage, situation)
+        rims = unfelt_rims(situation.cost_maps, scope)
+        meant = {situation.binding.get(str(term), "") for goal in goals for term in goal.args}
+        asked = things_in_question(situation.model, situation.cost_maps, scope)
+        things = [node for node in asked if node.name not in meant]
+        ways: tuple[Callable[[], Decision | None], ...] = (
+            lambda: feel_rims([rim for rim in rims if rim.halts < TRIAL_COMMANDS], turn),
+            lambda: self._move_by_a_square(things, turn),
+            lambda: feel_rims(rims, turn),
+        )
+        tried = (way() for way in ways)
+        return next((one for one in tried if one is not None), nothing_to_do("no thing is left to try"))
+
+    def _move_by_a_square(self, things: Sequence[Node], turn: StageTurn) -> Decision | None:
+        """Return the next command to move one of some things by a square; None where none can be.
+
+        A thing that did not move one way is moved another way.
+        """
+        for node, number in product(things, range(len(EDGE_STEPS))):
+            trial = node.name, number
+            if node.stuck > self._stuck_before.get(trial, node.stuck):
+                self._vain.add(trial)
+            if trial in self._vain:
+                continue
+            dx, dy = EDGE_STEPS[number]
+            purpose = f"whether {node.name} is one thing is not known: "
+            moved = bring_to_end(node, f"{TRIAL_TARGET}{number}", At(Pose(float(dx), float(dy), 0.0)), turn, purpose)
+            if moved is not None:
+                self._moving = node.name
+                self._stuck_before.setdefault(trial, node.stuck)
+                return moved
+        return None

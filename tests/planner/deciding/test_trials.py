@@ -1,0 +1,52 @@
+"""What seems one thing is felt all round or moved by a square, another way where it did not move, before a verdict."""
+
+from dataclasses import replace
+
+from kb.body import Grasp, Move
+from kb.language.reader import facts_from_text
+from planner.deciding.trials import Trials
+from planner.situation import Situation
+from planner.stages import Stage
+from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
+
+SMALL = ["bbbbbbbbbbbb", "b..........b", "b..gg......b", "b..gg...U..b", "b..........b", "bbbbbbbbbbbb"]
+LARGE = ["b" * 24, *["b" + "." * 22 + "b"] * 2, *["b..gggggggggggggg......b"] * 5, "b....................U.b", "b" * 24]
+ELSEWHERE = Stage(facts_from_text("at(x, corner(northeast))."))
+WALK = Stage(facts_from_text("in(utak, room(next))."))
+
+
+def felt(rows: list[str], bound: str = "", stuck: int = 0, moved: bool = False) -> Situation:
+    """Return the situation of a robot that felt everything. bound : what the parameter x means."""
+    model = all_felt(known_situation(rows, moved).model)
+    objects = tuple(replace(node, stuck=stuck) for node in model.objects)
+    return situation_of(replace(model, objects=objects), {"x": bound} if bound else {})
+
+
+def test_a_small_thing_is_felt_all_round_and_a_large_one_is_moved() -> None:
+    small, large = (Trials().next((), turn_of(ELSEWHERE, known_situation(rows))) for rows in (SMALL, LARGE))
+    assert "felt all round" in small.why and "grasped" in large.why
+
+
+def test_what_was_felt_all_round_is_moved_by_a_square() -> None:
+    decision = Trials().next((), turn_of(ELSEWHERE, felt(SMALL)))
+    assert isinstance(decision.command, Move | Grasp) and "grasped" in decision.why
+
+
+def test_what_was_moved_is_one_thing() -> None:
+    assert Trials().next((), turn_of(ELSEWHERE, felt(SMALL, moved=True))).result == "idle"
+
+
+def test_what_a_goal_speaks_of_is_not_moved() -> None:
+    assert Trials().next(ELSEWHERE.goals, turn_of(ELSEWHERE, felt(SMALL, "g"))).result == "idle"
+
+
+def test_a_thing_that_did_not_move_one_way_is_moved_another_way_until_none_is_left() -> None:
+    trials, tools, whys = Trials(), tools_with(), list[str]()
+    for stuck in range(6):
+        decision = trials.next((), turn_of(ELSEWHERE, felt(SMALL, stuck=stuck), tools))
+        whys.append(decision.why)
+    assert [why for why in whys[:4] if "no thing" in why] == [] and whys[4:] == ["no thing is left to try"] * 2
+
+
+def test_where_no_thing_matters_none_is_tried() -> None:
+    assert Trials().next((), turn_of(WALK, known_situation(SMALL))).result == "idle"
