@@ -128,10 +128,8 @@ class Activities:
 
     def _resume(self, begun: str, turn: StageTurn) -> Decision:
         """Return the next command of what was begun in an earlier decision: make_way, try or feel."""
-        go_on = {"make_way": self._clearer.clear_on, "try": self._clearer.clear_on, "feel": self._clearer.feel_on}[
-            begun
-        ]
-        return go_on(turn)
+        clearer = self._clearer
+        return {"make_way": clearer.clear_on, "try": self._trials.go_on, "feel": clearer.feel_on}[begun](turn)
 
     def _nothing_settles(self) -> Decision:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
