@@ -22,6 +22,7 @@ from kb.localisation.propose.blocked import has_whole_way, possible_ends
 from kb.localisation.propose.contradicted_motion import overlooked_contact
 from kb.localisation.propose.held_object_state import lean_on_obstacle, object_after
 from kb.localisation.propose.larger_object import larger_objects
+from kb.localisation.propose.parted_object import parted_objects
 from kb.localisation.score import (
     CONTRADICTION_RESIDUAL,
     Judgement,
@@ -92,11 +93,11 @@ def _outcomes(
     blocked: Iterable[Explanation],
     contacts: Iterable[ContactHypothesis],
 ) -> list[Explanation]:
-    """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, larger.
+    """Return what else may have come of the motion in the believed frame: blocked, stuck, slipped, smaller, and so on.
 
     Each has its kind (`how`), Utak's place (x, y) and the object's outline, map frame, in squares, and the number of
     fields left unexplained. Blocked by a contact comes first, then stuck, blocked anywhere on the way (the furthest
-    first), slipped (the nearest first), smaller and larger.
+    first), slipped (the nearest first), smaller, larger and parted.
 
     Parameters
     ----------
@@ -112,6 +113,7 @@ def _outcomes(
     outcomes = [*blocked] or [one for one in (_outcome(state, surprise, end) for end in ends) if not one.residual]
     outcomes += [_outcome(state, surprise, other) for other in other_outcomes(state.place, held.polygon, motion)]
     outcomes += [*_smaller(state, surprise.ranges, held, whole), *larger_objects(surprise, held, motion)]
+    outcomes += parted_objects(surprise, held, motion)
     return outcomes
 
 

@@ -35,6 +35,7 @@ from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
+from kb.mapping.patch import patch_of_squares
 from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
 from kb.perception.retina import count_ranges
 
@@ -259,9 +260,13 @@ class Tracker:
         command : the push or turn, Utak's own frame.
         ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
         """
-        if chosen.larger is not None:
-            self._declare_floor(chosen.larger)
-            self.update_object(chosen.larger)
+        if chosen.instead is not None:
+            self._declare_floor(chosen.instead)
+            self.update_object(chosen.instead)
+        if chosen.left:
+            occupancy, rest = self.state.occupancy, patch_of_squares(chosen.left)
+            squares = occupancy.squares(rest.west, rest.south, rest.mask)
+            occupancy.declare(squares, OCCUPIED, len(self.state.observations) - 1)
         self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
         held, motion = self.state.held_objects[name], command_motion(command, self.state.frame, self.state.place)
         suspected = contact_suspects(self.state, held, chosen, motion)

@@ -154,6 +154,28 @@ def cornered_parts(solid: Bools, felt: Mapping[RowColumn, str]) -> list[Bools]:
     return sorted((labels == n for n in numbers), key=lambda mask: int(mask.sum()))
 
 
+def halves(region: Bools) -> Iterator[Bools]:
+    """Yield the parts that arise when a region is cut in two along one straight line, the simplest outlines first.
+
+    For each cut both parts come one after the other. Lines from inner corner to inner corner come first, then short
+    ones.
+
+    Parameters
+    ----------
+    region : (rows, columns) bool, an edge-connected set of squares.
+    """
+    lines = sorted(_lines(region, max(region.shape)), key=lambda line: (_loose_ends(line, region), line.length))
+    for line in lines:
+        labels = _labels(region, [line])
+        if int(labels.max()) == 2:
+            yield from (labels == 1, labels == 2)
+
+
+def _loose_ends(line: SeamLine, region: Bools) -> int:
+    """Return how many ends of a line are at no inner corner of a region."""
+    return sum(not _is_inner_corner(end, line, region) for end in (0, 1))
+
+
 def _lines(region: Bools, longest: int = MAX_THING_LENGTH) -> Iterator[SeamLine]:
     """Yield the lines from rim to rim that are at most `longest` squares long, upright ones first."""
     for upright, mask in ((True, region), (False, region.T)):
@@ -212,7 +234,7 @@ def _best(
         left = _mixed(after, colours)
         if left >= mixed:
             continue
-        loose = sum(not _is_inner_corner(end, line, region) for line in choice for end in (0, 1))
+        loose = sum(_loose_ends(line, region) for line in choice)
         cost = left, loose, sum(line.length for line in choice), sum(_lopsided(line, after, colours) for line in choice)
         if best is None or cost < least:
             best, least = choice, cost

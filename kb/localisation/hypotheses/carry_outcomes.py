@@ -36,7 +36,8 @@ class CarryOutcome(NamedTuple):
     Attributes
     ----------
     how : predicted; stuck (nothing moved); blocked (it ended early); slipped (it ended beside); smaller (as commanded,
-        but the object does not fill its squares); larger (as commanded, but there is more of the object than was seen).
+        but the object does not fill its squares); larger (as commanded, but there is more of the object than was seen);
+        parted (as commanded, but the object is only a part of what seemed one thing).
     place : of Utak after it, (x, y) in squares, map frame; for an end on a grid line the side from which the
         observation is made.
     polygon : the outline of the object after it (shapely Polygon), map frame.
@@ -57,8 +58,8 @@ class CarryOutcome(NamedTuple):
 
     @property
     def as_commanded(self) -> bool:
-        """Return whether the motion went as commanded: predicted, smaller or larger."""
-        return self.how in ("predicted", "smaller", "larger")
+        """Return whether the motion went as commanded: predicted, smaller, larger or parted."""
+        return self.how in ("predicted", "smaller", "larger", "parted")
 
     @property
     def stopped(self) -> bool:

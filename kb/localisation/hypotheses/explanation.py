@@ -27,7 +27,8 @@ class Explanation(NamedTuple):
     how : its kind, as in kb/asp/accommodation.lp: predicted (the motion went as commanded), blocked (it ended early),
         slipped (it ended beside the predicted end), turned (the frame is another one), misled (an earlier motion, or
         this one in another frame, ended early), stuck (nothing moved), smaller or larger (as commanded, but the held
-        object is smaller or larger than it seemed); or lost or anew after a new beginning.
+        object is smaller or larger than it seemed), parted (as commanded, but the held object is only a part of what
+        seemed one thing); or lost or anew after a new beginning.
     place : where the observation was made, (x, y) in squares, map frame of `frame`.
     frame : the frame by this explanation.
     residual : number of fields that it leaves unexplained (they contradict the map or an object by it); 0 is best.
@@ -41,7 +42,8 @@ class Explanation(NamedTuple):
     prior_cost : by how much the simplest map costs more than by the best explanation, in log odds (natural logarithm).
     contact_squares : the open squares (not settled as free or occupied) one of which blocked the motion, map frame.
     origin_weighed : whether `prior_cost` contains the log odds against the origin of `frame`.
-    larger : the object before the motion, if more of it was there than was seen; else None.
+    instead : the object before the motion, if it was larger than was seen, or only a part of it; else None.
+    left : the squares of what seemed part of the object and stayed where it was, map frame; empty for none.
     """
 
     how: str
@@ -56,7 +58,8 @@ class Explanation(NamedTuple):
     prior_cost: float = 0.0
     contact_squares: frozenset[Square] = frozenset()
     origin_weighed: bool = False
-    larger: HeldObject | None = None
+    instead: HeldObject | None = None
+    left: frozenset[Square] = frozenset()
 
     @property
     def remaps(self) -> bool:

@@ -5,6 +5,7 @@ In the order in which they are asked for:
 blocked  the newest motion was blocked: every possible end, with its chance
 contradicted_motion  a carrying motion was blocked, where the observation contradicts only what it itself settles
 larger_object  a held object goes on in what seemed to be wall
+parted_object  a held object is only a part of what seemed one thing
 frame  another frame, once objects were moved
 origin_from_turns  another origin, as turned objects tell it
 earlier_motion  an earlier motion ended elsewhere, once objects were moved

@@ -41,7 +41,7 @@ def larger_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     Yields
     ------
     Explanation
-        Of kind larger, at the commanded place (x, y) in squares, map frame. Without residual; `larger` is the object
+        Of kind larger, at the commanded place (x, y) in squares, map frame. Without residual; `instead` is the object
         before the push; `distance` is how far it goes on at least beyond what was seen, 1 to MAX_HIDDEN_DEPTH squares.
     """
     if held.proven or not isinstance(motion, Translate) or not is_grid_aligned(held.polygon):
@@ -118,7 +118,7 @@ def _agreeing_lengths(
         floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
         held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
         if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
-            found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, larger=whole)
+            found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, instead=whole)
             yield _Length(found, states == {OCCUPIED}, floor, held_objects)
 
 

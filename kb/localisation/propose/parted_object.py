@@ -1,0 +1,82 @@
+"""Proposals that a held object is only a part of what seemed one thing: it moved, and the rest stayed where it was.
+
+Things that touch look one. Which of them is in hand shows when the robot moves: the one moves with it, the other does
+not.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import shapely
+
+from geometry.kernels.arrays import Bools
+from geometry.motion.se2 import Motion, Translate
+from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from kb.localisation.hypotheses.explanation import Explanation
+from kb.localisation.hypotheses.what_if import Surprise, count_clashes
+from kb.mapping.occupancy import OCCUPIED
+from kb.mapping.patch import Patch, patch_of_polygon
+from kb.objects.held_object import HeldObject, is_grid_aligned
+from kb.perception.seams import halves
+
+
+def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
+    """Yield the explanation that a push went as commanded and the object is only a part of what seemed one thing.
+
+    At most one: of the straight cuts with which the observation agrees the one that leaves the simplest outlines. What
+    is in hand touches the robot's square, and does not move over the rest.
+
+    Only for an object that never moved before; nothing for a turn.
+
+    Parameters
+    ----------
+    surprise : the observation after the push.
+    held : the object in hand as it seemed, before the push, map frame.
+    motion : as commanded, map frame.
+
+    Yields
+    ------
+    Explanation
+        Of kind parted, at the commanded place (x, y) in squares, map frame. Without residual; `instead` is the object
+        before the push, and `left` the squares of the rest.
+    """
+    if held.proven or not isinstance(motion, Translate):
+        return
+    patch = patch_of_polygon(held.polygon)
+    others = [other for other in surprise.held_objects.values() if other.name != held.name]
+    for mask in halves(patch.mask):
+        part, rest = _parted(held, patch, mask), Patch(patch.west, patch.south, patch.mask & ~mask)
+        if part is None or not _is_beside(part, surprise):
+            continue
+        outcome = predicted_outcome(surprise.place, part.polygon, motion)._replace(how="parted")
+        if patch_of_polygon(outcome.polygon).squares() & rest.squares():
+            continue
+        occupancy = surprise.occupancy.copy()
+        squares = occupancy.squares(rest.west, rest.south, rest.mask)
+        occupancy.declare(squares, OCCUPIED, len(surprise.observations) - 1)
+        held_objects = [*others, part.moved(outcome.polygon, part.slack, commanded=True)]
+        if not count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges):
+            left = frozenset(rest.squares())
+            yield Explanation("parted", outcome.place, surprise.frame, 0, 0.0, outcome, instead=part, left=left)
+            return
+
+
+def _parted(held: HeldObject, patch: Patch, mask: Bools) -> HeldObject | None:
+    """Return the part of an object that lies on some of its squares; None where that is no single outline.
+
+    An outline askew was fitted to what is no one thing, so the part fills its squares then. Its shape class and
+    sub-cell extent are unknown. patch : the squares of the object. mask : those of the part, bool.
+    """
+    squares = Patch(patch.west, patch.south, mask).squares()
+    cells = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in squares])
+    polygon = held.polygon.intersection(cells) if is_grid_aligned(held.polygon) else cells
+    if polygon.geom_type != "Polygon" or polygon.is_empty:
+        return None
+    return replace(held.lying(polygon), first=polygon, shape={}, insets=None)
+
+
+def _is_beside(part: HeldObject, surprise: Surprise) -> bool:
+    """Return whether a part covers one of the eight squares about that of the robot, before the motion."""
+    x, y = (int(v // 1) for v in surprise.place)
+    about = {(x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    return bool(about & patch_of_polygon(part.polygon).squares())
