@@ -71,6 +71,8 @@ class HeldObject:
         Numbers of the impressions, from 0, that support it; every impression of it is added.
     proven : bool
         Whether it was seen to move.
+    whole : bool
+        Whether it was seen to move as one thing: a motion that did not end early left no field unexplained.
     stuck : int
         How many of the last motions in a row did not move it.
     since : int
@@ -113,6 +115,7 @@ class HeldObject:
     inexact: bool = False
     insets: SubcellExtent | None = None
     stopped: bool = False
+    whole: bool = False
 
     @property
     def dubious(self) -> bool:

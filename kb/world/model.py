@@ -80,6 +80,8 @@ class Node:
         Percent of belief that it can be moved.
     moved : bool
         Whether the robot has moved it.
+    whole : bool
+        Whether it was seen to move as one thing.
     turned : float
         Degrees by which it was turned since it was first held, counter-clockwise positive.
     stuck : int
@@ -110,6 +112,7 @@ class Node:
     support: tuple[int, ...] = ()
     movable: int = 50
     moved: bool = False
+    whole: bool = False
     turned: float = 0.0
     stuck: int = 0
     dubious: bool = False

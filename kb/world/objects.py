@@ -525,6 +525,7 @@ def held_node(load: HeldObject, patch: Patch, label: int) -> Node:
         support=load.support,
         movable=movable,
         moved=load.proven,
+        whole=load.whole,
         turned=load.turned,
         stuck=load.stuck,
         dubious=load.dubious,

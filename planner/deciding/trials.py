@@ -5,6 +5,7 @@ from itertools import product
 
 from geometry.manipulation.goals import At
 from geometry.motion.se2 import Pose
+from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end
@@ -22,17 +23,16 @@ Trial = tuple[str, int]  # the name of a thing, and the number of the direction 
 
 
 class Trials:
-    """Finds out whether what seems one thing is several, and remembers which way things did not move."""
+    """Finds out whether what seems one thing is several, and remembers which way things were pushed for that."""
 
     def __init__(self) -> None:
         """Make one that tried nothing."""
-        self._moving = ""
-        self._stuck_before: dict[Trial, int] = {}  # how often a thing had not moved when a trial was begun
-        self._vain: set[Trial] = set()  # trials in which a thing did not move
+        self._begun: Trial | None = None
+        self._made: set[Trial] = set()  # trials in which the thing was pushed
 
     def begun(self, situation: Situation) -> tuple[str, ...]:
         """Return ("try",) while a thing that is to be moved is in hand, as planner/asp/agenda.lp calls it; else ()."""
-        return ("try",) if self._moving and situation.model.held == self._moving else ()
+        return ("try",) if self._begun is not None and situation.model.held == self._begun[0] else ()
 
     def go_on(self, turn: StageTurn) -> Decision:
         """Return the next command for the thing in hand that is moved by a square; nothing when that is done.
@@ -41,13 +41,14 @@ class Trials:
         ----------
         turn : the stage, what is believed, and the tools.
         """
-        name, model = self._moving, turn.situation.model
+        assert self._begun is not None
+        name, model = self._begun[0], turn.situation.model
         node = model.object(name)
-        act = None if node is None else turn.executor.continue_plan(node, turn.situation)
+        act = None if node is None or self._begun in self._made else turn.executor.continue_plan(node, turn.situation)
         if act is None or turn.pursuer.closes_loop(model, act.command):
-            self._moving = ""
+            self._begun = None
             return nothing_to_do(f"{name} is no longer tried")
-        return Decision(act.command, f"{act.why}; {turn.stage}")
+        return self._noted(self._begun, Decision(act.command, f"{act.why}; {turn.stage}"))
 
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left.
@@ -77,19 +78,21 @@ class Trials:
     def _move_by_a_square(self, things: Sequence[Node], turn: StageTurn) -> Decision | None:
         """Return the next command to move one of some things by a square; None where none can be.
 
-        A thing that did not move one way is moved another way.
+        A thing that did not move as one one way is moved another way.
         """
         for node, number in product(things, range(len(EDGE_STEPS))):
-            trial = node.name, number
-            if node.stuck > self._stuck_before.get(trial, node.stuck):
-                self._vain.add(trial)
-            if trial in self._vain:
+            trial, (dx, dy) = (node.name, number), EDGE_STEPS[number]
+            if trial in self._made:
                 continue
-            dx, dy = EDGE_STEPS[number]
             purpose = f"whether {node.name} is one thing is not known: "
             moved = bring_to_end(node, f"{TRIAL_TARGET}{number}", At(Pose(float(dx), float(dy), 0.0)), turn, purpose)
             if moved is not None:
-                self._moving = node.name
-                self._stuck_before.setdefault(trial, node.stuck)
-                return moved
+                self._begun = trial
+                return self._noted(trial, moved)
         return None
+
+    def _noted(self, trial: Trial, decision: Decision) -> Decision:
+        """Return a decision, and remember that the thing is pushed if it is."""
+        if isinstance(decision.command, Push):
+            self._made.add(trial)
+        return decision

@@ -13,7 +13,7 @@ from planner.sights.walls import DOORWAY_WIDTH, MIN_LIKELY_OBJECT, FeelingScope
 
 
 def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
-    """Return the objects that were never moved, and may be several things, in the order of the model.
+    """Return the objects that were never seen to move as one thing, and so may be several, in the order of the model.
 
     Where neither a wall between two parts of the floor matters nor the task speaks of objects, those all around which
     the floor is reached are left out.
@@ -24,11 +24,11 @@ def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingSco
     cost_maps : of that model.
     scope : what matters for the task.
     """
-    unmoved = [node for node in model.objects if not node.moved and node.confidence >= MIN_LIKELY_OBJECT]
+    several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.parting or scope.things:
-        return unmoved
-    masks = {node.name: model.mask(node.patch) for node in unmoved}
-    return [node for node in unmoved if (dilate(masks[node.name], 1) & ~masks[node.name] & ~cost_maps.floor).any()]
+        return several
+    masks = {node.name: model.mask(node.patch) for node in several}
+    return [node for node in several if (dilate(masks[node.name], 1) & ~masks[node.name] & ~cost_maps.floor).any()]
 
 
 class UnfeltRim(NamedTuple):

@@ -60,7 +60,9 @@ def known_situation(rows: list[str], moved: bool = False, movable: int = 50, hel
         mask = marks[south:north, west:east] == letter
         patch = Patch(int(west) + model.view.west, int(south) + model.view.south, mask)
         box = shapely.box(patch.west, patch.south, patch.west + mask.shape[1], patch.south + mask.shape[0])
-        nodes.append(Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, movable=movable))
+        nodes.append(
+            Node(letter, "object", 95, "part1", patch, 0, polygon=box, moved=moved, whole=moved, movable=movable)
+        )
     return situation_of(replace(model, objects=tuple(nodes), held=held))
 
 

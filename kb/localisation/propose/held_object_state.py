@@ -25,7 +25,8 @@ def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, 
     """Return an object in hand after a motion: with its new outline (shapely Polygon, in squares, map frame).
 
     Its rotation `turned` (degrees), its tolerance `slack` (squares), the squares known to be empty of it, and the
-    greatest number of fields that a motion left unexplained are brought up to date as well; `held` is not changed.
+    greatest number of fields that a motion left unexplained are brought up to date as well, and whether it was seen to
+    move as one thing; `held` is not changed.
     Where it did not move, only the counts `stuck` and `thwarted` go on, and its place may become inexact.
 
     Parameters
@@ -44,7 +45,8 @@ def object_after(held: HeldObject, outcome: CarryOutcome | None, residual: int, 
         held = held.inset(outcome.insets) or held
     slack = held.slack if outcome.as_commanded else max(held.slack, outline_tolerance(outcome.polygon))
     moved = held.moved(outcome.polygon, slack, outcome.degrees, outcome.as_commanded)
-    moved = replace(moved, empty=moved.empty | outcome.contact_squares)
+    whole = held.whole or not (residual or outcome.stopped)
+    moved = replace(moved, empty=moved.empty | outcome.contact_squares, whole=whole)
     unmoved = outcome.how == "blocked" and held.polygon.hausdorff_distance(outcome.polygon) < MIN_MOVED_DISTANCE
     return replace(moved, stuck=held.stuck + 1) if unmoved else moved
 
