@@ -26,7 +26,7 @@ from kb.perception.frame import ADJACENT_OFFSETS
 from kb.reasoning.solver import solve
 from kb.world.model import Node, WorldModel
 from planner.carrying.infeasibility import Infeasibility, certify
-from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor, with_unseen_margin
+from planner.goals.optimistic import OPTIMISTIC_LEVEL, UNSEEN_MARGIN, optimistic_floor
 from planner.goals.placement import (
     CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
@@ -279,7 +279,7 @@ class ManipulationOracle:
         hoped : returns the hoped ends, by name, in squares, view frame; they replace the ends of the same name.
         """
         model, node = situation.model, request.node
-        own, walk = with_unseen_margin(model.mask(node.patch)), with_unseen_margin(situation.cost_maps.free(0))
+        own, walk = (np.pad(mask, UNSEEN_MARGIN) for mask in (model.mask(node.patch), situation.cost_maps.free(0)))
         free = (optimistic_floor(situation) | own) & ~forbidden_squares(node, situation, UNSEEN_MARGIN)
         if (free == walk | own).all():
             return

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
-from geometry.manipulation.plan_carrying import Inside, Leg
+from geometry.manipulation.plan_carrying import Inside
 from geometry.motion.se2 import Rotate, Translate
 from kb.body import Grasp, Move, Release
 from kb.objects.held_object import is_grid_aligned
@@ -382,10 +382,9 @@ class PlanExecutor:
             request = replace(request, held=True)  # to release the object and grasp it otherwise does not help either
             found = self._oracle.find(request, situation, hoped)
         if isinstance(found, Infeasibility):
-            again = not found.proved and self.failed.forgive(node)
-            if again:
-                return self._make_plan(replace(asked, avoid=self.failed.grasps(node)), situation, hoped)
-            return found
+            if found.proved or not self.failed.forgive(node):
+                return found
+            return self._make_plan(replace(asked, avoid=self.failed.grasps(node)), situation, hoped)
         if found.aside:
             cleared = self._clear_way(found, node, situation)
             if isinstance(cleared, See | Infeasibility):
@@ -434,15 +433,14 @@ class PlanExecutor:
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
             return touch
-        asked = (self._plan_aside(other, found, situation) for other in situation.model.objects)
+        asked = [self._plan_aside(other, found, situation) for other in situation.model.objects]
         cleared = [one for one in asked if one is not None]
         if cleared:
             return min(cleared, key=lambda one: one[1].plan.commands)
         look = look_at_obstacle(found, situation)
         if look is not None:
             return look
-        why = f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside"
-        return Infeasibility(False, why)
+        return Infeasibility(False, f"{found.aside[0]} is in the way of {node.name}, and cannot be moved aside")
 
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
         """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress.
@@ -513,7 +511,7 @@ class PlanExecutor:
         self._plan = plan
         leg, model = plan.legs[0], situation.model
         if not plan.grasped:
-            return self._take(plan, leg, ends, situation)
+            return self._take(plan, ends, situation)
         if not leg.motions:
             self._plan = replace(plan, legs=plan.legs[1:], grasped=False, place=None)
             return Act(Release(), f"{plan.name} is where it shall be released")
@@ -526,7 +524,7 @@ class PlanExecutor:
         self._plan = replace(plan, legs=(rest, *plan.legs[1:]), polygon=polygon, place=place)
         return Act(command_of(motion, model), f"{plan.name} is carried to its place ({plan.target})")
 
-    def _take(self, plan: RemainingPlan, leg: Leg, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
+    def _take(self, plan: RemainingPlan, ends: Mapping[str, End], situation: Situation) -> Act | Go | None:
         """Return the step to where the object is grasped, or the grasp; from the present place if that does as well.
 
         A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
@@ -539,12 +537,11 @@ class PlanExecutor:
 
         Parameters
         ----------
-        plan : the remaining plan, map frame.
-        leg : its first leg, before the grasp.
+        plan : the remaining plan, map frame, before the grasp of its first leg.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
         situation : what is believed (world model, rooms, doors, corners, track).
         """
-        model = situation.model
+        model, leg = situation.model, plan.legs[0]
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)
         begun = plan if is_at(model, leg.place) else None
         if begun is None and there and self.pull:  # where pulling is not allowed, only the planned place was verified

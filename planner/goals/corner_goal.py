@@ -19,14 +19,16 @@ from kb.world.model import MAX_CLEAR_PROBABILITY, Node
 from planner.goals.placement import (
     CERTAIN_OBJECT,
     NEGLIGIBLE_LENGTH,
+    KnownEnds,
     Placement,
+    RegionEnds,
     is_off_quarter_turn,
     mask_to_polygon,
     meets_end,
     robot_can_leave,
     to_view_frame,
 )
-from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see
+from planner.goals.robot_goals import corner_side, missing_for_corner, rooms_to_see, wall_sides
 from planner.screen.projection import dilate
 from planner.sights.frontiers import Viewpoint, look_ahead_squares, viewpoint_of
 from planner.sights.viewpoints import TO_TAKE, Approach
@@ -47,57 +49,6 @@ MAX_CORNER_SHIFT, CORNER_SHIFT_WIDTH = (
     2,
     3,
 )  # squares that a corner may lie beyond sure floor, over so many squares width
-
-
-@dataclass(frozen=True, eq=False)
-class CornerRegion:
-    """Deferred ends: the regions that an object must reach wherever the corner is.
-
-    Attributes
-    ----------
-    side : of the corner in the robot frame, such as northeast.
-    node : the object.
-    situation : what is believed.
-    """
-
-    side: str
-    node: Node
-    situation: Situation
-
-    def ends(self) -> Mapping[str, End]:
-        """Compute the region as one end, Inside, by the side of the corner (such as northeast), in squares, view frame.
-
-        The region is unseen squares and the floor around the known corner, as far as the object is long and a square
-        more.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
-        """
-        return _must_reach(self.side, self.node, self.situation)
-
-
-@dataclass(frozen=True, eq=False)
-class FurtherCorner:
-    """Deferred ends: the corner, if the floor goes on as optimistic planning assumes.
-
-    Attributes
-    ----------
-    side : of the corner in the robot frame, such as northeast.
-    name : the key under which the end is returned.
-    situation : what is believed.
-    """
-
-    side: str
-    name: str
-    situation: Situation
-
-    def ends(self) -> Mapping[str, End]:
-        """Compute the corner as an end, by `name`, in squares, view frame; {} when it would not be further away.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
-        """
-        return _further_corner(self.side, self.name, self.situation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,8 +95,8 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
         unknown = missing_for_corner(side, situation, floor)
         if unknown is not None:
             near = _near(side, node, situation, floor)
-            must_reach = CornerRegion(side, node, situation)
-            hoped = FurtherCorner(side, next(iter(near), ""), situation)
+            must_reach = RegionEnds({side: _region_of_corner(side, node, situation)})
+            hoped = KnownEnds(_further_corner(side, next(iter(near), ""), situation))
             return Placement({}, unknown.missing, unknown.viewpoints, near, must_reach=must_reach, hoped=hoped)
     found = _in_corner(side, node, situation)
     if not found.holds:
@@ -232,24 +183,22 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     node : the object, a node of the world model.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    (column, row), end = situation.corners[side].square, _corner_end(side, situation)
-    model = situation.model
-    view = model.view
+    corner, end, model = situation.corners[side], _corner_end(side, situation), situation.model
+    (column, row), view = corner.square, model.view
     around = dilate(model.squares([(column + view.west, row + view.south)]), 1)
     under = model.mask(node.patch)  # what lies under the object cannot be seen; the squares around it must do
     if (around & under).any():
         around = dilate(around, 1) & ~under
     unclear = around & ~model.told
     shape = to_view_frame(node.polygon, situation)
-    hoped = FurtherCorner(side, side, situation)
-    between = _between_walls(side, situation)
-    if between is not None and not (unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)).any():
-        return _between_placement(side, between, shape)
+    may_go_on = unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)
+    if corner.walls is not None and not may_go_on.any():
+        return _between_placement(side, Between(*corner.point, corner.walls), shape)
+    hoped = KnownEnds(_further_corner(side, side, situation))
     if not unclear.any():
         return replace(_settled_placement(side, end, node, shape), hoped=hoped)
     near = replace(end, slack=CONTACT_GAP if view.sure else APPROACH_GAP)
     viewpoint = viewpoint_of(situation.cost_maps, unclear, f"it is not clear where exactly the {side} corner is")
-    may_go_on = unclear & (view.probability < 1 - MAX_CLEAR_PROBABILITY)
     if len(viewpoint.squares) and (not view.sure or (may_go_on.any() and meets_end(near, shape))):
         return Placement({}, viewpoint.what, (viewpoint,), there=True)
     return Placement({side: near}, viewpoint.what, (viewpoint,), holds=meets_end(near, shape), hoped=hoped)
@@ -286,23 +235,6 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     flat = replace(close if node.inexact else end, within=(near + ROTATED_ALLOWANCE, far + ROTATED_ALLOWANCE))
     loose = {} if meets_end(flat, shape) else {side: close}
     return Placement({side: replace(flat, slack=APPROACH_GAP)}, holds=meets_end(flat, shape), loose=loose)
-
-
-def _between_walls(side: str, situation: Situation) -> Between | None:
-    """Return the end in the furthest corner, where its walls are slanted to the squares; None where they are not.
-
-    In squares, view frame.
-
-    A Between end holds the corner (x, y), the outward unit normals of its two slanted walls, and the greatest gap to
-    each in squares.
-
-    Parameters
-    ----------
-    side : of the robot frame, such as northeast.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    """
-    corner = situation.corners[side]
-    return None if corner.walls is None else Between(*corner.point, corner.walls)
 
 
 def _between_placement(side: str, end: Between, shape: Any) -> Placement:
@@ -422,8 +354,8 @@ def _corner_end(side: str, situation: Situation) -> InCorner:
     side : of the robot frame, such as northeast.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    (x, y), (column, row) = situation.corners[side].point, situation.corners[side].square
-    return InCorner(x, y, 1 if x > column else -1, 1 if y > row else -1)
+    corner = situation.corners[side]
+    return InCorner(*corner.point, *wall_sides(corner))
 
 
 def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, End]:
@@ -483,10 +415,10 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
     return {f"near_{side}": _pressed(end)} | ({} if there else {f"about_{side}": around})
 
 
-def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End]:
+def _region_of_corner(side: str, node: Node, situation: Situation) -> Bools:
     """Return the region that an object in a corner must reach: unseen squares, or the floor around the known corner.
 
-    One end by the name of the side, in squares, view frame. Around is as far as the object's bounding box is long, and
+    (rows, columns) bool on the arrays of the view. Around is as far as the object's bounding box is long, and
     a square more.
 
     An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
@@ -502,8 +434,8 @@ def _must_reach(side: str, node: Node, situation: Situation) -> Mapping[str, End
     x0, y0, x1, y1 = node.polygon.bounds
     around = _around(side, math.ceil(math.hypot(x1 - x0, y1 - y0)) + 1, situation)
     labels = components(situation.model.space & around).labels
-    mask = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
-    return {side: Inside(mask_to_polygon(mask))}
+    mask: Bools = ~situation.model.view.seen | ((labels == labels[row, column]) & (labels > 0))
+    return mask
 
 
 def _around(side: str, squares: int, situation: Situation) -> Bools:

@@ -42,7 +42,7 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
     """
     for (one, a), (other, b) in combinations(enumerate(placements), 2):
         if all(placement.ends and not placement.missing for placement in (a, b)):
-            pairs = product(*(_all_ends(placement) for placement in (a, b)))
+            pairs = product(*([*placement.ends.values(), *placement.loose.values()] for placement in (a, b)))
             if not any(_may_share(first, second, shape) for first, second in pairs):
                 return one, other
     return None
@@ -68,19 +68,6 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
             if along > 2 * sum(CORNER_REACH):
                 return f"the {one} and the {other} corner are too far apart to be at both at once"
     return ""
-
-
-def _all_ends(placement: Placement) -> list[End]:
-    """List all ends of a placement (squares, view frame), the loose ones last.
-
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
-    Parameters
-    ----------
-    placement : where a goal holds; `ends` come first, in order, then those of `loose`.
-    """
-    return [*placement.ends.values(), *placement.loose.values()]
 
 
 def _may_share(one: End, other: End, shape: Any) -> bool:

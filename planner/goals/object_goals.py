@@ -15,7 +15,7 @@ from kb.world.rooms import Rooms
 from planner.goals.corner_goal import corner_placement
 from planner.goals.near_goal import beside_placement, pose_placement, start_placement
 from planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
-from planner.goals.placement import Placement, RegionEnds, mask_to_polygon, meets_any_end, to_view_frame
+from planner.goals.placement import Placement, RegionEnds, meets_any_end, to_view_frame
 from planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
 from planner.situation import Situation
 
@@ -43,7 +43,8 @@ class OptimisticEnds:
         An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
         two walls) of geometry.manipulation.goals.
         """
-        return {name: _optimistic_end(mask, self.situation) for name, mask in self.masks.items()}
+        wider = {name: spread_into_unseen(mask, self.situation) for name, mask in self.masks.items()}
+        return {name: moved(end, -UNSEEN_MARGIN, -UNSEEN_MARGIN) for name, end in RegionEnds(wider).ends().items()}
 
 
 def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
@@ -172,22 +173,6 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
     return Placement(likely, missing, viewpoints, hoped=OptimisticEnds(parts, situation))
 
 
-def _optimistic_end(mask: Bools, situation: Situation) -> End:
-    """Return the end inside squares of the view, or inside the unseen squares that these lead to.
-
-    In squares, view frame; it may reach up to UNSEEN_MARGIN squares beyond the view.
-
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    """
-    return moved(Inside(mask_to_polygon(spread_into_unseen(mask, situation))), -UNSEEN_MARGIN, -UNSEEN_MARGIN)
-
-
 def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
     """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ...
 
@@ -222,4 +207,4 @@ def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
         rest = {"hidden": hidden | ~model.view.seen} if hidden.any() else {}
         missing = "no corner is seen yet that hides a place for it"
         return Placement({}, missing, must_reach=RegionEnds(rest))
-    return Placement({"hidden": Inside(mask_to_polygon(hidden))}, hoped=OptimisticEnds({"hidden": hidden}, situation))
+    return Placement(RegionEnds({"hidden": hidden}).ends(), hoped=OptimisticEnds({"hidden": hidden}, situation))

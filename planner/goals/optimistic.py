@@ -15,29 +15,15 @@ UNSEEN_MARGIN = 6  # squares that the floor is assumed to go on unseen, and the 
 OPTIMISTIC_LEVEL = 2  # certainty level of the seen squares that are assumed to be free (tuned on random worlds)
 
 
-def with_unseen_margin(mask: Bools) -> Bools:
-    """Return a mask of the view, (rows, columns) bool, with a margin of UNSEEN_MARGIN False squares on each side.
-
-    The result is (rows + 2 UNSEEN_MARGIN, columns + 2 UNSEEN_MARGIN); square [0, 0] of the view is its square
-    [UNSEEN_MARGIN, UNSEEN_MARGIN].
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool on the arrays of the view; it is not changed.
-    """
-    return np.pad(mask, UNSEEN_MARGIN)
-
-
 def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
     """Add to a mask the unseen squares that UNSEEN_MARGIN steps from square to neighbouring square lead to from it.
 
     Neighbours share an edge; the steps lead over unseen squares only, also over those of the margin.
 
-    mask : (rows, columns) bool of the view; it is not changed. Returns a new mask with the margin of
-        `with_unseen_margin`.
+    mask : (rows, columns) bool of the view; it is not changed. The result has a margin of UNSEEN_MARGIN squares.
     situation : what is believed: world model, rooms, doors, corners and track.
     """
-    unseen, wider = ~with_unseen_margin(situation.model.view.seen), with_unseen_margin(mask)
+    unseen, wider = ~np.pad(situation.model.view.seen, UNSEEN_MARGIN), np.pad(mask, UNSEEN_MARGIN)
     for _ in range(UNSEEN_MARGIN):
         wider |= with_edge_neighbours(wider) & unseen
     return wider

@@ -82,11 +82,7 @@ class RegionEnds:
     masks: Mapping[str, Bools]
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the region of each mask as an end, by the same names, in squares, view frame.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
-        """
+        """Compute the region of each mask as an end, by the same names, in squares, view frame."""
         return {name: Inside(mask_to_polygon(mask)) for name, mask in self.masks.items()}
 
 

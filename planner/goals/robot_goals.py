@@ -11,6 +11,7 @@ import shapely
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.components import with_edge_neighbours
 from kb.language.terms import Fact, Symbol
+from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
 from planner.screen.projection import SquareIndices, dilate
@@ -106,6 +107,11 @@ def corner_side(goal: Fact) -> str:
     return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
 
 
+def wall_sides(corner: Corner) -> tuple[int, int]:
+    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1."""
+    return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
+
+
 def destination(goal: Fact, situation: Situation) -> Destination:
     """Compute the squares on which a goal of place holds for the robot.
 
@@ -178,16 +184,13 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
     floor : (rows, columns) bool on the arrays of the view, the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
-    column, row = situation.corners[side].square
-    best = row * model.labels.shape[1] + column
+    (column, row), best = situation.corners[side].square, _corner_square(side, situation)
     if not floor[row, column]:
         rooms = tuple(room for room in unreached_rooms(cost_maps) if best in room.squares)
         return unknown_destination(f"the floor towards the {side} lies beyond a passage that is not seen yet", rooms)
     around = (slice(max(row - 1, 0), row + 2), slice(max(column - 1, 0), column + 2))
     if not model.view.seen[around].all():
-        viewpoint = Viewpoint(
-            look_ahead_squares(cost_maps, np.array([best])), f"the floor goes on to the {side}, unseen"
-        )
+        viewpoint = Viewpoint(look_ahead_squares(cost_maps, best), f"the floor goes on to the {side}, unseen")
         return unknown_destination(viewpoint.what, (viewpoint,))
     return None
 

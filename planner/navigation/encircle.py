@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Floats, Square
 from geometry.raster.winding import MAX_CROSSING_NUMBER, crossing_number, shortest_path_with_crossing_number
-from kb.world.model import Node, WorldModel
+from kb.world.model import Node
 from planner.navigation.routes import PlannedRoute
 from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 
@@ -55,7 +55,8 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
     model = cost_maps.model
     x, y = encircled_point(node)
     about = (x - model.view.west, y - model.view.south)
-    goal = _square(track[0], model)
+    row, column = model.view.locate(*track[0])
+    goal = (column, row)
     done = crossing_number(_centred(track), (x, y))
     for level in range(UNSEEN_LEVEL + 1):
         free = cost_maps.free(level) & ~model.mask(node.patch)
@@ -123,17 +124,3 @@ def encircled_point(node: Node) -> XY:
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))
     return column + 0.5, row + 0.5
-
-
-def _square(place: XY, model: WorldModel) -> Square:
-    """Return the square (column, row) on the arrays of the view that holds a point (x, y) of the map frame.
-
-    It may lie outside of the arrays.
-
-    Parameters
-    ----------
-    place : (x, y) in squares.
-    model : what is believed, with its frame and its map view.
-    """
-    row, column = model.view.locate(*place)
-    return column, row

@@ -8,12 +8,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
 
-import numpy as np
-
-from geometry.kernels.arrays import Longs, Square
+from geometry.kernels.arrays import Square
 from kb.body import Command
 from kb.mapping.occupancy import OPEN
 from kb.world.model import WorldModel
+from planner.navigation.sticky_route import to_map_squares
 from planner.navigation.subgoals import Subgoal
 
 LOOP_COST = 25.0  # squares by which each loop makes a subgoal dearer (tuned on random worlds)
@@ -84,28 +83,12 @@ class LoopGuard:
             self._loops.clear()
         if not self._loops:
             return list(subgoals)
-        loops = self._on_view(model)
         found = []
         for subgoal in subgoals:
-            times = int(loops.ravel()[subgoal.squares].max(initial=0))
+            times = max((self._loops[square] for square in to_map_squares(subgoal.squares, model)), default=0)
             if times < MAX_LOOPS:
                 found.append(subgoal._replace(price=subgoal.price + LOOP_COST * times))
         return found
-
-    def _on_view(self, model: WorldModel) -> Longs:
-        """Return the number of loops counted for each square, (rows, columns) int64 on the arrays of the view.
-
-        Parameters
-        ----------
-        model : what is believed, with its frame and its map view.
-        """
-        rows, columns = model.labels.shape
-        loops = np.zeros((rows, columns), np.int64)
-        for (x, y), times in self._loops.items():
-            row, column = y - model.view.south, x - model.view.west
-            if 0 <= row < rows and 0 <= column < columns:
-                loops[row, column] = times
-        return loops
 
 
 def _knowledge(model: WorldModel) -> StateKey:

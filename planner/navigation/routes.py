@@ -5,6 +5,7 @@ lead through.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,7 @@ PathFinder = Callable[
 ]  # of free squares (rows, columns), the start and the goal
 
 
-def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
+def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
 
     A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
@@ -75,57 +76,12 @@ def by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
 
 
-def by_visibility(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the shortest route along lines of visibility between extreme points of obstacles, as Shakey's.
+def _single(find: Callable[..., Floats | None], free: Bools, start: Square, goal: Square) -> list[FoundLine]:
+    """Find the only route of a path-finder, with the clearance of the squares that it touches; [] for none.
 
-    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where free, on the arrays of the view.
-    start, goal : free squares (column, row).
-
-    Returns
-    -------
-    list of FoundLine
-        One route, or none when no way leads there: the points (x, y) of a line from centre to centre in the view frame,
-        its length and the clearance of the squares that it touches, all in squares. It is a list as for all
-        path-finders.
+    find : returns the corners (x, y) of the route from point to point over free squares, (n, 2); None for no route.
     """
-    return _single(free, visibility_path(free, _centre(start), _centre(goal)))
-
-
-def by_grid(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
-    """Find the shortest route over the squares and their eight neighbours, by A*.
-
-    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where free, on the arrays of the view.
-    start, goal : free squares (column, row).
-
-    Returns
-    -------
-    list of FoundLine
-        One route, or none when no way leads there: the points (x, y) of a line from centre to centre in the view frame,
-        its length and the clearance of the squares that it touches, all in squares. It is a list as for all
-        path-finders.
-    """
-    return _single(free, grid_path(free, _centre(start), _centre(goal)))
-
-
-def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
-    """Return the only route of a path-finder, with its length and the clearance of the squares that it touches.
-
-    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
-
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where free.
-    points : (n, 2), the corners (x, y) of the route in squares, in the frame of `free`; None when there is no route:
-        then [].
-    """
+    points = find(free, _centre(start), _centre(goal))
     if points is None:
         return []
     line = points.tolist()
@@ -134,7 +90,13 @@ def _single(free: Bools, points: Floats | None) -> list[FoundLine]:
     return [(line, length, float(Screen(free).clearance[rows, columns].min()))]
 
 
-PATH_FINDERS: Mapping[str, PathFinder] = {"skeleton": by_skeleton, "visibility": by_visibility, "grid": by_grid}
+# By the skeleton; along lines of visibility between extreme points of obstacles, as Shakey's; by A* over the squares
+# and their eight neighbours. The last two find the shortest route alone.
+PATH_FINDERS: Mapping[str, PathFinder] = {
+    "skeleton": _by_skeleton,
+    "visibility": partial(_single, visibility_path),
+    "grid": partial(_single, grid_path),
+}
 
 
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:

@@ -54,9 +54,7 @@ class StickyRoute:
         ----------
         model : what is believed, with its frame and its map view.
         """
-        rows, columns = model.labels.shape
-        places = ((y - model.view.south, x - model.view.west) for x, y in self._subgoal)
-        return frozenset(row * columns + column for row, column in places if 0 <= row < rows and 0 <= column < columns)
+        return frozenset(np.flatnonzero(model.squares(self._subgoal)).tolist())
 
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
         """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares.

@@ -15,7 +15,6 @@ from kb.world.model import Node
 
 HERE = "here"  # the place of everything where it is now
 ANYWHERE = "anywhere"  # in place of an origin: a way that was refuted from two places counts as refuted from all
-UNMOVED = Pose(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -149,7 +148,3 @@ class TaskProblem:
         """
         about = {goal.name: meanings.get(goal.parameter, goal.subject) for goal in self.goals}
         return frozenset(key for key in self.places if key[0] in {about[goal] for goal in self.fulfils.get(key, ())})
-
-    def with_places(self, places: Mapping[tuple[str, str], End]) -> "TaskProblem":
-        """Return the problem with further places: ends by object and name of a place."""
-        return replace(self, places={**self.places, **places})

@@ -166,8 +166,9 @@ def next_move(
         if free and _same_side(path[: number + 1], about):
             there = square
             break
-    offset = _end_offset(cost_maps, there, kind if about is None else SubgoalKind.ATTAIN)
-    return move_to(cost_maps.model, there, offset)
+    view, (dx, dy) = cost_maps.model.view, _end_offset(cost_maps, there, kind if about is None else SubgoalKind.ATTAIN)
+    place = view.west + there[0] + 0.5 + dx, view.south + there[1] + 0.5 + dy
+    return move_to(place, cost_maps.model)
 
 
 def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
@@ -217,46 +218,11 @@ def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
     here, there : the first and the last square (column, row).
     """
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
-    return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, _halfway(here, there), there)
+    halfway = (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
+    return roomy is None or far <= TIGHT_MOVE_LENGTH or sweep_is_free(roomy, halfway, there)
 
 
-def _halfway(here: Square, there: Square) -> Square:
-    """Return the square (column, row) halfway between two squares (column, row), rounded down."""
-    return (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
-
-
-def move_to(model: WorldModel, square: Square, offset: tuple[float, float]) -> Move:
-    """Return the move from the robot's believed place to a square (column, row) of the view's arrays.
-
-    The move is in the robot's own frame (east, north), in squares.
-
-    A Move is a straight line (east, north) in squares of the robot's own frame.
-
-    Parameters
-    ----------
-    model : what is believed; its `place` is where the move begins.
-    square : (column, row) on the arrays of the view.
-    offset : the end of the move relative to the square's centre, (x, y) in squares along the axes of the map frame.
-    """
-    x, y = model.view.west + square[0] + 0.5 + offset[0], model.view.south + square[1] + 0.5 + offset[1]
-    return _straight_to((x, y), model)
-
-
-def move_by(model: WorldModel, dx: float, dy: float) -> Move:
-    """Return the move from the robot's believed place by (dx, dy) squares along the axes of the map frame.
-
-    A Move is a straight line (east, north) in squares of the robot's own frame.
-
-    Parameters
-    ----------
-    dx : to the east of the map frame, in squares.
-    dy : to the north of the map frame, in squares.
-    model : what is believed, with its frame and its map view.
-    """
-    return _straight_to((model.place[0] + dx, model.place[1] + dy), model)
-
-
-def _straight_to(place: XY, model: WorldModel) -> Move:
+def move_to(place: XY, model: WorldModel) -> Move:
     """Return the move from the robot's believed place to a point of the map frame, (x, y) in squares.
 
     The move is in the robot's own frame (east, north), in squares, rounded to COMMAND_DIGITS decimals. A robot believed
@@ -343,7 +309,7 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
     dx, dy = model.frame.to_map(command.east, command.north)
     if model.view.locate(model.place[0] + dx, model.place[1] + dy) != model.view.locate(*place):
         return command
-    return _straight_to(place, model)
+    return move_to(place, model)
 
 
 def _same_side(part: Sequence[Square], about: XY | None) -> bool:

@@ -9,7 +9,7 @@ when the map grows. The view frame is the frame of the arrays: the map frame mov
 """
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +18,10 @@ from geometry.kernels.arrays import Bools, Floats
 from geometry.raster.components import with_edge_neighbours
 from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
-from kb.mapping.patch import Patch
 from kb.world.model import MAX_FREE_PROBABILITY, WorldModel
 from planner.screen.unseen_gain import expected_gain
 
+T = TypeVar("T", bound=np.generic)
 SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column
 LEVEL_MAX_PROBABILITY = (
     MAX_FREE_PROBABILITY,
@@ -259,28 +259,10 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
     """
     found = {}
     for node in cost_maps.model.objects:
-        reached = cost_maps.nearest(_vicinity(cost_maps.model, node.patch))
+        reached = cost_maps.nearest(np.flatnonzero(dilate(cost_maps.model.mask(node.patch), 1)))
         if reached is not None:
             found[node.name] = reached.cost
     return found
-
-
-def _vicinity(model: WorldModel, patch: Patch) -> SquareIndices:
-    """List the squares of a patch and all squares around it (eight neighbours) that lie within the view.
-
-    Returns flat indices (row * columns + column) on the arrays of the view, (n,), in no stated order.
-
-    Parameters
-    ----------
-    patch : the squares of an object, map frame.
-    model : what is believed, with its frame and its map view.
-    """
-    rows, columns = np.nonzero(dilate(np.pad(patch.mask, 1), 1))
-    rows, columns = rows + patch.south - 1 - model.view.south, columns + patch.west - 1 - model.view.west
-    high, wide = model.labels.shape
-    inside = (rows >= 0) & (rows < high) & (columns >= 0) & (columns < wide)
-    flat: SquareIndices = rows[inside] * wide + columns[inside]
-    return flat
 
 
 def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
@@ -296,11 +278,11 @@ def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
     return mask
 
 
-def shift_mask(mask: Bools, columns: int, rows: int) -> Bools:
-    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False.
+def shift_mask(mask: NDArray[T], columns: int, rows: int) -> NDArray[T]:
+    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False or 0.
 
     Positive numbers move it towards greater indices: 1 column to the east, 1 row to the north. The result is a new
-    array of the shape of `mask`, (rows, columns) bool.
+    array of the shape of `mask`, (rows, columns), of any type of values.
     """
     high, wide = mask.shape
     padded = np.pad(mask, 1)

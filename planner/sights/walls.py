@@ -264,7 +264,7 @@ def _niches(space: Bools) -> dict[Square, Bools]:
         narrow = space & (width <= MAX_NICHE_WIDTH)
         niche, here = np.zeros_like(space), width
         for _ in range(MAX_NICHE_DEPTH):
-            here = _shift_numbers(here, step)
+            here = shift_mask(here, *step)
             niche |= narrow & (here >= NICHE_SHARE * width)
         found[step] = shift_mask(niche, *step) & ~space
     return found
@@ -279,15 +279,6 @@ def _run_lengths(mask: Bools) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]
     for row, start, stop in zip(rows.tolist(), starts.tolist(), stops.tolist(), strict=True):
         lengths[row, start:stop] = stop - start
     return lengths
-
-
-def _shift_numbers(
-    values: "np.ndarray[tuple[int, ...], np.dtype[np.int32]]", step: Square
-) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]]":
-    """Return an array moved by (columns, rows), each 1, 0 or -1; 0 comes in from outside."""
-    high, wide = values.shape
-    padded = np.pad(values, 1)
-    return padded[1 - step[1] : 1 - step[1] + high, 1 - step[0] : 1 - step[0] + wide]
 
 
 def _stretches(mask: Bools) -> Iterator[list[tuple[int, int]]]:

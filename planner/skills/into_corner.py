@@ -12,8 +12,8 @@ import numpy as np
 from geometry.kernels.arrays import XY
 from kb.body import Command, Move
 from kb.world.corners import Corner, known_floor
-from planner.goals.robot_goals import corner_side
-from planner.screen.moves import halt_exactly_at, move_by, orientation_is_uncertain
+from planner.goals.robot_goals import corner_side, wall_sides
+from planner.screen.moves import halt_exactly_at, move_to, orientation_is_uncertain
 from planner.screen.projection import CostMaps
 from planner.screen.sweeps import Square, squares_met
 from planner.situation import Situation
@@ -45,7 +45,10 @@ class IntoCorner:
         """
         asked = [situation.corners[side] for side in map(corner_side, stage.own) if side in situation.corners]
         squares = [_map_square(corner, situation) for corner in asked]
-        return self._pressing in squares and _are_near(self._pressing, _square_at(situation.model.place))
+        if self._pressing is None or self._pressing not in squares:
+            return False
+        here = _square_at(situation.model.place)
+        return max(abs(there - at) for there, at in zip(self._pressing, here, strict=True)) <= math.ceil(PRESS_LENGTH)
 
     def next(self, stage: Stage, situation: Situation) -> Command | None:
         """Return the next move into the corners of a stage, and remember it; None when it is as near as can be.
@@ -63,17 +66,17 @@ class IntoCorner:
         model, here = situation.model, _square_at(situation.model.place)
         for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
             corner = situation.corners[side]
-            sx, sy = _wall_sides(corner)
+            sx, sy = wall_sides(corner)
             x, y = halting_place(corner, situation)
             there = here == _map_square(corner, situation)
             if there and math.dist((x, y), model.place) > 2 * HALT_DISTANCE and self._note_first(here, 0, 0):
-                return move_by(model, x - model.place[0], y - model.place[1])
+                return move_to((x, y), model)
             if there and lies_straight(corner, situation):
                 continue
             for dx, dy in (sx, sy), (sx, 0), (0, sy):
                 if self._note_first(here, dx, dy):
                     self._pressing = _map_square(corner, situation)
-                    return move_by(model, PRESS_LENGTH * dx, PRESS_LENGTH * dy)
+                    return move_to((model.place[0] + PRESS_LENGTH * dx, model.place[1] + PRESS_LENGTH * dy), model)
         return None
 
     def _note_first(self, square: Square, dx: int, dy: int) -> bool:
@@ -105,7 +108,7 @@ def halting_place(corner: Corner, situation: Situation) -> XY:
     tuple of float
         (x, y) in squares, map frame.
     """
-    view, (column, row), (sx, sy) = situation.model.view, corner.square, _wall_sides(corner)
+    view, (column, row), (sx, sy) = situation.model.view, corner.square, wall_sides(corner)
     return view.west + column + 0.5 + sx * (0.5 - HALT_DISTANCE), view.south + row + 0.5 + sy * (0.5 - HALT_DISTANCE)
 
 
@@ -124,12 +127,7 @@ def halt_beside_walls(command: Command | None, stage: Stage, situation: Situatio
     situation : what is believed (world model, rooms, doors, corners, track).
     """
     side = next((side for side in map(corner_side, stage.own) if side), "")
-    if (
-        not isinstance(command, Move)
-        or not side
-        or side not in situation.corners
-        or orientation_is_uncertain(situation.model)
-    ):
+    if not isinstance(command, Move) or side not in situation.corners or orientation_is_uncertain(situation.model):
         return command
     place = halting_place(situation.corners[side], situation)
     return halt_exactly_at(command, place, situation.model) if _is_safe_line(place, situation.cost_maps) else command
@@ -147,7 +145,7 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
     """
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
     column, row = (number + STRAIGHT_LENGTH + 1 for number in corner.square)
-    sx, sy = _wall_sides(corner)
+    sx, sy = wall_sides(corner)
     inward = np.arange(STRAIGHT_LENGTH)
     along, up = (row, column - sx * inward), (row - sy * inward, column)
     behind, beside = (row + sy, column - sx * inward), (row - sy * inward, column + sx)
@@ -170,24 +168,6 @@ def _map_square(corner: Corner, situation: Situation) -> Square:
     corner : in squares, view frame. situation : its view tells where the view frame lies.
     """
     return corner.square[0] + situation.model.view.west, corner.square[1] + situation.model.view.south
-
-
-def _are_near(one: Square | None, other: Square) -> bool:
-    """Return whether two squares are at most as far from each other as a press leads; False when `one` is None.
-
-    one, other : squares (x, y) of one frame.
-    """
-    return one is not None and max(abs(one[0] - other[0]), abs(one[1] - other[1])) <= math.ceil(PRESS_LENGTH)
-
-
-def _wall_sides(corner: Corner) -> tuple[int, int]:
-    """Return on which sides of its square the walls of a corner are, (x, y): 1 for the greater coordinate, else -1.
-
-    Parameters
-    ----------
-    corner : in squares, view frame; its square is (column, row).
-    """
-    return (1 if corner.point[0] > corner.square[0] else -1), (1 if corner.point[1] > corner.square[1] else -1)
 
 
 def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
