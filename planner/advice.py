@@ -61,14 +61,9 @@ class See:
 def command_of(motion: Motion, model: WorldModel) -> Command:
     """Return the command for a motion of the held object: a Turn for a Rotate, else a Push.
 
-    A turn is in degrees, counter-clockwise positive; a push in squares (east, north), in the robot's own frame.
-
-    A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
-
     Parameters
     ----------
     motion : a push (dx, dy) in squares along the axes of the map frame, or a turn in degrees.
-    model : what is believed; its frame tells the robot's own directions.
     """
     if isinstance(motion, Rotate):
         return Turn(motion.degrees)
@@ -78,12 +73,8 @@ def command_of(motion: Motion, model: WorldModel) -> Command:
 def unplanned_act(push: Translate, why: str, model: WorldModel) -> Act:
     """Return the act of a push that no plan asks for; its `unplanned_push` is that push.
 
-    An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
     Parameters
     ----------
     push : (dx, dy) in squares along the axes of the map frame.
-    why : the reason, in words.
-    model : what is believed; its frame tells the robot's own directions.
     """
     return Act(command_of(push, model), why, push)

@@ -30,34 +30,20 @@ SAME_PLACE = 1e-6  # squares by which a thing may differ and count as not moved 
 
 
 def region_of(fact: Fact) -> Any:
-    """Return the region of avoid(T, "WKT"), a shapely geometry in squares, in the robot's own frame.
-
-    Parameters
-    ----------
-    fact : the constraint, as goal.lp states it.
-    """
+    """Return the region of avoid(T, "WKT"), a shapely geometry in squares, in the robot's own frame."""
     where = fact.args[1]
     assert isinstance(where, Text)
     return parse_wkt(where.value)
 
 
 def avoidances(task: Task) -> Iterator[tuple[str, Fact]]:
-    """Yield each constraint avoid(T, "WKT") of a task with its T: `utak` or the parameter of an object.
-
-    Parameters
-    ----------
-    task : the goals and constraints, as the task file gives them.
-    """
+    """Yield each constraint avoid(T, "WKT") of a task with its T: `utak` or the parameter of an object."""
     yield from ((str(fact.args[0]), fact) for fact in task.goals if fact.name == AVOID)
 
 
 def in_view_frame(region: Any, frame: Frame, west: float, south: float) -> Any:
-    """Return a region of the robot's own frame in the view frame, in squares.
+    """Return a region (shapely geometry, in squares) of the robot's own frame in the view frame.
 
-    Parameters
-    ----------
-    region : shapely geometry, in squares, robot frame.
-    frame : where the robot frame lies in the map frame.
     west, south : the corner of the view's arrays, in squares, map frame.
     """
 
@@ -69,13 +55,7 @@ def in_view_frame(region: Any, frame: Frame, west: float, south: float) -> Any:
 
 
 def in_robot_frame(shape: Any, frame: Frame) -> Any:
-    """Return a shape (shapely geometry, in squares) of the map frame in the robot's own frame.
-
-    Parameters
-    ----------
-    shape : shapely geometry, in squares, map frame.
-    frame : where the robot frame lies in the map frame.
-    """
+    """Return a shape (shapely geometry, in squares) of the map frame in the robot's own frame."""
     return shapely.transform(shape, lambda points: np.array([frame.place_to_utak(x, y) for x, y in points]))
 
 
@@ -84,8 +64,6 @@ def region_squares(region: Any, shape: tuple[int, ...], wholly: bool, margin: in
 
     (rows + 2 margin, columns + 2 margin) bool; square [margin, margin] is square [0, 0] of the view.
 
-    Parameters
-    ----------
     region : shapely geometry, in squares, view frame.
     shape : (rows, columns) of the arrays of the view.
     wholly : whether a square counts only when all of it is in the region.

@@ -113,7 +113,7 @@ class Robot:
         body : what senses and acts.
         task : the goals and what is said of their parameters.
         options : how the robot works; the defaults of Options if None.
-        decider : what chooses the commands; a new Decider of this task if None. It belongs to this robot from now on.
+        decider : what chooses the commands; a new one of this task if None. It belongs to this robot from now on.
         """
         self.body = body
         self.options = options or Options()
@@ -130,15 +130,7 @@ class Robot:
         self._before: _Before | None = None  # the mind before the newest impression; None until the robot wakes
 
     def wake(self) -> StepReport:
-        """Receive the first impression, interpret it and make the first plan (steps 1 to 7).
-
-        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
-        words.
-
-        Returns
-        -------
-        StepReport
-            The first impression and what is believed after it; its command is None.
+        """Receive the first impression, interpret it and make the first plan (steps 1 to 7); the report has no command.
 
         Raises
         ------
@@ -150,15 +142,7 @@ class Robot:
         return self._take_in(None, impression, "the robot wakes")
 
     def step(self) -> StepReport:
-        """Give the decided command, perceive, and decide anew (steps 8 to 13).
-
-        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
-        words.
-
-        Returns
-        -------
-        StepReport
-            The command that was given, and what is believed after it.
+        """Give the decided command, perceive, and decide anew (steps 8 to 13); report what is believed after it.
 
         Raises
         ------
@@ -173,19 +157,13 @@ class Robot:
         return self.follow(command, why)
 
     def follow(self, command: Command, why: str) -> StepReport:
-        """Give a command, perceive, and decide anew (steps 10 to 13).
+        """Give a command, perceive, and decide anew (steps 10 to 13); report what is believed after it.
 
         The command may be another one than was decided: then the robot is led. A task that had ended goes on.
 
         Parameters
         ----------
-        command : the command, in the robot's own frame.
-        why : its reason, in words.
-
-        Returns
-        -------
-        StepReport
-            The command, and what is believed after it.
+        why : the reason of the command, in words.
 
         Raises
         ------
@@ -199,7 +177,7 @@ class Robot:
         return self._take_in(command, impression, why)
 
     def adopt(self, task: Task, options: Options) -> StepReport:
-        """Take another task and other options from the newest impression on, and report it again.
+        """Take another task and other options from the newest impression on, and report it again, with its command.
 
         The newest impression is interpreted anew, from what was known before it, as if task and options had been these
         already; then the robot decides anew. With other encodings alone, the intention that it had before the
@@ -207,16 +185,7 @@ class Robot:
         object is released first. With another task, where its things began is where they are believed now. Parameters
         that are the same, with the same claims, keep their meaning until the next reconciliation. What was concluded
         from earlier impressions with other encodings and is remembered, such as the shape of a thing in hand, stays.
-
-        Parameters
-        ----------
-        task : the goals from now on, and what is said of their parameters.
-        options : how the robot works from now on. The limit of commands counts those already given, too.
-
-        Returns
-        -------
-        StepReport
-            The newest impression, with what is believed after it now. Its command and the reason are those of before.
+        The limit of commands counts those already given, too.
 
         Raises
         ------
@@ -260,8 +229,6 @@ class Robot:
     ) -> StepReport:
         """Interpret an impression, decide what is done next, and return the report of the turn (steps 11 to 13, 8).
 
-        Parameters
-        ----------
         command : the command before the impression; None on waking.
         impression : what the body returned.
         why : the reason of the command, in words.
@@ -297,14 +264,9 @@ class Robot:
 
         It holds the chosen explanation, and how each of the 160 fields of the retina is accounted for.
 
-        Parameters
-        ----------
-        impression : what the body returned last.
+        How the impression is explained in the new map; None when a held object must be released first.
 
-        Returns
-        -------
-        Accommodation or None
-            How the impression is explained in the new map; None when a held object must be released first.
+        impression : what the body returned last.
         """
         held = self.model.held
         if held is not None:
@@ -326,11 +288,6 @@ class Robot:
     ) -> StepReport:
         """Return the report of one turn of the cycle.
 
-        A StepReport holds the command, the impression, what is believed after it, and the reason of the command in
-        words.
-
-        Parameters
-        ----------
         command : the command that was given; None on waking.
         impression : what the body returned after it.
         accommodated : how the impression was explained.

@@ -56,16 +56,10 @@ class Decision:
 
 
 def nothing_to_do(why: str) -> Decision:
-    """Return the decision that nothing is to be done.
-
-    why : the reason in words.
-    """
+    """Return the decision that nothing is to be done."""
     return Decision(None, why)
 
 
 def done(why: str) -> Decision:
-    """Return the decision that what was asked for holds.
-
-    why : the reason in words.
-    """
+    """Return the decision that what was asked for holds."""
     return Decision(None, why, TaskVerdict.DONE)

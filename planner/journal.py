@@ -33,10 +33,8 @@ class Journal:
 
         Parameters
         ----------
-        decisions : sequence of SolverCall
-            The answers of encodings since the step before, in order.
-        memory : TrackerState
-            What the localisation tracker believes now.
+        decisions : the answers of encodings since the step before, in order.
+        memory : what the localisation tracker believes now.
 
         Returns
         -------

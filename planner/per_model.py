@@ -21,8 +21,6 @@ class PerModel(Generic[Answer]):
     def __call__(self, goal: Fact, *arguments: Any) -> Answer:
         """Return what the function returns; from memory where it was asked the same of the same world model.
 
-        Parameters
-        ----------
         goal : of the task.
         arguments : further arguments, of which the last is the situation. The others are nodes, named, or values.
         """

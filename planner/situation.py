@@ -33,15 +33,9 @@ NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 
 
 def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:
-    """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool; all False for none.
+    """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool.
 
-    Square [margin, margin] is square [0, 0] of the view.
-
-    Parameters
-    ----------
-    doors : the doors, their necks in squares, view frame.
-    shape : (rows, columns) of the arrays of the view.
-    margin : squares that are added on each side.
+    Square [margin, margin] is square [0, 0] of the view, whose arrays have `shape`.
     """
     rows, columns = shape
     mask: Bools = np.zeros((rows, columns), np.bool_)
@@ -55,7 +49,7 @@ class Situation:
     """All that the meaning of a goal depends on.
 
     The view frame is that of the arrays of the model's view: the map frame moved so that (0, 0) is the south-west
-    corner of square [0, 0].
+    corner of square [0, 0]. An actor is "utak" for the robot, or the name of a node.
 
     Attributes
     ----------
@@ -91,21 +85,13 @@ class Situation:
         """The rooms that follow when everything that may be an object is one, and does not bound a room.
 
         These are `rooms` when all verge is sure to be wall.
-
-        Rooms hold the doors, and the number of the room of each square, (rows, columns) int32 on the arrays of the
-        view, 0 for none.
         """
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
 
     def object_of(self, parameter: str) -> Node | None:
-        """Return the object that a parameter of the task means; None while none is known.
-
-        Parameters
-        ----------
-        parameter : a word of a goal; for one that is no parameter, None is returned, too.
-        """
+        """Return the object that a parameter of the task means; None while none is known, and for any other word."""
         return self.model.object(self.binding.get(parameter, ""))
 
     def along_with(self, patch: Patch) -> "Situation":
@@ -121,19 +107,12 @@ class Situation:
         The answer is reliable when it holds both for the rooms as believed and for the rooms by sure walls alone. A
         wall seen in part may be an object, and then the rooms are others.
 
-        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
-        of the view), what is not known in words, and its chance in percent.
+        (rows, columns) bool on the arrays of the view; and viewpoints, none when the answer is reliable or no room is
+        next.
 
         Parameters
         ----------
-        place : XY
-            A point (x, y) of the map frame, in squares.
-
-        Returns
-        -------
-        tuple[Bools, tuple[Viewpoint, ...]]
-            (rows, columns) bool on the arrays of the view, all False when no room is next; and viewpoints, none when
-            the answer is reliable or no room is next.
+        place : a point (x, y) of the map frame, in squares.
         """
         mask = self.next_to(place, self.rooms, MIN_DOOR_CONFIDENCE)
         both = mask & self.next_to(place, self.rooms_by_sure_walls, MIN_TRIED_DOOR_CONFIDENCE)
@@ -144,21 +123,12 @@ class Situation:
     def likely_next_rooms(self, place: XY) -> tuple[Rooms, Bools]:
         """Compute the squares of the rooms that likely share a door with the room of a point.
 
-        The rooms as believed come first; where they show none, the rooms by sure walls alone.
-
-        Rooms hold the doors, and the number of the room of each square, (rows, columns) int32 on the arrays of the
-        view, 0 for none.
+        The rooms as believed come first; where they show none, the rooms by sure walls alone. With the squares, (rows,
+        columns) bool on the arrays of the view, comes the partition into rooms that was used.
 
         Parameters
         ----------
-        place : XY
-            A point (x, y) of the map frame, in squares.
-
-        Returns
-        -------
-        tuple[Rooms, Bools]
-            The partition into rooms that was used, and (rows, columns) bool on the arrays of the view; all False for
-            none.
+        place : a point (x, y) of the map frame, in squares.
         """
         for rooms in (self.rooms, self.rooms_by_sure_walls):
             mask = self.next_to(place, rooms, MIN_TRIED_DOOR_CONFIDENCE)
@@ -167,26 +137,11 @@ class Situation:
         return rooms, mask
 
     def forbidden(self, actor: str) -> tuple[Door, ...]:
-        """Return the doors that the constraints of the task forbid to the robot or to an object.
+        """Return the doors that the constraints of the task forbid to an actor, in the order of `rooms.doors`.
 
         Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept from
         one sure door that it has not gone through. While no such door is known, it is kept from all possible doors,
         however unlikely: going through a forbidden one could not be undone.
-
-        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
-        sides, and its confidence in percent.
-
-        In the order of `rooms.doors`: for the robot one sure door alone, or all of `rooms.doors` when there is none.
-
-        Parameters
-        ----------
-        actor : str
-            "utak" for the robot, or the name of a node.
-
-        Returns
-        -------
-        tuple[Door, ...]
-            View frame; empty when no constraint is about `actor`, or no such door is known.
         """
         goals = constraints(self.task)
         meant = {str(goal.args[0]) for goal in goals if goal.name == "not_through"}
@@ -199,36 +154,12 @@ class Situation:
         return tuple(door for door in self.rooms.doors if door.likely)
 
     def shut(self, actor: str) -> tuple[Door, ...]:
-        """Return the doors that neither the constraints of the task nor users' rules let the robot or an object pass.
-
-        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
-        sides, and its confidence in percent.
-
-        Parameters
-        ----------
-        actor : "utak" for the robot, or the name of a node.
-        """
+        """Return the doors that neither the constraints of the task nor users' rules let an actor pass."""
         forbidden = self.forbidden(actor)
         return (*forbidden, *(door for door in self.rooms.doors if door.name in self.closed and door not in forbidden))
 
     def region_kept_off(self, actor: str, margin: int = 0) -> Bools:
-        """Compute the squares that the task forbids to the robot or to an object by avoid(T, "WKT").
-
-        Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
-        nothing tells exactly where these are.
-
-        Parameters
-        ----------
-        actor : str
-            "utak" for the robot, or the name of a node.
-        margin : int
-            Squares that are added to the arrays of the view on each side.
-
-        Returns
-        -------
-        Bools
-            (rows + 2 margin, columns + 2 margin) bool; all False when nothing is forbidden.
-        """
+        """Compute the squares that the task forbids to an actor: see `regions_kept_off`."""
         return regions_kept_off(self.task, self.binding, self.model, actor, margin, self.lenient)
 
     def within_shut_doors(self) -> "Situation":
@@ -242,25 +173,18 @@ class Situation:
     def avoided(self) -> tuple[Door, ...]:
         """The sure doors that the robot has not gone through, by its track; view frame.
 
-        A Door holds its name, the ends a and b of its neck in squares, view frame, the numbers of the rooms on its two
-        sides, and its confidence in percent.
-
-        In the order of `rooms.doors`; () for none. A Door holds its name, the ends of its neck (squares, view frame),
-        and its confidence in percent.
+        In the order of `rooms.doors`; () for none.
         """
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
         return tuple(door for door in self.rooms.sure if not went_through(track, door))
 
     def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
-        """Compute the squares of the rooms that share a door with the room of a point.
-
-        (rows, columns) bool on the arrays of the view; all False when there is no such room.
+        """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool.
 
         Parameters
         ----------
         place : a point (x, y) of the map frame, in squares.
-        rooms : the partition into rooms that is used.
         least : the least confidence of a door that counts, in percent.
         """
         row, column = self.model.view.locate(*place)
@@ -272,16 +196,14 @@ def regions_kept_off(
 ) -> Bools:
     """Compute the squares that a task forbids to the robot or to an object by avoid(T, "WKT").
 
-    (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False when
-    nothing is forbidden.
+    Plans keep objects OBJECT_DISTANCE from a region, and more while the angle of the frame is a little open, since
+    nothing tells exactly where these are. (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the
+    square [0, 0] of the view.
 
     Parameters
     ----------
-    task : the goals and constraints.
     binding : the name of the node that each parameter of the task means.
-    model : what is believed, with its frame and its map view.
     actor : "utak" for the robot, or the name of a node.
-    margin : squares that are added to the arrays of the view on each side.
     lenient : whether only squares count that lie wholly within a region, and no distance is kept.
     """
     shape = model.labels.shape
@@ -302,17 +224,8 @@ def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls.
 
     If one of them is an object, rooms end elsewhere. One Viewpoint for each region of such squares that can be seen
-    better from reachable floor; () for none.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    In the ascending order of the labels of the regions. The verge is what bounds the floor: walls, and all that is
-    taken for wall.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
+    better from reachable floor; () for none. In the ascending order of the labels of the regions. The verge is what
+    bounds the floor: walls, and all that is taken for wall.
     """
     model = situation.model
     pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)

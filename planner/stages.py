@@ -55,13 +55,6 @@ class Stage:
 def stages(task: Task) -> tuple[Stage, ...]:
     """Split the goals of a task into its stages, in the order in which they shall hold.
 
-    A Stage holds goals that shall hold at one time, and whether another stage follows.
-
-    Parameters
-    ----------
-    task : Task
-        The goals and constraints, as the task file gives them.
-
     Returns
     -------
     tuple[Stage, ...]
@@ -82,12 +75,7 @@ def stages(task: Task) -> tuple[Stage, ...]:
 
 
 def constraints(task: Task) -> tuple[Fact, ...]:
-    """Return the constraints of a task, such as not_through(utak, d), in order; () for none.
-
-    Parameters
-    ----------
-    task : the goals and constraints, as the task file gives them.
-    """
+    """Return the constraints of a task, such as not_through(utak, d), in order; () for none."""
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
@@ -99,7 +87,6 @@ def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str
 
     Parameters
     ----------
-    task : the goals and constraints, as the task file gives them.
     attained : how many of its stages are attained.
     """
     found = {str(term) for fact in constraints(task) for term in fact.args}
@@ -119,12 +106,7 @@ def _words(term: Term) -> set[str]:
 
 
 def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:
-    """Return the wishes of a task, prefer(G, N): each goal G with the number N of commands that it may cost, in order.
-
-    Parameters
-    ----------
-    task : the goals and constraints, as the task file gives them.
-    """
+    """Return the wishes prefer(G, N) of a task in order: each goal G with the number N of commands that it may cost."""
     found = []
     for fact in task.goals:
         if fact.name == "prefer":
@@ -137,8 +119,6 @@ def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:
 def _inner(fact: Fact) -> Fact:
     """Return the goal within first(...), then(...) or prefer(...); any other fact itself.
 
-    Parameters
-    ----------
     fact : a goal of the task, perhaps wrapped.
     """
     inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
@@ -151,10 +131,6 @@ def _ordered(goals: list[Fact]) -> list[Stage]:
 
     Returns [] for no goals.
 
-    A Stage holds goals that shall hold at one time, and whether another stage follows.
-
-    Parameters
-    ----------
     goals : in the order of the task; those of the track are on what the robot's way does, such as circled.
     """
     of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]

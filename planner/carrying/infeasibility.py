@@ -111,20 +111,11 @@ class Infeasibility:
 def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldModel) -> Infeasibility:
     """Return why no way was found for an object.
 
-    An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+    Proved when every plan was refuted, whatever the unseen squares hold, and the object surely lies where it is
+    believed to lie. Never proved when there are no plans.
 
-    Parameters
-    ----------
-    node : the object.
     plans : every plan that geometry did not find (squares, view frame), with the certainty level of the squares that it
         was asked for (0 allows the fewest squares), in the order of asking; none when there was nothing to ask for.
-    model : what is believed.
-
-    Returns
-    -------
-    Infeasibility
-        Proved when every plan was refuted, whatever the unseen squares hold, and the object surely lies where it is
-        believed to lie. Never proved when there are no plans.
     """
     if not plans:
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
@@ -141,11 +132,7 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
 
     A clause without full stop, with the name of the object.
 
-    Parameters
-    ----------
-    node : the object.
     plans : all refuted, each with its certainty level, in the order of asking; at least one.
-    model : what is believed.
     """
     _, last = plans[-1]
     if last.reason == "start":  # nothing lies in a wall
@@ -170,9 +157,6 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
     one of that level. The most permissive level is the greatest number: it allows the most squares, 0 only the surest.
 
-    A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the grasp and
-    motions, in squares and degrees.
-
     plans : refuted plans, each with its certainty level, in the order of asking; at least one, else ValueError.
     """
     most_permissive = max(level for level, _ in plans)
@@ -185,8 +169,6 @@ def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
 
     False when no passage is too narrow.
 
-    Parameters
-    ----------
     plan : a plan that geometry refuted.
     """
     return plan.passage is not None and not plan.opens

@@ -176,23 +176,12 @@ class ManipulationOracle:
     ) -> ManipulationPlan | Infeasibility:
         """Return the plan that is chosen and verified, or why there is none.
 
-        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-        end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
+        At most MAX_ORACLE_ROUNDS options are tried: with more, the Infeasibility may be about a part of them.
 
         Parameters
         ----------
-        request : what is to be carried, and where to.
-        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the ends (by name, squares, view frame) as they are if the floor goes on as it is hoped to; none
             by default. It is called only when a plan was found that a bolder one may replace.
-
-        Returns
-        -------
-        ManipulationPlan or Infeasibility
-            The plan is in the view frame. At most MAX_ORACLE_ROUNDS options are tried: with more, the Infeasibility may
-            be about a part of them.
         """
         shape, utak = to_view_frame(request.node.polygon, situation), situation.model.place_on_view
         floors = {option: usable_squares(request.node, situation, *option) for option in _floor_options(situation)}
@@ -234,15 +223,7 @@ class ManipulationOracle:
         for the encoding, without full stops: `plan(number, commands)`, `hopes(number)`, `askew(number)`,
         `aside(number)`, `short(number)`; number 0 is the plan that was found.
 
-        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-        end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-        Parameters
-        ----------
-        request : what the plan was asked for.
-        found : the plan, view frame.
-        situation : what is believed (world model, rooms, doors, corners, track).
-        hoped : returns the hoped ends, by name, in squares, view frame.
+        request : what the plan was asked for. hoped : returns the hoped ends, by name, in squares, view frame.
         """
         if found.level == OPTIMISTIC_LEVEL:
             return replace(found, hopes=not found.askew)
@@ -269,13 +250,6 @@ class ManipulationOracle:
         impression tells well where a motion was stopped. The plans are in the view frame and of UNSEEN_LEVEL, in the
         order of the names of the ends.
 
-        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-        end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-        Parameters
-        ----------
-        request : what is to be carried, and where to.
-        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the hoped ends, by name, in squares, view frame; they replace the ends of the same name.
         """
         model, node = situation.model, request.node
@@ -300,11 +274,6 @@ class ManipulationOracle:
         The plan is in squares, in the frame of `end` and `floor`, which is one: the view frame, or that with the margin
         for unseen squares. Its status is found, impossible or limit (neither found nor refuted).
 
-        A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the grasp and
-        motions, in squares and degrees.
-
-        Parameters
-        ----------
         request : what is to be carried; its own ends are not read.
         end : where the object shall lie.
         floor : where object and robot are, and the squares that they may use.
@@ -322,9 +291,6 @@ class ManipulationOracle:
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:
                 """Return what geometry says for some free squares and walls.
-
-                A CarryingPlan holds its status (found, impossible or limit), and when found its legs: place of the
-                grasp and motions, in squares and degrees.
 
                 free : (rows, columns) bool. walls : shapely geometry in squares, same frame; None for all that is not
                     free.
@@ -344,11 +310,6 @@ def _may_use_other_ways(node: Node, situation: Situation) -> bool:
     Either it is open which of several doors is forbidden to the object, or a door is forbidden to the robot alone: then
     the object may pass where the robot may not. So it is with regions that plans keep away from, to be sure. False when
     nothing is forbidden.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     own = situation.forbidden(node.name)
     kept_off = not situation.lenient and any(situation.region_kept_off(actor).any() for actor in (ROBOT, node.name))
@@ -361,15 +322,9 @@ def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
     Walls are thickened by WALL_CLEARANCE squares except near the object; squares beside blocked ones no longer count as
     free.
 
-    Parameters
-    ----------
-    free : (rows, columns) bool.
-    shape : the outline of the object, shapely Polygon, in squares, frame of `free`.
+    (rows, columns) bool, and a shapely geometry in squares in the same frame.
 
-    Returns
-    -------
-    tuple
-        (rows, columns) bool, and a shapely geometry in squares in the same frame.
+    free : (rows, columns) bool. shape : the outline of the object, shapely Polygon, in squares, frame of `free`.
     """
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(mask_to_polygon(free))
@@ -383,11 +338,6 @@ def _ambiguous_grasps(node: Node, model: WorldModel) -> Iterator[XY]:
 
     In squares along the axes of the map, from the middle of the outline to the centre of the square where the robot
     would stand. In a frame that is turned these are squares at its corners.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    model : what is believed, with its frame and its map view.
     """
     covered, ways, middle = node.patch.squares(), model.frame.directions(), node.polygon.centroid
     about = {(x + dx, y + dy) for x, y in covered for dx, dy in ADJACENT_OFFSETS} - covered
@@ -400,10 +350,6 @@ def _floor_options(situation: Situation) -> list[tuple[int, OtherObjects]]:
     """Return each certainty level that is tried, with other objects where they are and, if there are any, without.
 
     The surest level first, and for each level CLEAR before ASIDE.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     several = len(situation.model.objects) > 1
     choices = (OtherObjects.CLEAR, OtherObjects.ASIDE) if several else (OtherObjects.CLEAR,)
@@ -419,10 +365,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     what may be an object, or its hidden part, in what seems to be wall. Necks of
     forbidden doors (the narrow places between their walls) and forbidden regions are never among them.
 
-    Parameters
-    ----------
     node : the object to carry.
-    situation : what is believed (world model, rooms, doors, corners, track).
     level : the certainty level of squares, 0 the surest, UNSEEN_LEVEL the most permissive.
     others : what is done about the other objects.
     """
@@ -483,17 +426,10 @@ def _manipulation_plan(
 
     Objects whose squares it crosses, where these are not free at that level, are to be moved aside first.
 
-    A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-    end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-    Parameters
-    ----------
     plan : what geometry found, in squares, view frame.
     shape : the outline of the object where it lies, shapely Polygon, in squares, view frame.
     name : of the end.
     level : the certainty level of the squares, 0 the surest.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    node : the object.
     """
     model = situation.model
     swept = swept_squares(plan, shape, model.labels.shape)
@@ -511,7 +447,6 @@ def swept_squares(plan: CarryingPlan, shape: Any, size: tuple[int, ...]) -> Bool
 
     Parameters
     ----------
-    plan : the plan, in squares, view frame.
     shape : the outline of the object where it lies before the plan, shapely Polygon, in squares, view frame.
     size : (rows, columns) of the mask.
     """

@@ -28,8 +28,6 @@ def open_fact_against(decision: Decision, situation: Situation, scope: FeelingSc
     Parameters
     ----------
     decision : the verdict `impossible`; its `unless` may name the open fact already, "" asks for the nearest one here.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    scope : which walls matter for the task.
     """
     near = decision.near or situation.model.place_on_view
     fact = decision.unless or nearest_open_fact(situation, near, scope)
@@ -41,18 +39,13 @@ def open_fact_against(decision: Decision, situation: Situation, scope: FeelingSc
 def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerdict:
     """Return the verdict when everything was looked at and no object fits a parameter of the task.
 
-    Where impressions contradicted each other, the object may have been seen and lost: then it is `limit`.
+    It is IMPOSSIBLE when that is proved, else LIMIT. Where impressions contradicted each other, the object may have
+    been seen and lost: then nothing is proved.
 
     Parameters
     ----------
-    model : what is believed.
     immovable : an object fits, but did not move when it was pushed; by default none fits. While the angle of the map
-        frame is open, the robot may have pushed at another object: then it is `limit`, too.
-
-    Returns
-    -------
-    TaskVerdict
-        IMPOSSIBLE when it is proved, else LIMIT.
+        frame is open, the robot may have pushed at another object: then nothing is proved, too.
     """
     proved = model.view.sure and orientation_is_settled(model) if immovable else not model.shaken
     return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
@@ -64,9 +57,6 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     A wall that was never felt comes first, then floor that goes on unseen, then an object that was never moved. A
     clause without full stop, places in the robot frame.
 
-    Parameters
-    ----------
-    situation : what is believed (world model, rooms, doors, corners, track).
     near : (x, y) in squares, view frame.
     scope : which walls matter for the task. Where no wall between two parts of the floor does, objects all around which
         the floor is reached do not either, unless the task speaks of objects.
@@ -94,8 +84,6 @@ def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: st
     A wall lies anywhere in the squares in which it was seen. So each side may stand back by up to a square along each
     axis.
 
-    Parameters
-    ----------
     width : of the passage as it is believed, in squares.
     missing : how much wider it must be, in squares.
     sides : a point (x, y) on each of its two walls, in squares, in any frame along the axes of the map.
@@ -113,8 +101,6 @@ def _nearest_square(mask: Bools, near: XY) -> XY | None:
 
     In squares, in the frame of the mask, (rows, columns) bool; `near` is a point (x, y) of the same frame.
 
-    Parameters
-    ----------
     mask : the squares to choose from.
     """
     rows, columns = np.nonzero(mask)

@@ -54,6 +54,8 @@ Advice = Act | Go | See | Infeasibility
 class PlanExecutor:
     """Carries objects, one plan after the other.
 
+    The outline of an object that is given is known. Ends say where it shall lie, by name, in squares, view frame.
+
     Attributes
     ----------
     pull : whether a held object may be pulled.
@@ -101,25 +103,14 @@ class PlanExecutor:
         return any(isinstance(motion, Rotate) for leg in legs for motion in leg.motions)
 
     def advise(self, node: Node, ends: Mapping[str, End], situation: Situation, hoped: EndsFunction = dict) -> Advice:
-        """Return what to do to carry an object to one of several ends.
+        """Return what to do to carry an object to one of several ends, or why nothing can be done.
 
         The plan under way is followed while it holds; else the failure is answered, or another plan is made. The
         command of an Act counts as given: the plan goes on behind it at the next call.
 
-        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
-        from, an Infeasibility a reason why nothing can be done; each with words.
-
         Parameters
         ----------
-        node : the object; its outline is known.
-        ends : where it shall lie, by name, in squares, view frame.
-        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the ends, likewise, as they are if the floor goes on as it is hoped to; none by default.
-
-        Returns
-        -------
-        Act, Go, See or Infeasibility
-            A command; a square to walk to first; squares to see first; or why nothing can be done.
         """
         before, self._plan = self._plan, None
         plan = None
@@ -145,14 +136,6 @@ class PlanExecutor:
         """Return why an object cannot be carried to any of several ends; None when a plan is found.
 
         The plan under way is not touched.
-
-        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
-
-        Parameters
-        ----------
-        node : the object; its outline is known.
-        ends : where it shall lie, by name, in squares, view frame.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         found = self._oracle.find(self._request(node, ends, "", situation.model), situation)
         return found if isinstance(found, Infeasibility) else None
@@ -165,12 +148,6 @@ class PlanExecutor:
         """Return the release of a held object that was carried in a loop, and mark its grasp as failed.
 
         The plan under way is dropped. An object must be held: else AssertionError.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        Parameters
-        ----------
-        model : what is believed, with its frame and its map view.
         """
         assert model.held is not None
         self._plan = None
@@ -180,15 +157,8 @@ class PlanExecutor:
     def continue_plan(self, node: Node, situation: Situation) -> Act | None:
         """Return the next command of the plan under way for the held object; None when there is no such plan.
 
-        Returns None, too, when the plan no longer holds. Wherever it leads, it is not asked whether that is still
-        wanted.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        Parameters
-        ----------
-        node : the object; None is returned unless it is held and the plan carries it.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        Returns None, too, when the plan no longer holds, or carries another object. Wherever it leads, it is not asked
+        whether that is still wanted.
         """
         if self._plan is None or self._plan.name != node.name or situation.model.held != node.name:
             return None
@@ -203,19 +173,11 @@ class PlanExecutor:
 
         A held object is taken along by one straight push, if that leads there.
 
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
-        (x, y) in squares, map frame, at which to halt, and the reason in words.
-
         Parameters
         ----------
-        node : the object.
-        squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
-            wants to look.
+        squares : from which the robot wants to look.
         fetch : whether an object that is not held, or that no straight push takes there, is brought near by one grasp
             and one or two pushes; if not, None is returned for it.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model
         if node.stuck or self._plans >= MAX_PLANS or model.held not in (None, node.name):
@@ -229,18 +191,8 @@ class PlanExecutor:
         """Return the push with the held object to one of some squares, from which one more leads to the plan's end.
 
         It may take the place of the command that was advised last. Returns None when there is no such push, or when
-        what is left of the plan is not one leg of pushes with the object in hand.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        It is the pair of pushes with the least total length. The plan under way is not changed here.
-
-        Parameters
-        ----------
-        node : the held object.
-        squares : flat indices (row * columns + column) on the arrays of the view, the squares from which the robot
-            wants to look.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        what is left of the plan is not one leg of pushes with the object in hand. It is the pair of pushes with the
+        least total length. The plan under way is not changed here.
         """
         plan = self._plan
         if not self.pull or self._plans >= MAX_PLANS or plan is None or plan.name != node.name:
@@ -257,16 +209,7 @@ class PlanExecutor:
         """Return the push after which the held object no longer shuts the robot in, and mark the grasp as failed.
 
         Returns None, and marks nothing, where no push does that, where pulling is not allowed, when the last motion did
-        not move the object, and after MAX_PLANS plans.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        It is the shortest such push by whole squares.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
-        situation : what is believed: world model, rooms, doors, corners and track.
+        not move the object, and after MAX_PLANS plans. It is the shortest such push by whole squares.
         """
         push = escape_push(node, situation) if self.pull and not node.stuck and self._plans < MAX_PLANS else None
         if push is None:
@@ -291,15 +234,6 @@ class PlanExecutor:
         """Return the next command to bring an object near to some squares by one grasp and one or two pushes.
 
         Returns None when that cannot be done over squares that are surely free.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
-        (x, y) in squares, map frame, at which to halt, and the reason in words.
-
-        squares : flat indices (row * columns + column) on the arrays of the view.
-        node : the object, a node of the world model.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         plan, self._viewpoint_plan = self._viewpoint_plan, None
         end = region_near(squares, situation)
@@ -327,13 +261,7 @@ class PlanExecutor:
         degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
         None when nothing failed, or when nothing is held: then a grasp that the plan relied on is marked as failed.
 
-        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
-        from, an Infeasibility a reason why nothing can be done; each with words.
-
-        Parameters
-        ----------
         plan : the one that no longer holds; None for none.
-        model : what is believed.
         """
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
@@ -362,18 +290,6 @@ class PlanExecutor:
         Where an obstacle must be moved aside first, the plan is for that obstacle. Failed grasps are tried again when
         nothing else is found and nothing is proved.
 
-        A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on
-        the arrays of the view), and what is not known in words.
-
-        A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must
-        stay free (all in squares, map frame), and the name of its end.
-
-        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
-
-        Parameters
-        ----------
-        request : what is to be carried, and where to.
-        situation : what is believed (world model, rooms, doors, corners, track).
         hoped : returns the hoped ends, by name, in squares, view frame.
         """
         node, asked = request.node, request
@@ -409,26 +325,11 @@ class PlanExecutor:
     ) -> tuple[Node, ManipulationPlan] | See | Infeasibility:
         """Return an object that a plan needs moved aside, with a plan for that; or a look at it, or why not.
 
-        First of all it is felt whether the obstacle is an object, where that is not certain.
+        First of all it is felt whether the obstacle is an object, where that is not certain. Of several obstacles that
+        one is moved which takes fewest commands, of equal ones the first of the model's objects; only a plan that needs
+        nothing else moved counts.
 
-        A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on
-        the arrays of the view), and what is not known in words.
-
-        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-        end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-        An Infeasibility holds whether it is proved that there is no way, and the reason in words.
-
-        A Node is an object of the world model, with name, patch of squares (map frame) and outline.
-
-        Of several obstacles that one is moved which takes fewest commands, of equal ones the first of the model's
-        objects; only a plan that needs nothing else moved counts.
-
-        Parameters
-        ----------
-        found : the plan, view frame; its `aside` names at least one obstacle.
-        node : the object that it carries.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        found : the plan, view frame; its `aside` names at least one obstacle. node : the object that it carries.
         """
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
@@ -445,12 +346,8 @@ class PlanExecutor:
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
         """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress.
 
-        Parameters
-        ----------
-        node : the object.
         ends : where it shall lie, by name, in squares, view frame.
         last : the name of the end of the plan before; "" for none.
-        model : what is believed.
         """
         stalled = self._went_on is not None and math.dist(self._went_on, model.place) < NO_PROGRESS
         held = model.held == node.name and not stalled
@@ -466,21 +363,10 @@ class PlanExecutor:
         """Return an object and a plan that carries it off the squares that another plan needs; None for no such.
 
         None, too, when the other plan does not name it as an obstacle, or when it could only go once a further object
-        is moved.
+        is moved. The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else
+        carried to any surely free place off those squares.
 
-        A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-        end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-        A Node is an object of the world model, with name, patch of squares (map frame) and outline.
-
-        The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else carried to any
-        surely free place off those squares.
-
-        Parameters
-        ----------
-        other : the object that may be in the way.
-        found : the other plan, view frame.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        other : the object that may be in the way. found : the other plan, view frame.
         """
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
@@ -497,16 +383,8 @@ class PlanExecutor:
 
         The plan, without that step, becomes the plan under way.
 
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
-        (x, y) in squares, map frame, at which to halt, and the reason in words.
-
-        Parameters
-        ----------
         plan : the remaining plan, map frame; it has at least one leg.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         self._plan = plan
         leg, model = plan.legs[0], situation.model
@@ -530,16 +408,8 @@ class PlanExecutor:
         A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
         the object: it lies otherwise than believed.
 
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        A Go holds the square to walk to (a flat index, row * columns + column, on the arrays of the view), the place
-        (x, y) in squares, map frame, at which to halt, and the reason in words.
-
-        Parameters
-        ----------
         plan : the remaining plan, map frame, before the grasp of its first leg.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model, leg = situation.model, plan.legs[0]
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)
@@ -557,7 +427,7 @@ class PlanExecutor:
         if begun is None:
             dx, dy = leg.place[0] - model.place[0], leg.place[1] - model.place[1]
             return Act(Move(*model.frame.to_utak(dx, dy)), "the robot moves to the middle of its square")
-        direction = grasp_direction(leg, plan, model)
+        direction = grasp_direction(plan, model)
         if direction is None:
             return None
         self._plan, self._pushed = replace(begun, grasped=True, place=begun.legs[0].place), None

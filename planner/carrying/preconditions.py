@@ -26,18 +26,10 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
     All that is believed floor is trusted: to be stopped now and then costs less than to look each time. To release the
     object, walk, come back and grasp it again costs more than to be stopped, so a plan that goes on with the present
     grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the room for a
-    shorter one, and may be free, is looked at too.
+    shorter one, and may be free, is looked at too. Looked at are all unsure squares of the way together, from floor
+    from which any of them is seen best.
 
-    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
-    arrays of the view), and what is not known in words.
-
-    Looked at are all unsure squares of the way together, from floor from which any of them is seen best.
-
-    Parameters
-    ----------
-    found : the plan, view frame.
     node : the object that it carries; its own squares need not be seen.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model, is_long = situation.model, found.plan.commands > LONG_PLAN
     if found.hopes or (found.plan.goes_on and not is_long):
@@ -60,18 +52,10 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     """Return where to feel the first obstacle of a plan that may be a piece of wall; None when there is none.
 
     Also None when there is no floor beside it from which the robot did not feel it yet. Then it is felt how far an
-    obstacle goes that touches a wall or another object.
+    obstacle goes that touches a wall or another object. The first is meant in the order of the model's objects; only
+    obstacles that are objects with less than CERTAIN_OBJECT percent count.
 
-    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
-    arrays of the view), and what is not known in words.
-
-    The first is meant in the order of the model's objects; only obstacles that are objects with less than
-    CERTAIN_OBJECT percent count.
-
-    Parameters
-    ----------
     found : the plan; its `aside` names the obstacles.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     things = [thing for thing in situation.model.objects if thing.name in found.aside]
     unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT)
@@ -82,17 +66,10 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
 def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | None:
     """Return a look at the first obstacle of a plan of which squares are open; None when there is none.
 
-    Also None when the robot looked at each of them from everywhere. Open squares are not determined yet.
+    Also None when the robot looked at each of them from everywhere. Open squares are not determined yet. The first is
+    meant in the order of `found.aside`.
 
-    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
-    arrays of the view), and what is not known in words.
-
-    The first is meant in the order of `found.aside`.
-
-    Parameters
-    ----------
     found : the plan; its `aside` names the obstacles.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     named = (situation.model.object(name) for name in found.aside)
     unclear = (other for other in named if other is not None and other.open)
@@ -104,10 +81,6 @@ def turn_cost(model: WorldModel) -> float:
 
     A turn leaves the object askew while the orientation of the frame is open, and elsewhere than believed while the
     place of the robot within its square is open.
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     """
     if orientation_is_uncertain(model):
         return TURN_COST_OPEN_FRAME
@@ -117,11 +90,6 @@ def turn_cost(model: WorldModel) -> float:
 def _first_see(looks: Iterable[Viewpoint]) -> See | None:
     """Return the advice to use the first of some viewpoints that has squares; None when none has.
 
-    A See holds the squares where the robot would stand to look or feel (flat indices (row * columns + column) on the
-    arrays of the view), and what is not known in words.
-
-    Parameters
-    ----------
     looks : the viewpoints, in the order of preference.
     """
     return next((See(look) for look in looks if len(look.squares)), None)

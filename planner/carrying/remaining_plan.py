@@ -77,12 +77,6 @@ class RemainingPlan:
 def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
     """Return all of a manipulation plan that was just made, as a remaining plan in the map frame.
 
-    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
-    free (all in squares, map frame), and the name of its end.
-
-    Parameters
-    ----------
-    found : the plan, view frame.
     node : the object that it carries; its outline is known.
     model : what is believed; its view tells where the view frame lies.
     """
@@ -99,14 +93,7 @@ def revalidate(plan: RemainingPlan, ends: Mapping[str, End] | None, situation: S
     of the ends. Where the object lies otherwise than it says, the motions are verified anew from there. A plan with
     nothing left to do does not hold.
 
-    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
-    free (all in squares, map frame), and the name of its end.
-
-    Parameters
-    ----------
-    plan : the remaining plan, map frame.
     ends : where it must lead, by name, in squares, view frame; None when it only clears the way for another object.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     node = model.object(plan.name)
@@ -137,14 +124,8 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 
     Returns None when it would not lead to one of the ends so.
 
-    A RemainingPlan holds the legs that are left, the outline that the object must have now, the squares that must stay
-    free (all in squares, map frame), and the name of its end.
-
-    Parameters
-    ----------
     plan : the remaining plan, map frame, before its first grasp.
     ends : where it must lead, by name, in squares, view frame; None is returned for {}.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     node = model.object(plan.name)
@@ -161,19 +142,10 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
 
     It must bring the robot at least MIN_PREFIX squares on. From its end the robot sees what it could otherwise only see
     by a walk there and back. Plans with turns or several grasps have no such part, for these depend on what is not
-    seen.
+    seen. It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one
+    the longest free part, if any. Its level and its end's name stay as they were.
 
-    A ManipulationPlan holds the legs (walk, grasp, pushes and turns, release; squares, view frame), the name of its
-    end, its certainty level (0 the surest), and the objects to be moved aside first.
-
-    It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one the
-    longest free part, if any. Its level and its end's name stay as they were.
-
-    Parameters
-    ----------
-    found : the plan, view frame.
     node : the object that it carries.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     first, *others = found.plan.legs
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
@@ -221,10 +193,7 @@ def square_index(place: XY, model: WorldModel) -> SquareIndices:
 
     It is row * columns + column; without meaning for a point outside of the arrays of the view.
 
-    Parameters
-    ----------
     place : (x, y) in squares.
-    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
@@ -233,29 +202,19 @@ def square_index(place: XY, model: WorldModel) -> SquareIndices:
 def is_at(model: WorldModel, place: XY) -> bool:
     """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding.
 
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     place : (x, y) in squares.
     """
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
-def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | None:
-    """Return the compass direction in which the object of a plan is grasped; None where it is not felt.
+def grasp_direction(plan: RemainingPlan, model: WorldModel) -> str | None:
+    """Return the compass direction in which the first leg of a plan grasps its object; None where it is not felt.
 
     One of the eight of the robot frame, such as "northeast", as seen from where the robot stands. It is the planned
-    direction, or another one in which the object is felt. While touches are not known, the planned direction counts.
-
-    The planned direction comes first, then the others in the order of the frame's directions.
-
-    Parameters
-    ----------
-    leg : the leg that begins with the grasp, map frame.
-    plan : the plan that it belongs to.
-    model : what is believed and felt; it knows the object: else AssertionError.
+    direction, or another one in which the object is felt, in the order of the frame's directions. While touches are not
+    known, the planned direction counts.
     """
-    node = model.object(plan.name)
+    node, leg = model.object(plan.name), plan.legs[0]
     assert node is not None
     x, y = math.floor(leg.place[0]), math.floor(leg.place[1])
     ways, covered = model.frame.directions(), node.patch.squares()
@@ -276,14 +235,9 @@ def grasp_direction(leg: Leg, plan: RemainingPlan, model: WorldModel) -> str | N
 def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) -> Translate | None:
     """Return the longest part of a push, rounded to whole squares, that is free; None for none.
 
-    It is shorter than the push, in squares along the axes of the map.
+    It is shorter than the push, in squares along the axes of the map. Parts are tried from the longest on, in steps of
+    one square, so it is at least about one square long.
 
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
-
-    Parts are tried from the longest on, in steps of one square, so it is at least about one square long.
-
-    Parameters
-    ----------
     workspace : what is free for the object and the robot.
     shape : the outline of the object before the push, shapely Polygon, in squares, view frame.
     place : the robot's place (x, y) before the push, view frame.
@@ -301,11 +255,7 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
     These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
     own, without the necks of forbidden doors and without forbidden regions.
 
-    Parameters
-    ----------
     plan : the remaining plan, with its certainty level.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~forbidden_squares(node, situation)
@@ -316,12 +266,8 @@ def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situat
 
     A shapely Polygon, in squares. Also None when a grasp would reach nothing.
 
-    Parameters
-    ----------
-    plan : the remaining plan, map frame.
     node : the object; its outline is known.
     free : (rows, columns) bool on the arrays of the view, the squares that may be used.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs

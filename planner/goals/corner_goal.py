@@ -1,4 +1,7 @@
-"""Placements in a corner of the known floor: where a carried object must end, or what must be seen first to tell."""
+"""Placements in a corner of the known floor: where a carried object must end, or what must be seen first to tell.
+
+The side of a corner is northeast, northwest, southeast or southwest in the robot's own frame.
+"""
 
 import itertools
 import math
@@ -65,11 +68,7 @@ class RoomsByTheWay:
     situation: Situation
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none.
-
-        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
-        of the view), what is not known in words, and its chance in percent.
-        """
+        """Compute where these rooms can be seen: one Viewpoint for each (squares on the view's arrays); () for none."""
         return _room_viewpoints(self.side, self.situation)
 
 
@@ -80,14 +79,7 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
     corner further on is looked at last, for mostly there is none; or on the way, with the object in hand. While it is
     not known where the corner is, the placement has no ends, and says what is missing and where to look.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
-    side : of the robot frame: northeast, northwest, southeast or southwest.
     node : the object; its outline is known.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
@@ -112,37 +104,15 @@ def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
 
 
 def corner_may_move(goal: Fact, situation: Situation) -> bool:
-    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere.
-
-    False for a goal about no corner.
-
-    Parameters
-    ----------
-    goal : a goal of the task, as a fact, such as at(x, corner(northeast)).
-    situation : what is believed: world model, rooms, doors, corners and track.
-    """
+    """Return whether a goal is about a corner that rooms not seen yet may put elsewhere."""
     side = corner_side(goal)
     return bool(side and rooms_to_see(side, situation))
 
 
 def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
-    """Choose how the robot goes up to an object that it shall carry to where some goals hold.
+    """Choose how the robot goes up to an object that it shall carry to where some goals for it hold.
 
-    An Approach says whether the object shall be taken, and towards which corner of walls it shall be brought, as signs
-    (x, y), each 1 or -1, or None.
-
-    Parameters
-    ----------
-    goals : Iterable[Fact]
-        The goals for the object.
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
-
-    Returns
-    -------
-    Approach
-        TO_TAKE; for the first goal of a known corner with the direction of its walls, as signs along the axes of the
-        map.
+    TO_TAKE; for the first goal of a known corner with the direction of its walls, as signs along the axes of the map.
     """
     for goal in goals:
         side = corner_side(goal)
@@ -156,12 +126,6 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them.
 
     What lies behind their squares is seen from there, too. Flat indices on the arrays of the view; () for no such room.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    side : of the robot frame, such as northeast.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     rooms = rooms_to_see(side, situation)
     return tuple(
@@ -175,13 +139,6 @@ def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
     When its walls are settled, to be within a square of them is enough; else they may be further away than believed.
     When the places of the robot and the object are not certain, the corner is looked at first: then the placement has
     no ends.
-
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    side : of the robot frame, such as northeast.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     corner, end, model = situation.corners[side], _corner_end(side, situation), situation.model
     (column, row), view = corner.square, model.view
@@ -212,14 +169,8 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
     object whose place is inexact is brought nearer if possible.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
     side : the name of the end, such as northeast.
     end : the corner as an end with the default slack of one square, view frame.
-    node : the object.
     shape : its outline, shapely Polygon, in squares, view frame.
     """
     close = replace(end, slack=APPROACH_GAP)
@@ -244,11 +195,6 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
     The presses are named into, one and two (towards both walls, the first, the second), in this order, in squares along
     the axes of the map; none while the goal does not hold.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
     side : the name of the end, such as northeast.
     end : the corner, in squares, view frame.
     shape : the outline of the object, shapely Polygon, in squares, view frame.
@@ -270,11 +216,6 @@ def _pressed(end: InCorner) -> InCorner:
     The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much. Same
     frame.
 
-    An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
-    gap to each wall in squares.
-
-    Parameters
-    ----------
     end : the corner, in squares, with its slack: the greatest gap to each wall.
     """
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
@@ -287,19 +228,10 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
     Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is. With
     a part of a square free in between, seen or not, it may not be.
 
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
+    "across" along x and "up" along y, in squares along the axes of the map; without those whose gap is at most
+    CONTACT_GAP.
 
-    Parameters
-    ----------
-    end : the corner, in squares, view frame.
-    node : the object.
-    shape : its outline, shapely Polygon, in squares, view frame.
-
-    Returns
-    -------
-    mapping of str to Translate
-        "across" along x and "up" along y, in squares along the axes of the map; without those whose gap is at most
-        CONTACT_GAP.
+    end : the corner, in squares, view frame. shape : its outline, shapely Polygon, in squares, view frame.
     """
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {
@@ -314,10 +246,6 @@ def _further_in(end: InCorner, node: Node) -> tuple[float, float]:
 
     First for the eastern or western side of the object, then for the northern or southern one: those that `end`, the
     corner, is towards.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     """
     west, east, south, north = node.short
     return east if end.sx > 0 else west, north if end.sy > 0 else south
@@ -328,11 +256,7 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
 
     It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
 
-    Parameters
-    ----------
-    end : the corner, in squares, view frame.
-    node : the object.
-    shape : its outline, shapely Polygon, in squares, view frame.
+    end : the corner, in squares, view frame. shape : its outline, shapely Polygon, in squares, view frame.
     """
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
     return all(
@@ -345,14 +269,6 @@ def _corner_end(side: str, situation: Situation) -> InCorner:
     """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls.
 
     In squares, view frame.
-
-    An InCorner end holds the corner (x, y) where two walls along the axes meet, the signs of its side, and the greatest
-    gap to each wall in squares.
-
-    Parameters
-    ----------
-    side : of the robot frame, such as northeast.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     corner = situation.corners[side]
     return InCorner(*corner.point, *wall_sides(corner))
@@ -363,14 +279,7 @@ def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, 
 
     In squares, view frame. It lies at most MAX_CORNER_SHIFT squares further along each axis.
 
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
-    Parameters
-    ----------
-    side : of the corner in the robot frame, such as northeast.
     name : the key of the end.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
@@ -396,14 +305,6 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
     frame, by the names near_<side> and about_<side>, the best first; the second is left out when it is empty or the
     object is there.
 
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
-    Parameters
-    ----------
-    side : of the robot frame, such as northeast.
-    node : the object.
-    situation : what is believed (world model, rooms, doors, corners, track).
     floor : (rows, columns) bool on the arrays of the view, the squares that the robot can reach.
     """
     end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
@@ -420,15 +321,6 @@ def _region_of_corner(side: str, node: Node, situation: Situation) -> Bools:
 
     (rows, columns) bool on the arrays of the view. Around is as far as the object's bounding box is long, and
     a square more.
-
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
-    Parameters
-    ----------
-    side : of the corner in the robot frame, such as northeast.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
@@ -442,11 +334,6 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
     """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool.
 
     Axes as those of the view's arrays.
-
-    Parameters
-    ----------
-    side : of the robot frame, such as northeast.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     column, row = situation.corners[side].square
     high, wide = situation.model.view.seen.shape
@@ -460,11 +347,6 @@ def _reachable_floor(node: Node, situation: Situation) -> Bools:
 
     Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object. Squares
     under other objects beside them count, for these can be moved aside.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     cost_maps = situation.cost_maps
     model = situation.model

@@ -45,8 +45,6 @@ def supposed_in_walls(node: Node, situation: Situation, opens: Callable[[Bools],
 
     Parameters
     ----------
-    node : the object.
-    situation : what is believed (world model, rooms, doors, corners, track).
     opens : tells of squares, (rows, columns) bool on the arrays of the view, whether a way opens when they are free.
     """
     mask = situation.model.mask(node.patch)
@@ -71,10 +69,8 @@ def suppose(node: Node, side: Square, depth: int, situation: Situation) -> Suppo
 
     Parameters
     ----------
-    node : the object.
     side : the direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
     depth : in squares, 1 or more.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     if node.moved or node.polygon is None:
         return None

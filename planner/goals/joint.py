@@ -29,16 +29,13 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
 
     Parameters
     ----------
-    placements : Sequence[Placement]
-        Where each goal holds. A goal of which that is not known yet may hold anywhere.
-    shape : shapely geometry
-        The outline of the object, in squares, view frame.
+    placements : where each goal holds. A goal of which that is not known yet may hold anywhere.
+    shape : the outline of the object, in squares, view frame.
 
     Returns
     -------
     tuple[int, int] | None
-        The indices into `placements` of the first such two goals, the lesser first; None when each two of them may hold
-        at once.
+        The indices into `placements` of the first such two goals; None when each two of them may hold at once.
     """
     for (one, a), (other, b) in combinations(enumerate(placements), 2):
         if all(placement.ends and not placement.missing for placement in (a, b)):
@@ -51,13 +48,8 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
 def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
     """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
 
-    However much more floor becomes known, such corners only move further apart. Also "" when the two corners of the
-    known floor are near enough to each other.
-
-    Parameters
-    ----------
-    goals : of one stage, for the robot.
-    situation : what is believed: world model, rooms, doors, corners and track.
+    The goals are those of one stage for the robot. However much more floor becomes known, such corners only move
+    further apart. Also "" when the two corners of the known floor are near enough to each other.
     """
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
@@ -73,10 +65,7 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 def _may_share(one: End, other: End, shape: Any) -> bool:
     """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only.
 
-    Parameters
-    ----------
-    one, other : the ends, in squares, in one frame.
-    shape : shapely Polygon, in squares, in the same frame.
+    one, other : the ends, in squares, in one frame. shape : shapely Polygon, in squares, in the same frame.
     """
     room = enclosing_region(one, shape).intersection(enclosing_region(other, shape))
     return bool(room.area >= shape.area - REGION_ROUNDING)
@@ -85,22 +74,10 @@ def _may_share(one: End, other: End, shape: Any) -> bool:
 def enclosing_region(end: End, shape: Any) -> Any:
     """Compute a region that holds a shape wholly wherever it meets an end, at any orientation.
 
-    Parameters
-    ----------
-    end : End
-        In squares; an At end is relative to the shape as it lies.
-    shape : shapely geometry
-        In squares, in the frame of the end.
+    A shapely Polygon or MultiPolygon in squares, in the frame of the two. Raises ValueError for a Roomy end, which no
+    goal of a task has.
 
-    Returns
-    -------
-    shapely geometry
-        Polygon or MultiPolygon in squares, in the same frame.
-
-    Raises
-    ------
-    ValueError
-        For a Roomy end, which no goal of a task has.
+    end : in squares; an At end is relative to the shape as it lies. shape : shapely geometry, in squares.
     """
     if isinstance(end, Inside):
         return end.polygon.buffer(REGION_ROUNDING)

@@ -26,14 +26,6 @@ def start_placement(node: Node, situation: Situation) -> Placement:
     """Return where an object is at the start: within one square of the unit square around where the robot woke.
 
     Ends in squares, view frame, named start_east, start_north, start_west and start_south, and a loose one, start.
-
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
     return _touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
@@ -45,14 +37,8 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
     Ends in squares, view frame, named by the other object and a side of it, such as o2_east. When nothing is known to
     be the other object, there are no ends, and `missing` says so.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
     other : the parameter of the task that means the other object.
     node : the object to be carried; its outline is known.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     target = situation.object_of(other)
     if target is None:
@@ -65,15 +51,9 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
     """Return where a shape is within one square of a target.
 
     Best are the four sides of the target, with the bounding boxes touching. Where none of them is possible, any place
-    near the target will do. No such place is further away than the length of the shape.
+    near the target will do. No such place is further away than the length of the shape. It holds when the distance of
+    the two is at most BESIDE_DISTANCE.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    It holds when the distance of the two is at most BESIDE_DISTANCE.
-
-    Parameters
-    ----------
     shape, target : shapely Polygons, in squares, view frame.
     name : of the target; the ends are named name_east, name_north, name_west and name_south, the loose one by the name.
     """
@@ -100,15 +80,9 @@ def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
 
     It holds within POSE_TOLERANCE squares and ANGLE_TOLERANCE degrees.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
     goal : pose(x, "POINT (x y)", degrees): where its middle shall be, in squares, in the robot's own frame; and the
         rotation from its first orientation, in degrees, counter-clockwise positive.
     node : the object; its outline is known.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)

@@ -39,9 +39,6 @@ class OptimisticEnds:
         """Compute each end as if the floor went on as optimistic planning assumes, by the same names.
 
         In squares, view frame; an end may reach beyond the arrays of the view.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
         """
         wider = {name: spread_into_unseen(mask, self.situation) for name, mask in self.masks.items()}
         return {name: moved(end, -UNSEEN_MARGIN, -UNSEEN_MARGIN) for name, end in RegionEnds(wider).ends().items()}
@@ -50,21 +47,13 @@ class OptimisticEnds:
 def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
     The goal holds when the object meets one of the ends as it is now; for a corner see `planner.goals.corner_goal`.
 
     Parameters
     ----------
-    goal : Fact
-        A goal whose first argument is an object parameter.
-    node : Node
-        The object; its outline is known.
-    began : XY
-        Where its middle was at first, a point (x, y) of the map frame, in squares.
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
+    goal : a goal whose first argument is an object parameter.
+    node : the object; its outline is known.
+    began : where its middle was at first, a point (x, y) of the map frame, in squares.
 
     Returns
     -------
@@ -87,9 +76,6 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
 def _without_rim(end: End) -> End:
     """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged.
 
-    An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near two
-    walls) of geometry.manipulation.goals.
-
     end : in squares, in any frame; the result is in the same one.
     """
     if not isinstance(end, Inside):
@@ -101,19 +87,10 @@ def _without_rim(end: End) -> End:
 def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
     """Compute where a goal holds for an object, whether or not what is settled may be wrong.
 
-    Ends in squares, view frame.
+    Ends in squares, view frame. Raises ValueError when the goal is none for an object.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Raises ValueError when the goal is none for an object.
-
-    Parameters
-    ----------
     began : where the middle of the object was at first, (x, y) of the map frame, in squares.
     goal : a goal of the task whose first argument is the parameter of an object.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     where = goal.args[1]
     if side := corner_side(goal):
@@ -134,11 +111,7 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
     """Return whether an object meets one of some ends as it is now.
 
-    Parameters
-    ----------
     ends : by name, in squares, view frame.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
@@ -148,14 +121,6 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
 
     At first a likely door will do: the way there shows whether it is one. Walls that may be objects, and so might make
     other rooms, are only looked at when the object is there. Ends in squares, view frame, named by rooms: r1, r2, ...
-
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
@@ -180,10 +145,7 @@ def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
 
     In the ascending order of the rooms' numbers.
 
-    Parameters
-    ----------
-    rooms : the partition of the floor into rooms.
-    mask : the squares to divide.
+    rooms : the partition of the floor into rooms. mask : the squares to divide.
     """
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
@@ -193,12 +155,7 @@ def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
 
     One end, "hidden", in squares, view frame; none while the hidden squares are fewer than the object needs.
 
-    A Placement holds ends by name (where the outline may end, in squares, view frame), whether the goal holds now, and
-    in words what must be known first.
-
     began : a point (x, y) of the map frame, in squares.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))

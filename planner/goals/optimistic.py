@@ -21,7 +21,6 @@ def spread_into_unseen(mask: Bools, situation: Situation) -> Bools:
     Neighbours share an edge; the steps lead over unseen squares only, also over those of the margin.
 
     mask : (rows, columns) bool of the view; it is not changed. The result has a margin of UNSEEN_MARGIN squares.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     unseen, wider = ~np.pad(situation.model.view.seen, UNSEEN_MARGIN), np.pad(mask, UNSEEN_MARGIN)
     for _ in range(UNSEEN_MARGIN):
@@ -35,9 +34,5 @@ def optimistic_floor(situation: Situation) -> Bools:
     Rows and columns are those of the view; UNSEEN_MARGIN (6) more squares are on each side. These squares are the free
     ones of certainty level OPTIMISTIC_LEVEL (2; 0 is the surest), and the unseen ones that at most UNSEEN_MARGIN steps
     lead to from these.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     return spread_into_unseen(situation.cost_maps.free(OPTIMISTIC_LEVEL), situation)

@@ -36,7 +36,10 @@ class Origin(NamedTuple):
 
 
 class Origins:
-    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`)."""
+    """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`).
+
+    The outline of a thing is known. `lost` and `left` raise KeyError unless `at` was asked about the parameter before.
+    """
 
     def __init__(self) -> None:
         """Remember no origin yet."""
@@ -45,22 +48,8 @@ class Origins:
     def at(self, parameter: str, node: Node, situation: Situation) -> XY:
         """Return where the middle of a thing was at first, and note it when the thing is new.
 
-        A thing that the robot has moved and then lost sight of counts as the same one when the parameter is bound to
-        another node.
-
-        Parameters
-        ----------
-        parameter : str
-            The parameter of the task that means the thing.
-        node : Node
-            The thing now; its outline is known.
-        situation : Situation
-            What is believed: world model, rooms, doors, corners and track.
-
-        Returns
-        -------
-        XY
-            A point (x, y) of the map frame as it is believed now, in squares.
+        A point (x, y) of the map frame as it is believed now, in squares. A thing that the robot has moved and then
+        lost sight of counts as the same one when the parameter is bound to another node.
         """
         model, known = situation.model, self._known.get(parameter)
         gone = known is not None and known.moved and model.object(known.name) is None
@@ -76,16 +65,7 @@ class Origins:
         """Return in words why the noted origin of a thing is not reliable any more; "" while it is.
 
         After the robot was lost, the origin may be squares away from where it believes it. A door of the thing's room
-        counts as lost only where observations contradict what is believed. The origin must have been asked for with
-        `at` before; else KeyError.
-
-        "the robot was lost" or "a door of its room was lost".
-
-        Parameters
-        ----------
-        parameter : the parameter of the task that means the thing.
-        node : the thing now.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        counts as lost only where observations contradict what is believed.
         """
         known, model = self._known[parameter], situation.model
         if model.anew and not known.anew:
@@ -97,15 +77,7 @@ class Origins:
     def left(self, parameter: str, node: Node, situation: Situation) -> bool:
         """Return whether a thing is in another room now than at first.
 
-        The origin must have been asked for with `at` before; else KeyError.
-
         Compared are the rooms of the origin and of the middle of the outline, as the rooms are believed now.
-
-        Parameters
-        ----------
-        parameter : the parameter of the task that means the thing.
-        node : the thing now; its outline is known.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         rooms, view = situation.rooms.labels, situation.model.view
         began = situation.model.frame.place_from_utak(*self._known[parameter].place)
@@ -118,10 +90,7 @@ def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
 
     In squares; () for no door.
 
-    Parameters
-    ----------
     place : a point (x, y) of the map frame, in squares.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])

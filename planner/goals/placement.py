@@ -32,22 +32,14 @@ class DeferredEnds(Protocol):
     """The ingredients of some ends. To compute these takes time, so it is done only when they are asked for."""
 
     def ends(self) -> Mapping[str, End]:
-        """Compute the ends, by name, in squares, view frame; {} for none.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
-        """
+        """Compute the ends, by name, in squares, view frame; {} for none."""
 
 
 class DeferredViewpoints(Protocol):
     """The ingredients of some viewpoints. To compute these takes time, so it is done only when asked for."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Compute the viewpoints, on the arrays of the view; () for none.
-
-        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
-        of the view), what is not known in words, and its chance in percent.
-        """
+        """Compute the viewpoints, on the arrays of the view; () for none."""
 
 
 @dataclass(frozen=True)
@@ -62,11 +54,7 @@ class KnownEnds:
     by_name: Mapping[str, End] = field(default_factory=dict)
 
     def ends(self) -> Mapping[str, End]:
-        """Return the ends, by name, in squares, view frame.
-
-        An end is an At (a pose relative to the object as it lies), Inside (within polygons), InCorner or Between (near
-        two walls) of geometry.manipulation.goals.
-        """
+        """Return the ends, by name, in squares, view frame."""
         return self.by_name
 
 
@@ -91,11 +79,7 @@ class NoViewpoints:
     """Deferred viewpoints of which there are none."""
 
     def viewpoints(self) -> tuple[Viewpoint, ...]:
-        """Return (): no viewpoint.
-
-        A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays
-        of the view), what is not known in words, and its chance in percent.
-        """
+        """Return (): no viewpoint."""
         return ()
 
 
@@ -145,25 +129,12 @@ def meets_end(end: End, shape: Any) -> bool:
     """Return whether a shape (shapely Polygon) meets an end as it is now; both in squares, view frame.
 
     An At end is met when it is the shape's present pose; a Roomy end never.
-
-    Parameters
-    ----------
-    end : where the outline must lie.
-    shape : the outline of the object as it lies now.
     """
     return is_goal_met(end, shape, shape)
 
 
 def meets_any_end(ends: Mapping[str, End], shape: Any) -> bool:
-    """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame.
-
-    False for no ends.
-
-    Parameters
-    ----------
-    ends : by name.
-    shape : the outline of the object as it lies now.
-    """
+    """Return whether a shape (shapely Polygon) meets any of some ends as it is now; all in squares, view frame."""
     return any(meets_end(end, shape) for end in ends.values())
 
 
@@ -171,10 +142,6 @@ def is_off_quarter_turn(node: Node) -> bool:
     """Return whether an object has been turned by more than ANGLE_TOLERANCE from a whole number of quarter turns.
 
     A quarter turn is 90 degrees. What counts is `node.turned`, the degrees since it was first held.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     """
     over = node.turned % 90.0
     return min(over, 90.0 - over) > ANGLE_TOLERANCE
@@ -184,11 +151,6 @@ def to_view_frame(shape: Any, situation: Situation) -> Any:
     """Convert a shape (shapely geometry, in squares) from the map frame to the view frame; the shape is not changed.
 
     The view frame is that of the arrays of the view: (0, 0) is the south-west corner of square [0, 0].
-
-    Parameters
-    ----------
-    shape : a shapely geometry, in squares, map frame.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
@@ -199,10 +161,6 @@ def mask_to_polygon(mask: Bools) -> Any:
 
     x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
     geometry for an empty mask.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool, row 0 in the south.
     """
     runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(runs == 1)
@@ -216,20 +174,7 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
     The robot holds the object wherever that goes, so what is forbidden to either is forbidden to both. Squares that the
     object covers now are left out.
 
-    Parameters
-    ----------
-    node : Node
-        The object.
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
-    margin : int
-        Squares that are added to the arrays of the view on each side.
-
-    Returns
-    -------
-    Bools
-        (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view; all False
-        when nothing is forbidden.
+    (rows + 2 margin, columns + 2 margin) bool, square [margin, margin] the square [0, 0] of the view.
     """
     doors = (*situation.shut(ROBOT), *situation.shut(node.name))
     mask = situation.region_kept_off(node.name, margin)
@@ -242,23 +187,12 @@ def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bool
 def possible_extension(node: Node, side: tuple[int, int], depth: int, model: WorldModel) -> Bools:
     """Compute the squares straight behind an object that seem to be wall and may belong to the object.
 
-    They are verge (what bounds the floor) without a gap from the object on, at most `depth` rows or columns.
+    They are verge (what bounds the floor) without a gap from the object on, at most `depth` rows or columns. (rows,
+    columns) bool on the arrays of the view. An object that was moved has none: it was seen to end.
 
     Parameters
     ----------
-    node : Node
-        The object. One that was moved has none: it was seen to end.
-    side : tuple[int, int]
-        The direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
-    depth : int
-        How far the object may go on, in squares.
-    model : WorldModel
-        What is believed, with its frame and its map view.
-
-    Returns
-    -------
-    Bools
-        (rows, columns) bool on the arrays of the view; all False when there are none.
+    side : the direction (columns, rows) along the axes of the map, one of SIDE_DIRECTIONS.
     """
     mask = model.mask(node.patch)
     found, last = np.zeros_like(mask), mask
@@ -271,24 +205,13 @@ def possible_extension(node: Node, side: tuple[int, int], depth: int, model: Wor
 def pull_out_pose(node: Node, side: tuple[int, int], depth: int, situation: Situation) -> Pose | None:
     """Compute how an object that may go on in a wall is pulled straight out of it, so that it is seen whole.
 
-    A Pose is x, y in squares and degrees, counter-clockwise positive.
+    The pose is a translation from where the object lies, in squares along the axes of the map. None when the object
+    cannot be moved at all that way.
 
     Parameters
     ----------
-    node : Node
-        The object.
-    side : tuple[int, int]
-        The direction (columns, rows) along the axes of the map in which it may go on, one of SIDE_DIRECTIONS.
-    depth : int
-        How far, in squares. It is pulled by one square more, or as far as the floor is surely free.
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
-
-    Returns
-    -------
-    Pose | None
-        The translation from where the object lies, in squares along the axes of the map, without a turn; None when the
-        object cannot be moved at all that way.
+    side : the direction (columns, rows) along the axes of the map in which it may go on, one of SIDE_DIRECTIONS.
+    depth : how far, in squares. It is pulled by one square more, or as far as the floor is surely free.
     """
     mask, (dx, dy) = situation.model.mask(node.patch), side
     room = np.pad(situation.cost_maps.free(0) | mask, depth + 1)
@@ -304,12 +227,7 @@ def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
     An At end: the translation from where it lies, in squares along the axes of the map. Returns None when none of the
     squares may belong to the object, or when it cannot be pulled. It is pulled out as if it went on as far as possible.
 
-    An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
-    positive, then a translation (x, y) in squares.
-
     needed : (rows, columns) bool on the arrays of the view, the squares that must become free.
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     for depth, side in product(range(MAX_HIDDEN_DEPTH, 0, -1), SIDE_DIRECTIONS):
         if (possible_extension(node, side, depth, situation.model) & needed).any():
@@ -323,11 +241,6 @@ def robot_can_leave(node: Node, situation: Situation) -> bool:
     """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it.
 
     True for an object that is not held.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     held = situation.model.held == node.name
     return not held or floor_leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))

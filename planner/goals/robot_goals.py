@@ -1,4 +1,7 @@
-"""Destinations: the squares on which a goal holds for the robot, or what is missing to tell."""
+"""Destinations: the squares on which a goal holds for the robot, or what is missing to tell.
+
+The side of a corner is northeast, northwest, southeast or southwest in the robot's own frame.
+"""
 
 import math
 from collections.abc import Sequence
@@ -63,17 +66,7 @@ class Destination:
 def unreachable_reason(where: Sequence[Destination]) -> str:
     """Return in words why goals cannot be attained although it is known where each of them holds.
 
-    Either no way leads there, or no square is in all of the destinations.
-
-    Parameters
-    ----------
-    where : Sequence[Destination]
-        The destinations of all goals, at least one, none of which can be reached.
-
-    Returns
-    -------
-    str
-        A clause without full stop.
+    Either no way leads to any of the destinations, or no square is in all of them. A clause without full stop.
     """
     both = [set(d.squares.tolist()) for d in where]
     return "no way leads there" if set.intersection(*both) else "there is no place where all of it holds at once"
@@ -81,9 +74,6 @@ def unreachable_reason(where: Sequence[Destination]) -> str:
 
 def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) -> Destination:
     """Return the destination of a goal of which it is not known yet where it holds: without squares.
-
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
 
     Parameters
     ----------
@@ -97,10 +87,6 @@ def corner_side(goal: Fact) -> str:
     """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner.
 
     The side is one of the robot's own frame, as in at(utak, corner(northeast)).
-
-    Parameters
-    ----------
-    goal : a goal of the task, as a fact.
     """
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
@@ -115,15 +101,9 @@ def wall_sides(corner: Corner) -> tuple[int, int]:
 def destination(goal: Fact, situation: Situation) -> Destination:
     """Compute the squares on which a goal of place holds for the robot.
 
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
     Parameters
     ----------
-    goal : Fact
-        at, in, beside, through or around with "utak"; or circled, for the squares beside its object.
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
+    goal : at, in, beside, through or around with "utak"; or circled, for the squares beside its object.
 
     Returns
     -------
@@ -154,12 +134,6 @@ def corner_destination(side: str, situation: Situation) -> Destination:
 
     Where an unseen room may go further, the corner may be another one: then something is missing. Without the square
     when it is not known how the floor goes on there.
-
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
-    side : northeast, northwest, southeast or southwest.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     unknown = missing_for_corner(side, situation, situation.cost_maps.floor)
     if unknown is not None:
@@ -174,13 +148,6 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
     It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there. The Destination
     has no squares then, but words and viewpoints.
 
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
-    Parameters
-    ----------
-    side : of the robot's own frame, such as northeast.
-    situation : what is believed (world model, rooms, doors, corners, track).
     floor : (rows, columns) bool on the arrays of the view, the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
@@ -201,24 +168,9 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     The floor may go on unseen behind a door, also behind one that follows if a doubtful wall is an object; or behind a
     likely gap; or it is seen where no way leads yet. How far it may go is estimated by the constants of this module.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    First the unreached rooms that a way of some certainty leads to, then frontiers, then gaps. All get the same words
-    for what is not known; for frontiers and gaps the chance in percent that an object comes into sight.
-
-    Parameters
-    ----------
-    side : str
-        A side of the robot's own frame, such as "northeast".
-    situation : Situation
-        What is believed: world model, rooms, doors, corners and track.
-
-    Returns
-    -------
-    tuple[Viewpoint, ...]
-        One for each such room, with the squares (flat indices on the arrays of the view) from which it comes into
-        sight; empty when no such room is left.
+    One Viewpoint for each such room: first the unreached rooms that a way of some certainty leads to, then frontiers,
+    then gaps. All get the same words for what is not known; for frontiers and gaps the chance in percent that an object
+    comes into sight.
     """
     cost_maps, model = situation.cost_maps, situation.model
     known = _furthest_towards(side, _corner_square(side, situation), model)
@@ -227,10 +179,6 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
         """Return how much less far than the known corner a viewpoint lies towards the side, in squares.
 
         East and north are added, so a diagonal step counts twice; negative when the viewpoint lies further.
-
-        Parameters
-        ----------
-        view : its squares are flat indices (row * columns + column) on the arrays of the view.
         """
         return known - _furthest_towards(side, view.squares, model)
 
@@ -252,11 +200,7 @@ def rooms_to_see(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
 
 def _corner_square(side: str, situation: Situation) -> SquareIndices:
-    """Return the square of the known corner towards a side, as a flat index on the arrays of the view, (1,) int64.
-
-    side : of the robot's own frame, such as northeast.
-    situation : what is believed: world model, rooms, doors, corners and track.
-    """
+    """Return the square of the known corner towards a side, as a flat index on the arrays of the view, (1,) int64."""
     column, row = situation.corners[side].square
     return np.array([row * situation.model.labels.shape[1] + column])
 
@@ -266,12 +210,6 @@ def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int
 
     Reach counts towards the corner, east and north added. Returns None where the frontier leads to no other room: it is
     neither in a doorway, nor as narrow as a door, nor in another room than the known corner.
-
-    Parameters
-    ----------
-    side : of the corner in the robot's own frame, such as northeast.
-    view : the frontier.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     rooms = (situation.rooms, situation.rooms_by_sure_walls)
     if any(one.doorways.ravel()[view.squares].any() for one in rooms):
@@ -289,11 +227,6 @@ def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
     """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns.
 
     The span is the difference of the greatest and the least number of a row, or column.
-
-    Parameters
-    ----------
-    view : its squares are flat indices (row * columns + column) on the arrays of the view.
-    model : what is believed, with its frame and its map view.
     """
     return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
@@ -301,13 +234,7 @@ def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
 def _unseen_reach(side: str, view: Viewpoint, least: int, sideward: int, model: WorldModel) -> float:
     """Estimate how much further towards a corner the floor behind a frontier may go, in squares, east and north added.
 
-    Parameters
-    ----------
-    side : of the corner in the robot's own frame, such as northeast.
-    view : the frontier.
-    least : the least reach by the chance of the frontier, in squares.
-    sideward : the reach to either side, in squares.
-    model : what is believed.
+    least : the least reach by the chance of the frontier, in squares. sideward : the reach to either side, in squares.
     """
     promise = max(REACH_PER_PERCENT * (view.chance - MIN_CHANCE), least)
     onward = _onward(side, view.squares, model)
@@ -320,12 +247,6 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
 
     The step, one square long, goes in the mean of the directions in which the squares have unseen neighbours (of
     eight); 1 where they cancel out. From -1.41 (away from the corner) to 1.41.
-
-    Parameters
-    ----------
-    side : of the corner in the robot's own frame, such as northeast.
-    squares : (n,) flat indices on the arrays of the view.
-    model : what is believed.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     unseen = np.pad(~model.view.seen, 1, constant_values=True)
@@ -338,9 +259,6 @@ def _onward(side: str, squares: SquareIndices, model: WorldModel) -> float:
 def _along(side: str, east: Any, north: Any) -> Any:
     """Return how far (east, north) leads towards a corner: for "northeast" east + north, else with signs changed.
 
-    Parameters
-    ----------
-    side : of the corner in the robot frame: northeast, northwest, southeast or southwest.
     east, north : numbers, or arrays of one shape, in squares, robot frame; the result is of the same kind and unit.
     """
     return (east if "east" in side else -east) + (north if "north" in side else -north)
@@ -352,11 +270,7 @@ def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> f
     Measured from where the robot woke, east and north added, at the centres of the squares; the greater, the nearer to
     the corner.
 
-    Parameters
-    ----------
-    side : such as northeast.
     squares : (n,) flat indices on the arrays of the view, at least one.
-    model : what is believed.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
@@ -369,15 +283,10 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
 
     Only squares count that share an edge with one of its squares, if there are any: its outline may end short of the
     corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
-    Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it.
-
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
-    When no way leads there, the viewpoint is all floor beside the object.
+    Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it. When no
+    way leads there, the viewpoint is all floor beside the object.
 
     parameter : the parameter of the task that means the object.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     node = situation.object_of(parameter)
     if node is None:
@@ -404,13 +313,6 @@ def _room(situation: Situation) -> Destination:
     """Return the reachable floor of the rooms next to the one in which the robot woke.
 
     Without squares, and with what is missing and where to look, while no such room is known or is to be relied on.
-
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     beyond, viewpoints = situation.next_rooms(situation.model.frame.origin)
     if viewpoints:
@@ -429,10 +331,6 @@ def next_room_missing(situation: Situation) -> str:
     A clause without full stop. A neck is a narrow place of the floor; a door is one with floor at least twice as wide
     on both sides. If no neck is a door, the one that comes nearest to that is named, if any is known, with its width in
     squares and its place in the robot frame.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model, opening = situation.model, situation.rooms.opening
     if situation.rooms.sure:
@@ -451,16 +349,8 @@ def next_room_missing(situation: Situation) -> str:
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors.
 
-    One Viewpoint for each room, with all its reachable squares (flat indices on the arrays of the view).
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    In the ascending order of the rooms' numbers.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
+    One Viewpoint for each room, with all its reachable squares (flat indices on the arrays of the view). In the
+    ascending order of the rooms' numbers.
     """
     model = situation.model
     rooms, beyond = situation.likely_next_rooms(model.frame.origin)
@@ -485,12 +375,8 @@ def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoin
 
     Viewpoints on the arrays of the view, those of doors first; () for none.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
     tried : whether likely doors are left out, because the robot goes through them anyway; by default all possible doors
         count.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
     return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
@@ -500,13 +386,6 @@ def around_corner_destination(situation: Situation) -> Destination:
     """Return the floor wholly out of sight of the place where the robot woke: a corner of the verge lies in between.
 
     Without squares, and with what is missing, when no such floor can be reached.
-
-    A Destination holds squares (flat indices (row * columns + column) on the arrays of the view), in words what must be
-    known first, and viewpoints from which that may be seen.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     squares = np.flatnonzero(hidden_from(model.verge, model, model.frame.origin) & situation.cost_maps.floor)
@@ -514,22 +393,14 @@ def around_corner_destination(situation: Situation) -> Destination:
 
 
 def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
-    """Compute the squares none of whose corners is seen from a point past a verge.
+    """Compute the squares none of whose corners is seen from a point past a verge, the squares that block the sight.
+
+    (rows, columns) bool on the arrays of the view, as `verge`; squares of the verge may be hidden, too. Lines of sight
+    are sampled at LINE_SAMPLES places.
 
     Parameters
     ----------
-    verge : Bools
-        (rows, columns) bool on the arrays of the view, the squares that block the sight.
-    model : WorldModel
-        Only the place of its view counts.
-    place : XY
-        A point (x, y) of the map frame, in squares.
-
-    Returns
-    -------
-    Bools
-        (rows, columns) bool, True where hidden; squares of the verge may be hidden, too. Lines of sight are sampled at
-        LINE_SAMPLES places.
+    place : a point (x, y) of the map frame, in squares.
     """
     height, width = verge.shape
     x, y = place[0] - model.view.west, place[1] - model.view.south
@@ -547,10 +418,7 @@ def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
 
     Flat indices on the arrays of the view, (n,).
 
-    Parameters
-    ----------
     point : (x, y) of the map frame, in squares.
-    model : what is believed, with its frame and its map view.
     """
     row, column = model.view.locate(*point)
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
@@ -561,10 +429,6 @@ def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
 
 
 def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
-    """Return whether the robot stands on one of some squares; False for no squares.
-
-    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
-    model : what is believed, with its frame and its map view.
-    """
+    """Return whether the robot stands on one of some squares; False for no squares."""
     row, column = model.view.locate(*model.place)
     return bool((squares == row * model.labels.shape[1] + column).any())

@@ -21,36 +21,22 @@ def winding_number(track: Sequence[XY], node: Node) -> int:
 
     Parameters
     ----------
-    track : points (x, y) of the map frame in squares, at least one, each taken as the centre of its square; the track
-        is closed by its first point.
-    node : the object; only its squares matter.
+    track : points (x, y) of the map frame in squares, each taken as the centre of its square; closed by its first
+        point.
     """
     return crossing_number(_centred([*track, track[0]]), encircled_point(node))
 
 
 def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> dict[int, PlannedRoute]:
-    """Find the routes that complete one turn around an object and end where the track began.
+    """Find the routes that complete one turn around an object and end where the track began, by the sense of rotation.
 
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
-    The routes keep off the object's own squares. A sense without a route has no key; the length of a route is that of
-    the diagonal steps, not of the squares between.
+    The sense is 1 for counter-clockwise, -1 for clockwise; one without a route has no key. All are of the surest
+    certainty level at which there is one. The routes keep off the object's own squares; their length is that of the
+    diagonal steps, not of the squares between.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    track : Sequence[XY]
-        Where the robot has been since it began to encircle the object, points (x, y) of the map frame in squares.
-    node : Node
-        The object.
-
-    Returns
-    -------
-    dict[int, PlannedRoute]
-        The route (on the arrays of the view) by the sense of rotation: 1 counter-clockwise, -1 clockwise. All are of
-        the surest certainty level at which there is one; empty when there is none at any level.
+    track : where the robot has been since it began to encircle the object, points (x, y) of the map frame in squares.
     """
     model = cost_maps.model
     x, y = encircled_point(node)
@@ -93,13 +79,7 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
     That square lies in the column of the later square and the row of the former. The length, in squares, is that of the
     given squares; the clearance is assumed to be 0.5 squares.
 
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
-    Parameters
-    ----------
-    squares : (column, row) on the arrays of the view, at least two.
-    level : the certainty level of the squares.
+    squares : (column, row) on the arrays of the view, at least two. level : the certainty level of the squares.
     """
     path = [squares[0]]
     for column, row in squares[1:]:
@@ -116,10 +96,6 @@ def encircled_point(node: Node) -> XY:
     It is the centre of that square of the object which is nearest to the mean of its squares.
 
     Of squares that are equally near, the westernmost, then the southernmost.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     """
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))

@@ -41,14 +41,6 @@ class FewestMoves:
         With the cost of the way there, the price then comes to MOVE_COST for each move and SQUARE_COST for each square
         of way. A subgoal that one move reaches keeps only the squares that it reaches; one that cannot be reached stays
         as it is.
-
-        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
-        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-        Parameters
-        ----------
-        subgoals : with squares as flat indices (row * columns + column) on the arrays of the view. They are not
-            changed; each has its own entry in the result.
         """
         return [self._priced(subgoal) for subgoal in subgoals]
 
@@ -57,17 +49,8 @@ class FewestMoves:
 
         These are the robot's square and where the move ends, (column, row) on the arrays of the view; they need not be
         neighbours. The length is straight, in squares; the clearance is not computed: 0; the level is 0. Returns None
-        for all other subgoals, and when the robot is there.
-
-        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-        level, 0 the surest.
-
-        Of the squares that one move reaches it is the nearest; with two moves, the route leads to the turn between them
-        only.
-
-        Parameters
-        ----------
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
+        for all other subgoals, and when the robot is there. Of the squares that one move reaches it is the nearest;
+        with two moves, the route leads to the turn between them only.
         """
         here, near = self._cost_maps.here, self._met(subgoal)
         if len(near):
@@ -85,15 +68,7 @@ class FewestMoves:
         return self._cost_maps.distances[0].ravel()
 
     def _priced(self, subgoal: Subgoal) -> Subgoal:
-        """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`).
-
-        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
-        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-        Parameters
-        ----------
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
-        """
+        """Return a subgoal whose price, with its way, comes to the cost of its moves, in squares (see `priced`)."""
         reached = self._cost_maps.nearest(subgoal.squares) if len(subgoal.squares) else None
         if reached is None:
             return subgoal
@@ -109,10 +84,6 @@ class FewestMoves:
         """Return the squares of a subgoal that one move reaches: a part of `subgoal.squares`, possibly none.
 
         In the order of `subgoal.squares`.
-
-        Parameters
-        ----------
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
         """
         near: SquareIndices = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
         return near
@@ -122,8 +93,6 @@ class FewestMoves:
 
         On the arrays of the view: row 0 in the south.
 
-        Parameters
-        ----------
         kind : of the subgoal; it decides how long a move may be, and which squares it may cross.
         """
         key = CARRYING_PACE.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
@@ -135,10 +104,6 @@ class FewestMoves:
         """Return the square where the first of two moves to a subgoal ends; None when two moves do not reach it.
 
         (column, row) on the arrays of the view; remembered by the kind and the squares of the subgoal.
-
-        Parameters
-        ----------
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
         """
         key = (subgoal.kind, subgoal.squares.tobytes())
         if key not in self._turns:
@@ -150,10 +115,6 @@ class FewestMoves:
 
         Returns the square (column, row) where the first of two straight moves ends; None when two moves do not reach
         any of at most MAX_TRIED_SQUARES squares of the subgoal that a sure way leads to.
-
-        Parameters
-        ----------
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
         """
         cost_maps, passable = self._cost_maps, CARRYING_PACE.passable(self._cost_maps, subgoal.kind)
         sure = subgoal.squares[(self._far[subgoal.squares] >= 0) & passable.ravel()[subgoal.squares]]
@@ -176,8 +137,6 @@ class FewestMoves:
     def _square(self, flat: int) -> Square:
         """Return the square (column, row) of a flat index (row * columns + column) on the arrays of the view.
 
-        Parameters
-        ----------
         flat : row * columns + column.
         """
         row, column = divmod(flat, self._cost_maps.safe.shape[1])

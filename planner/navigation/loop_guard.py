@@ -38,11 +38,6 @@ class LoopGuard:
 
         The same are the robot's place and the command, to STATE_DIGITS decimals, what it holds, and what is known (see
         `_knowledge`).
-
-        Parameters
-        ----------
-        command : the command that is about to be given, in the robot's own frame.
-        model : what is believed, with its frame and its map view.
         """
         x, y = model.place
         values = tuple(round(v, STATE_DIGITS) if isinstance(v, float) else v for v in astuple(command))
@@ -53,29 +48,14 @@ class LoopGuard:
         return again
 
     def tire(self, squares: frozenset[Square]) -> None:
-        """Count one more loop for a subgoal with these squares (x, y) of the map frame.
-
-        Parameters
-        ----------
-        squares : whole numbers (x, y), the south-west corner of each square in the map frame.
-        """
+        """Count one more loop for a subgoal with these squares (x, y) of the map frame."""
         self._loops.update(squares)
 
     def priced(self, subgoals: Sequence[Subgoal], model: WorldModel) -> list[Subgoal]:
         """Return the subgoals, dearer by LOOP_COST for each of their loops, without those that reached MAX_LOOPS.
 
         Prices are in squares of way. The loops of a subgoal are the most that were counted for one of its squares. All
-        loops are forgotten as soon as more is known.
-
-        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
-        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-        The rest stays in order; `subgoals` is not changed.
-
-        Parameters
-        ----------
-        subgoals : with squares as flat indices on the arrays of this view.
-        model : what is believed.
+        loops are forgotten as soon as more is known. The rest stays in order; `subgoals` is not changed.
         """
         known = _knowledge(model)
         if known != self._known:
@@ -96,10 +76,6 @@ def _knowledge(model: WorldModel) -> StateKey:
 
     In this order: how many squares were seen, how many are settled, how many stopped a motion, and for each object that
     was moved or is stuck its name, how often it is stuck, and the west and south square of its patch (map frame).
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     """
     settled = int((model.view.state != OPEN).sum())
     things = tuple(

@@ -59,18 +59,10 @@ def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
     of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings.
 
-    A FoundLine is a tuple: the points (x, y), (n, 2), the length and the clearance, all in squares.
+    At most MAX_ROUTES, the shortest first: each the points (x, y) of a line from centre to centre in the view frame,
+    its length and its clearance, all in squares. Empty when no route leads there.
 
-    Parameters
-    ----------
-    free : (rows, columns) bool, True where free, on the arrays of the view.
-    start, goal : free squares (column, row).
-
-    Returns
-    -------
-    list of FoundLine
-        At most MAX_ROUTES, the shortest first: each the points (x, y) of a line from centre to centre in the view
-        frame, its length and its clearance, all in squares. Empty when no route leads there.
+    free : (rows, columns) bool, True where free, on the arrays of the view. start, goal : free squares (column, row).
     """
     routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
@@ -100,31 +92,16 @@ PATH_FINDERS: Mapping[str, PathFinder] = {
 
 
 def find_routes(cost_maps: CostMaps, level: int, goals: SquareIndices, finder: str) -> list[PlannedRoute]:
-    """Find topologically distinct routes to the nearest reachable square of `goals`.
+    """Find topologically distinct routes to the nearest reachable square of `goals`, the shortest first.
 
-    Distinct routes pass some obstacle on different sides.
-
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
-    The nearest is by the length of the way at that level; of equals the first in `goals`. At most MAX_ROUTES with the
-    skeleton, else one.
+    Distinct routes pass some obstacle on different sides. The nearest is by the length of the way at that level; of
+    equals the first in `goals`. At most MAX_ROUTES with the skeleton, else one. A single route of one square when the
+    robot is there.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    level : int
-        The certainty level of the squares that may be crossed, 0 the surest; at least one goal can be reached at it.
-    goals : SquareIndices
-        (n,) flat indices (row * columns + column) on the arrays of the view.
-    finder : str
-        A key of PATH_FINDERS: skeleton, visibility or grid.
-
-    Returns
-    -------
-    list[PlannedRoute]
-        From the robot's square to that goal, shortest first; a single route of one square when the robot is there.
+    level : the certainty level of the squares that may be crossed, 0 the surest.
+    finder : a key of PATH_FINDERS: skeleton, visibility or grid.
 
     Raises
     ------
@@ -147,36 +124,20 @@ def choose_route(
     doors: Sequence[Door],
     forbidden: frozenset[str],
 ) -> PlannedRoute | None:
-    """Choose one of some routes, by planner/asp/routes.lp.
+    """Choose one of some routes, by planner/asp/routes.lp; None when every route leads through a forbidden door.
 
     It is the one of least length, with costs added for risk, for a clearance below one square, and for a switch from
-    the route before; of equals the first offered. Routes through forbidden doors are not taken.
+    the route before; of equals the first offered.
 
     The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
     `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths
     of the expected number of occupied squares; `through(number, door)`; `last(number)` for a route that continues the
     one before.
 
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
     Parameters
     ----------
-    offered : Sequence[PlannedRoute]
-        On the arrays of the view.
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    before : frozenset[Square]
-        The squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
-    doors : Sequence[Door]
-        The known doors, view frame.
-    forbidden : frozenset[str]
-        The names of the doors that the task forbids.
-
-    Returns
-    -------
-    PlannedRoute | None
-        One of `offered`; None when every route leads through a forbidden door.
+    before : the squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
+    forbidden : the names of the doors that the task forbids.
     """
     facts = [f"not_through({door})" for door in sorted(forbidden)]
     for number, route in enumerate(offered):
@@ -210,8 +171,6 @@ def leads_through(route: PlannedRoute, door: Door) -> bool:
 
     Both are in the view frame; the route counts as the line through the centres of its squares.
 
-    Parameters
-    ----------
     route : squares (column, row) on the arrays of the view, in order.
     door : its neck is the segment from a to b, in squares, view frame.
     """
@@ -222,8 +181,6 @@ def leads_through(route: PlannedRoute, door: Door) -> bool:
 def _centre(square: Square) -> XY:
     """Return the centre (x, y) of a square (column, row), in squares, in the same frame.
 
-    Parameters
-    ----------
     square : (column, row) on any array with (0, 0) at the outer corner of square [0, 0].
     """
     return square[0] + 0.5, square[1] + 0.5

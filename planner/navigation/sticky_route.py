@@ -22,26 +22,13 @@ class StickyRoute:
         self._level = 0  # the certainty level of the route
 
     def keep(self, route: PlannedRoute, subgoal: frozenset[Square], model: WorldModel) -> None:
-        """Remember a route, and the squares of its subgoal.
-
-        Parameters
-        ----------
-        route : on the arrays of the present view; it is converted to the map frame.
-        subgoal : the squares (x, y) of its subgoal, given in the map frame already (see `to_map_squares`); empty for no
-            subgoal.
-        model : the world model whose view the route is on.
-        """
+        """Remember a route, on the arrays of the present view, and the squares of its subgoal, in the map frame."""
         view = model.view
         self._path = tuple((column + view.west, row + view.south) for column, row in route.squares)
         self._subgoal, self._level = subgoal, route.level
 
     def path(self, model: WorldModel) -> list[Square]:
-        """Return the squares (column, row) of the route on the arrays of the present view, in order; [] for none.
-
-        Parameters
-        ----------
-        model : what is believed, with its frame and its map view.
-        """
+        """Return the squares (column, row) of the route on the arrays of the present view, in order; [] for none."""
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
     def subgoal(self, model: WorldModel) -> frozenset[int]:
@@ -49,36 +36,18 @@ class StickyRoute:
 
         A flat index is row * columns + column. Squares outside of the view are left out; empty when there is no
         subgoal.
-
-        Parameters
-        ----------
-        model : what is believed, with its frame and its map view.
         """
         return frozenset(np.flatnonzero(model.squares(self._subgoal)).tolist())
 
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:
         """Return the rest of the route from the robot's square on, if it still leads to a subgoal over free squares.
 
-        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-        level, 0 the surest.
+        Its length is its number of squares, its clearance is not computed: 0. None when the robot is not on the route
+        or at its end, when it ends at no square of the subgoal, or when a square ahead is not free at the level.
 
         Parameters
         ----------
-        subgoal : Subgoal
-            The subgoal that is pursued now.
-        level : int
-            The certainty level at which it can be reached; another one than the route's ends the route.
-        model : WorldModel
-            What is believed, with its frame and its map view.
-        cost_maps : CostMaps
-            Of the same model.
-
-        Returns
-        -------
-        PlannedRoute | None
-            On the arrays of the present view; its length is its number of squares, its clearance is not computed: 0.
-            None when the robot is not on the route or at its end, when it ends at no square of the subgoal, or when a
-            square ahead is not free at the level.
+        level : the certainty level at which the subgoal can be reached; another one than the route's ends the route.
         """
         path = self.path(model)
         if level != self._level or cost_maps.here not in path:
@@ -92,12 +61,6 @@ class StickyRoute:
 
 
 def to_map_squares(squares: SquareIndices, model: WorldModel) -> frozenset[Square]:
-    """Convert flat indices (row * columns + column) on the arrays of the view to squares (x, y) of the map frame.
-
-    Parameters
-    ----------
-    squares : (n,) flat indices; the result is a set of whole numbers (x, y).
-    model : what is believed, with its frame and its map view.
-    """
+    """Convert flat indices (row * columns + column) on the arrays of the view to squares (x, y) of the map frame."""
     rows, columns = np.divmod(squares, model.labels.shape[1])
     return frozenset(zip((columns + model.view.west).tolist(), (rows + model.view.south).tolist(), strict=True))

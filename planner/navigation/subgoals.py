@@ -32,33 +32,18 @@ class Subgoal(NamedTuple):
 
 
 def choose(subgoals: Sequence[Subgoal], cost_maps: CostMaps, last: frozenset[int]) -> Subgoal | None:
-    """Choose the subgoal to pursue, by planner/asp/aims.lp.
+    """Choose the subgoal to pursue, by planner/asp/aims.lp; None when none can be reached.
 
     The facts for the encoding, each a string without a full stop, for each subgoal that can be reached, numbered from
     0: `aim(number, kind, cost)` in tenths of squares, `chance(number, percent)`, and `last(number)` for one that
-    continues the last one.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    One of kind ATTAIN comes before all others; then the least cost divided by the chance, plus three squares for a
-    switch to another subgoal; of equals the first. The cost is that of the way plus the price, with an extra cost for
-    some kinds.
+    continues the last one. One of kind ATTAIN comes before all others; then the least cost divided by the chance, plus
+    three squares for a switch to another subgoal; of equals the first. The cost is that of the way plus the price, with
+    an extra cost for some kinds.
 
     Parameters
     ----------
-    subgoals : Sequence[Subgoal]
-        What may be pursued, with squares on the arrays of the view.
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    last : frozenset[int]
-        The squares (flat indices on the arrays of this view) of the subgoal chosen last time; empty for none. A subgoal
-        that shares one of them continues it; others cost a switch.
-
-    Returns
-    -------
-    Subgoal | None
-        One of `subgoals`; None when no subgoal can be reached.
+    last : the squares (flat indices on the arrays of this view) of the subgoal chosen last time; empty for none. A
+        subgoal that shares one of them continues it.
     """
     facts = []
     for number, subgoal in enumerate(subgoals):

@@ -102,10 +102,7 @@ class Floors:
 def floors_of(problem: TaskProblem, situation: Situation) -> Floors:
     """Return the squares that may be used as if no thing of a problem were there, with a margin for unseen floor.
 
-    Parameters
-    ----------
     problem : its things lie as they are now; ends may lie beyond the view.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     model = situation.model
     covered = np.zeros(model.labels.shape, np.bool_)
@@ -154,8 +151,6 @@ class CarryOracle:
 
         Parameters
         ----------
-        problem : its things and their places now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         pull : whether a held object may be pulled.
         avoid : the grasps of each object that failed, as in `plan_carrying`; none by default.
         turn : how many commands a turn counts for.
@@ -170,12 +165,7 @@ class CarryOracle:
         self._plans: dict[Any, CarryingPlan] = {}
 
     def is_refuted_from_anywhere(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> bool:
-        """Return whether an object cannot be brought to an end in a state wherever the robot stands.
-
-        Parameters
-        ----------
-        state, name, end, shut : as for `bring`.
-        """
+        """Return whether an object cannot be brought to an end in a state wherever the robot stands; see `bring`."""
         return self._plan(state, name, end, FloorKind.POSSIBLE, shut, anywhere=True).status != "found"
 
     def bring(
@@ -185,8 +175,6 @@ class CarryOracle:
 
         Parameters
         ----------
-        state : how everything lies.
-        name : the object.
         end : where it shall lie, meant for the object as it lies now, in squares, view frame.
         place : the name of that place.
         shut : the names of doors that are not passed.
@@ -201,7 +189,6 @@ class CarryOracle:
 
         Parameters
         ----------
-        state : how everything lies.
         stand : flat indices of squares (row * columns + column) on the arrays of the view.
         shut : the names of doors that are not passed.
         """
@@ -262,13 +249,7 @@ class CarryOracle:
         As (x, y) of the robot from the middle of the object as it lay before the plan. Floor that is not surely free
         counts only where the plan crosses it: what is hoped to lead on there may be a dead end.
 
-        Parameters
-        ----------
-        after : the state after the plan.
-        name : the object.
-        plan : the plan.
-        before : the state before it.
-        kind, shut : the floor of the plan.
+        before, after : the states before and after the plan. kind, shut : the floor of the plan.
         """
         margin = self.floors.margin
         square = int(after.robot[1]) + margin, int(after.robot[0]) + margin  # row, column
@@ -357,9 +338,6 @@ class CarryOracle:
     ) -> Bools:
         """Return the squares that other things of a state, shut doors and forbidden regions leave free.
 
-        Parameters
-        ----------
-        state : how everything lies.
         name : the thing that is carried; None for none.
         kind : the floor.
         shut : the names of doors that are not passed.

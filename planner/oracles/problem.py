@@ -69,7 +69,6 @@ class TableState:
 
         Parameters
         ----------
-        name : the object.
         lying : how it lies then.
         robot : where the robot stands then, (x, y) in squares, view frame.
         """

@@ -2,6 +2,10 @@
 
 It certifies that the object, not turned, lies there over squares of a floor, and that it can be pushed there by itself
 from square to square.
+
+An outline is a shapely Polygon where the object lies, in squares, in the frame of the arrays, (rows, columns) bool:
+`floor` are squares on which it may lie, `around` those over which it may be pushed; those of `floor` and its own count,
+too.
 """
 
 import math
@@ -43,10 +47,7 @@ class KeptWay(NamedTuple):
 def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
     """Return the way of an object from an outline to another one; None when it covers other squares there.
 
-    Parameters
-    ----------
-    start, end : shapely Polygon, in squares, frame of the arrays.
-    floor : (rows, columns) bool, the squares over which it may be pushed.
+    floor : the squares over which it may be pushed.
     """
     rows, columns = floor.shape
     covered = [np.argwhere(squares(outline, columns, rows)) for outline in (start, end)]
@@ -64,17 +65,9 @@ def spots(
 ) -> list[tuple[int, int]]:
     """Return translations (columns, rows) of an object to places where it can lie, a handful, chosen apart.
 
-    Places off `keep_clear` with a free square all round come first: the nearest one, then those that are furthest from
-    the ones chosen before; then other places off `keep_clear`; then those on it past which others find another way; at
-    last any on it, chosen likewise. [] for none.
-
-    Parameters
-    ----------
-    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
-    floor : (rows, columns) bool, squares on which it may lie.
-    around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
-    keep_clear : (rows, columns) bool, squares that others need.
-    kept : ways of others that must stay possible.
+    Places off `keep_clear`, the squares that others need, with a free square all round come first: the nearest one,
+    then those that are furthest from the ones chosen before; then other places off `keep_clear`; then those on it past
+    which others find another way, the ways `kept`; at last any on it, chosen likewise.
     """
     usable = _usable(outline, floor, around)
     if usable is None:
@@ -96,13 +89,7 @@ def spots(
 def corner_spots(outline: Any, floor: Bools, around: Bools) -> list[tuple[int, int]]:
     """Return translations (columns, rows) of an object to the corners of a floor: there it leaves most room for others.
 
-    The corner that is furthest to be pushed to comes first. At most four; [] for none.
-
-    Parameters
-    ----------
-    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
-    floor : (rows, columns) bool, squares on which it may lie.
-    around : (rows, columns) bool, squares over which it may be pushed; those of `floor` and its own count, too.
+    The corner that is furthest to be pushed to comes first. At most four.
     """
     usable = _usable(outline, floor, around)
     if usable is None or not usable.mask.any():
@@ -117,11 +104,6 @@ def turned_corner_outlines(outline: Any, floor: Bools) -> list[Any]:
 
     At most four for each way in which the object then lies otherwise than now. Whether it can be brought there is not
     asked.
-
-    Parameters
-    ----------
-    outline : shapely Polygon where the object lies, in squares, frame of the arrays.
-    floor : (rows, columns) bool, squares on which it may lie.
     """
     rows, columns = floor.shape
     found, shapes = list[Any](), set[bytes]()

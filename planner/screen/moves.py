@@ -37,10 +37,6 @@ def orientation_is_uncertain(model: WorldModel) -> bool:
     The angle is that between the map frame and the robot frame. Angles that are unlikely by all sampled completions of
     the map do not count: this is the weaker doubt, `model.likely_spread`, while `orientation_is_settled` asks for all
     doubt.
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     """
     return model.likely_spread > ORIENTATION_TOLERANCE
 
@@ -49,10 +45,6 @@ def orientation_is_settled(model: WorldModel) -> bool:
     """Return whether the angle of the map frame is known within ORIENTATION_TOLERANCE (5 degrees) beyond doubt.
 
     The angle is that between the map frame and the robot frame; unlikely angles count, too (`model.spread`).
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     """
     return model.spread <= ORIENTATION_TOLERANCE
 
@@ -78,12 +70,7 @@ class Pace(NamedTuple):
     def most(self, kind: str, model: WorldModel) -> int:
         """Return the greatest length of a move now, in squares: the greater of its rows and its columns.
 
-        While the orientation of the map frame is uncertain, it is at most `longest_uncertain`.
-
-        Parameters
-        ----------
-        kind : of the subgoal, a SubgoalKind or its value; KeyError for any other text.
-        model : what is believed; only its doubt of orientation counts.
+        While the orientation of the map frame is uncertain, it is at most `longest_uncertain`. kind : of the subgoal.
         """
         return (
             min(self.longest_by_kind[kind], self.longest_uncertain)
@@ -94,13 +81,8 @@ class Pace(NamedTuple):
     def passable(self, cost_maps: CostMaps, kind: str) -> Bools:
         """Return the squares that a move at this pace may cross, (rows, columns) bool, on the arrays of the view.
 
-        The safe squares for a pace that is not bold. For a bold one those that are believed free, and for INSPECT also
-        those close to objects that are likely free.
-
-        Parameters
-        ----------
-        cost_maps : of the present world model.
-        kind : of the subgoal, a SubgoalKind or its value; all but INSPECT are treated alike.
+        The safe squares for a pace that is not bold. For a bold one those that are believed free, and for a subgoal of
+        kind INSPECT also those close to objects that are likely free.
         """
         if not self.bold:
             return cost_maps.safe
@@ -134,27 +116,12 @@ def next_move(
     passable. While the orientation is uncertain, the second half of a move of more than TIGHT_MOVE_LENGTH squares keeps
     one more square clear around it, unless the pace is bold.
 
-    A Move is a straight line (east, north) in squares of the robot's own frame.
-
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    path : Sequence[Square]
-        Edge-connected squares (column, row) on the arrays of the view; the first is the robot's. Of that one alone the
-        move leads to its middle.
-    kind : str
-        The kind of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square.
-    about : XY | None
-        A point (x, y) in the view frame, in squares. The move then passes it on the same side as the path. None for no
-        such condition.
-    pace : Pace
-        How long moves may be, and which squares they may cross.
-
-    Returns
-    -------
-    Move
-        The command, in the robot's own frame (east, north), in squares, from where the robot is believed to stand.
+    path : edge-connected squares (column, row) on the arrays of the view; the first is the robot's. Of that one alone
+        the move leads to its middle.
+    kind : of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square.
+    about : a point (x, y) in the view frame, in squares. The move then passes it on the same side as the path.
     """
     here, longest = path[0], pace.most(kind, cost_maps.model)
     passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
@@ -174,19 +141,12 @@ def next_move(
 def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = None) -> Bools:
     """Compute the squares that one straight move at the pace CARRYING_PACE reaches from where the robot stands.
 
+    (rows, columns) bool on the arrays of the view.
+
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    kind : str
-        The kind of the subgoal (SubgoalKind); it decides how long a move may be, and which squares it may cross.
-    candidates : Bools | None
-        (rows, columns) bool on the arrays of the view, the squares to test; None for all.
-
-    Returns
-    -------
-    Bools
-        (rows, columns) bool on the arrays of the view; False outside `candidates`.
+    kind : of the subgoal (SubgoalKind); it decides how long a move may be, and which squares it may cross.
+    candidates : (rows, columns) bool, the squares to test; None for all.
     """
     longest = CARRYING_PACE.most(kind, cost_maps.model)
     return straight(CARRYING_PACE.passable(cost_maps, kind), *cost_maps.here, longest, candidates)
@@ -198,10 +158,6 @@ def _roomy(cost_maps: CostMaps) -> Bools | None:
     Returns None while the orientation is certain enough, so that no such room is asked for.
 
     Safe squares are those over which a move is made without looking first.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
@@ -212,8 +168,6 @@ def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
     True when the move is no longer than TIGHT_MOVE_LENGTH squares (the greater of its rows and columns), or when a unit
     square sweeps only `roomy` squares from halfway to its end.
 
-    Parameters
-    ----------
     roomy : (rows, columns) bool on the arrays of the view; None when all squares are roomy.
     here, there : the first and the last square (column, row).
     """
@@ -227,13 +181,6 @@ def move_to(place: XY, model: WorldModel) -> Move:
 
     The move is in the robot's own frame (east, north), in squares, rounded to COMMAND_DIGITS decimals. A robot believed
     within rounding of a grid line is taken to stand on it.
-
-    A Move is a straight line (east, north) in squares of the robot's own frame.
-
-    Parameters
-    ----------
-    place : where it ends, (x, y) in squares, map frame.
-    model : what is believed, with its frame and its map view.
     """
     here = snap_to_line(model.place)
     east, north = model.frame.to_utak(place[0] - here[0], place[1] - here[1])
@@ -249,9 +196,6 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
     within its square than believed, the robot sees itself in the next square then. In all other cases (0.0, 0.0), the
     centre.
 
-    Parameters
-    ----------
-    cost_maps : of the present world model.
     square : the last square (column, row) on the arrays of the view.
     kind : of the subgoal (SubgoalKind); only OFF_CENTRE_KINDS may end near the edge.
     """
@@ -275,10 +219,7 @@ def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
 
     The turn is about where the robot stands, by 0 to 89 degrees; grid lines are the borders of squares.
 
-    Parameters
-    ----------
-    model : what is believed; the move begins at its `place`.
-    square : (column, row) on the arrays of the view.
+    model : what is believed; the move begins at its `place`. square : (column, row) on the arrays of the view.
     """
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
@@ -288,21 +229,11 @@ def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
 def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Command | None:
     """Return the command with its end moved to exactly `place`, if it is a move into the square of `place`.
 
-    A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
+    Any other command, a move into another square, and None are returned unchanged.
 
     Parameters
     ----------
-    command : Command | None
-        In the robot's own frame, from where the robot is believed to stand.
-    place : XY
-        A point (x, y) of the map frame, in squares.
-    model : WorldModel
-        What is believed, with its frame and its map view.
-
-    Returns
-    -------
-    Command | None
-        The changed move; any other command, a move into another square, and None are returned unchanged.
+    place : a point (x, y) of the map frame, in squares.
     """
     if not isinstance(command, Move):
         return command
@@ -315,8 +246,6 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
 def _same_side(part: Sequence[Square], about: XY | None) -> bool:
     """Return whether a straight line may replace part of a path without passing `about` on its other side.
 
-    Parameters
-    ----------
     part : squares (column, row) on the arrays of the view; the line goes from the centre of the first to that of the
         last.
     about : a point (x, y) in the view frame, in squares; None for no such condition: then True.

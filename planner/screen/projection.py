@@ -56,20 +56,11 @@ class CostMaps:
     All arrays are (rows, columns), as those of the model's view: row 0 in the south, column 0 in the west of the map
     frame; a flat index is row * columns + column.
 
-    Parameters
-    ----------
-    model : WorldModel
-    carried : Bools | None
-        (rows, columns) bool, the squares of an object that moves along with the robot and so is not in its way; None
-        for no such object.
-    kept_off : Bools | None
-        (rows, columns) bool, the squares that the task forbids to the robot; None for none.
-
     Attributes
     ----------
     model : the world model.
     here : the square (column, row) of the robot, on the arrays of the view.
-    kept_off : as given.
+    kept_off : bool, the squares that the task forbids to the robot; None for none.
     """
 
     def __init__(self, model: WorldModel, carried: Bools | None = None, kept_off: Bools | None = None) -> None:
@@ -77,9 +68,8 @@ class CostMaps:
 
         Parameters
         ----------
-        model : what is believed.
-        carried : (rows, columns) bool on the arrays of the view, squares that count as free; None for none.
-        kept_off : (rows, columns) bool on the arrays of the view, squares that the robot may not enter; None for none.
+        carried : the squares of an object that moves along with the robot and so is not in its way; None for no such
+            object.
         """
         self.model = model
         self.kept_off = kept_off
@@ -91,8 +81,8 @@ class CostMaps:
     def free(self, level: int) -> Bools:
         """Compute the squares that may be crossed at a certainty level, (rows, columns) bool: a new array at each call.
 
-        The robot's own square is always one of them; squares that stopped a motion
-        never are, unless they are carried, nor are those that the task forbids to it.
+        The robot's own square is always one of them; squares that stopped a motion never are, unless they are carried,
+        nor are those that the task forbids to it.
 
         Parameters
         ----------
@@ -124,19 +114,7 @@ class CostMaps:
     def nearest(self, squares: SquareIndices) -> Reached | None:
         """Find the cheapest way to any of `squares`, at the surest level at which one of them can be reached.
 
-        A Reached holds a certainty level (0 the surest) and the cost of the way: squares, plus LEVEL_COST for each
-        level.
-
-        The cost is the least at the first level at which any is reached; a surer level counts before a shorter way.
-
-        Parameters
-        ----------
-        squares : (n,) flat indices (row * columns + column) on the arrays of the view.
-
-        Returns
-        -------
-        Reached or None
-            The level and the cost in squares; None when none can be reached at any level, or there are no squares.
+        None when none can be reached at any level. A surer level counts before a shorter way.
         """
         for level in range(UNSEEN_LEVEL + 1):
             far = self.distances[level].ravel()[squares]
@@ -209,10 +187,6 @@ class CostMaps:
         """Compute the length of the sure way from the robot to each of `squares`, in squares, (n,) float64.
 
         Where no way is sure, the straight distance between the centres of the two squares stands instead.
-
-        Parameters
-        ----------
-        squares : (n,) flat indices (row * columns + column) on the arrays of the view.
         """
         lengths = self.distances[0].ravel()[squares] / FIFTHS_PER_SQUARE
         rows, columns = np.divmod(squares, self.floor.shape[1])
@@ -241,21 +215,10 @@ class DistanceMaps:
 
 
 def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
-    """Compute the cost of the way to each object's vicinity, by the object's name.
+    """Compute the cost of the way to each object's vicinity, by the object's name, in the order of the model's objects.
 
+    In squares of way, plus LEVEL_COST squares for each certainty level. Objects that cannot be reached are left out.
     The vicinity are the squares of the object and all squares around it.
-
-    In the order of the model's objects.
-
-    Parameters
-    ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-
-    Returns
-    -------
-    dict[str, float]
-        Squares of way, plus LEVEL_COST squares for each certainty level. Objects that cannot be reached are left out.
     """
     found = {}
     for node in cost_maps.model.objects:
@@ -266,13 +229,7 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
 
 
 def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
-    """Return the (rows, columns) bool mask of `shape` that is True on the given flat indices only.
-
-    Parameters
-    ----------
-    squares : (n,) flat indices, row * columns + column; IndexError for one outside the mask.
-    shape : (rows, columns) of the mask.
-    """
+    """Return the (rows, columns) bool mask of `shape` that is True on the given flat indices only."""
     mask: Bools = np.zeros(shape, np.bool_)
     mask.flat[squares] = True
     return mask
@@ -290,13 +247,7 @@ def shift_mask(mask: NDArray[T], columns: int, rows: int) -> NDArray[T]:
 
 
 def dilate(mask: Bools, squares: int) -> Bools:
-    """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool; it is not changed.
-    squares : how far to dilate, in squares; with 0 `mask` itself is returned.
-    """
+    """Dilate `mask` with a square: return all squares within `squares` rows and columns of a True one."""
     for axis in (0, 1):
         done = 0
         while done < squares:

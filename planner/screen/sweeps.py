@@ -23,17 +23,10 @@ SWEEP_TOLERANCE = 1e-9  # squares; smaller overlaps are rounding errors of float
 def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
     """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`).
 
-    Parameters
-    ----------
-    columns, rows : int
-        The move, in squares, positive towards greater indices; either may be negative.
+    The columns and the rows of the squares whose interior is met, (n,) int64 each, relative to the square of the start;
+    the squares of the start and of the end are among them. Both are shared with later calls: do not change them.
 
-    Returns
-    -------
-    tuple[Longs, Longs]
-        The columns and the rows of the squares whose interior is met, (n,) int64 each, relative to the square of the
-        start; the squares of the start and of the end are among them. Both are shared with later calls: do not change
-        them.
+    columns, rows : the move, in squares, positive towards greater indices; either may be negative.
     """
     c, r = np.meshgrid(
         np.arange(min(0, columns), max(0, columns) + 1), np.arange(min(0, rows), max(0, rows) + 1), indexing="xy"
@@ -87,11 +80,9 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
 
     Parameters
     ----------
-    free : Bools
-        (rows, columns) bool, True where free.
-    points : Sequence[Sequence[float]]
-        The polyline: points (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer corner
-        of square [0, 0]). Its ends lie within free squares.
+    free : (rows, columns) bool, True where free.
+    points : the polyline: points (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer
+        corner of square [0, 0]). Its ends lie within free squares.
 
     Returns
     -------
@@ -155,10 +146,7 @@ def _touched_by(x: float, y: float) -> list[Square]:
 
     The point is in squares; it lies on an edge within SWEEP_TOLERANCE. One, two or four squares.
 
-    Parameters
-    ----------
-    x : in squares, x = column at the western edge.
-    y : in squares, y = row at the southern edge.
+    x : in squares, x = column at the western edge. y : in squares, y = row at the southern edge.
     """
     columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

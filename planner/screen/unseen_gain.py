@@ -28,8 +28,6 @@ def expected_gain(view: MapView) -> Floats:
     included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT. Axes as those
     of the view's arrays.
 
-    Parameters
-    ----------
     view : the map as it is seen: row 0 in the south, column 0 in the west.
     """
     seen = np.pad(view.seen, GAIN_REACH)
@@ -42,14 +40,11 @@ def expected_gain(view: MapView) -> Floats:
 def window_sums(padded: Floats, reach: int) -> Floats:
     """Compute for each square the sum of the values within `reach` rows and columns of it, itself included.
 
+    (rows, columns) float64, in the unit of the values; [0, 0] belongs to padded[reach, reach].
+
     Parameters
     ----------
     padded : (rows + 2 reach, columns + 2 reach), the values with a margin of `reach` on each side.
-    reach : in squares.
-
-    Returns
-    -------
-    (rows, columns) float64, in the unit of the values; [0, 0] belongs to padded[reach, reach].
     """
     table = np.pad(padded, 1).cumsum(0).cumsum(1)[:-1, :-1]
     side = 2 * reach + 1
@@ -63,10 +58,7 @@ def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
     (rows, columns) int8, a new array. A step leads to a square that shares an edge. Seen squares keep their label;
     unseen squares further away get BESIDE_NOTHING.
 
-    Parameters
-    ----------
-    labels : (rows, columns), BESIDE_FLOOR or BESIDE_WALL; read where `seen` only.
-    seen : (rows, columns) bool.
+    labels : (rows, columns), BESIDE_FLOOR or BESIDE_WALL; read where `seen` only. seen : (rows, columns) bool.
     """
     near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
     for _ in range(GAIN_REACH):

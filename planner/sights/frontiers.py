@@ -1,7 +1,8 @@
 """Frontiers, and other places worth a look: where the floor borders on unseen squares, or something is not settled.
 
 A frontier is floor that borders on squares that were never seen (Yamauchi 1997). All functions give candidates only;
-planner/asp/aims.lp chooses among them.
+planner/asp/aims.lp chooses among them. Several viewpoints come in
+the order in which a scan meets them, row by row from the south; the squares of each ascend.
 """
 
 import math
@@ -58,25 +59,8 @@ class Viewpoint(NamedTuple):
 def find_frontiers(cost_maps: CostMaps, apart: int) -> list[Viewpoint]:
     """Find the reachable floor that borders on unseen squares: one Viewpoint for each frontier, a connected stretch.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
-
-    Each has the chance 100, as nothing is told of it here: see `with_chances`.
-
-    Parameters
-    ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    apart : int
-        Floor within so many rows and columns of a square from which the robot looked already is left out; 0 leaves out
-        that square only.
-
-    Returns
-    -------
-    list[Viewpoint]
-        Its squares are the squares of the frontier itself; empty when there is none.
+    Its squares are those of the frontier itself. Each has the chance 100: see `with_chances`. apart : see
+    `unlooked_floor`.
     """
     border = unlooked_floor(cost_maps, apart) & dilate(~cost_maps.model.view.seen, 1)
     return [Viewpoint(squares, FRONTIER_REASON) for squares in group_by_label(_stretches(border))]
@@ -90,15 +74,6 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
     Returns one Viewpoint for each gap; [] for none. Its squares (flat indices on the arrays of the view) are the
     squares of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot would see
     beyond.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)
@@ -111,27 +86,14 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
 def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Viewpoint]:
     """Find floor close to unsettled boundaries: squares beside the floor that were seen only coarsely.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
+    One Viewpoint for each connected stretch of such squares that has such floor: its squares are reachable floor within
+    FOVEA_RANGE of the stretch.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    apart : int
-        Floor within so many rows and columns of a square from which the robot looked already is left out; 0 leaves out
-        that square only.
-    odd : bool
-        Whether only squares count that may well be floor, and so part of a door or of the floor behind an object; False
-        for all squares that are not settled.
-
-    Returns
-    -------
-    list[Viewpoint]
-        One for each connected stretch of such squares that has such floor: its squares are reachable floor within
-        FOVEA_RANGE of the stretch.
+    apart : as for `unlooked_floor`.
+    odd : whether only squares count that may well be floor, and so part of a door or of the floor behind an object;
+        False for all squares that are not settled.
     """
     view = cost_maps.model.view
     open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & dilate(cost_maps.floor, 1)
@@ -145,14 +107,6 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
     """Return the floor beside an object from which the robot feels its colour and did not look yet.
 
     Floor of the eight neighbours counts. A Viewpoint without squares when there is none.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    node : the object, a node of the world model.
     """
     beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
@@ -163,11 +117,7 @@ def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
 
     A Viewpoint without squares when there is none. Only floor that shares an edge with the thing counts.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
     mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
@@ -177,18 +127,9 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
     """Return the floor from which the robot feels how far an object goes; None when nothing about it is to be felt.
 
     That is so for an object that was never moved, is not in hand, and touches a wall or another object, or did not move
-    when it was pushed: that may be more than one thing, or a thing and a wall, so all of its rim is felt.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    First where exactly it ends beside what it touches; then of several pieces of seeming wall beside it the first in
-    the order of the model that can be felt; at last its own rim, if it did not move.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    node : the object, a node of the world model.
+    when it was pushed: that may be more than one thing, or a thing and a wall, so all of its rim is felt. It is felt
+    first where exactly it ends beside what it touches: of several pieces of seeming wall beside it the first, in the
+    order of the model, that can be felt; at last its own rim, if it did not move.
     """
     model = cost_maps.model
     if node.moved or model.held == node.name:
@@ -210,23 +151,13 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
 def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
     """Return the floor from which some squares are seen best, where the robot did not look yet.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
+    It is reachable floor within the range of the fovea of any of them, or else of the middle zone. A Viewpoint without
+    squares when all of that was looked from.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    mask : Bools
-        (rows, columns) bool on the arrays of the view, the squares to see.
-    what : str
-        What is not known of them, in words.
-
-    Returns
-    -------
-    Viewpoint
-        Reachable floor within the range of the fovea of any of them, or else of the middle zone; without squares when
-        all of that was looked from.
+    mask : (rows, columns) bool on the arrays of the view, the squares to see.
+    what : what is not known of them, in words.
     """
     for reach, apart in ((FOVEA_RANGE, VIEW_SPACING), (FOVEA_RANGE, 0), (MIDDLE_ZONE_RANGE, VIEW_SPACING)):
         near = np.flatnonzero(unlooked_floor(cost_maps, apart) & dilate(mask, reach))
@@ -240,7 +171,6 @@ def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
 
     x, y : the point, in squares, map frame. Returns flat indices (row * columns + column) on the arrays of the view,
         (n,), possibly none.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
@@ -252,10 +182,6 @@ def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareInd
     The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them that is more than
     VIEW_SPACING from every square looked from. Given and returned are flat indices (row * columns + column) on the
     arrays of the view, (n,); possibly none is returned.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask = indices_to_mask(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
@@ -267,11 +193,7 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
 
     Returns at most one Viewpoint for each door, each with squares, in the order of the doors.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
     doors : possible doors; those that are sure, or whose walls are settled or cannot be seen better, are left out.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view = cost_maps.model.view
     vague = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY)
@@ -293,15 +215,6 @@ def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:
 
     Its squares are those of the part itself. All floor is connected, so a passage that is not seen yet must lead there.
     Parts of less than MIN_UNREACHED_SQUARES squares are left out.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Viewpoints come in the order in which a scan meets them, row by row from the south; the squares of each ascend.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     apart = components(cost_maps.model.space & ~cost_maps.floor).labels
     what = "floor is seen beyond, so a passage must lead there"
@@ -313,14 +226,6 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
 
     The chance is in percent, 1 to 90. The nearest square is that of the shortest way for the robot; the first one when
     none can be reached.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Parameters
-    ----------
-    viewpoints : the viewpoints; [] is returned for none. They are not changed.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     if not viewpoints:
         return []
@@ -331,27 +236,15 @@ def with_chances(cost_maps: CostMaps, viewpoints: list[Viewpoint]) -> list[Viewp
 def best_views(cost_maps: CostMaps, reachable: Bools, move_cost: float, square_cost: float) -> list[Viewpoint]:
     """Choose, of the squares that one straight move reaches, those with the greatest information gain for their cost.
 
-    They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    With it comes the chance in percent, 1 to 90, that a wanted object comes into sight from the nearest of its squares.
+    They need not border on unseen squares: a long move along a frontier often shows more than a short one up to it. One
+    Viewpoint, of all squares that are worth at least EQUAL_VALUE_SHARE of the best, with the chance in percent, 1 to
+    90, that a wanted object comes into sight from the nearest of them; [] when nothing unseen comes into sight from a
+    square where the robot did not look yet.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    reachable : Bools
-        (rows, columns) bool on the arrays of the view, the squares that one move reaches.
-    move_cost, square_cost : float
-        The cost of a move, and of each square of its way, in the same unit.
-
-    Returns
-    -------
-    list[Viewpoint]
-        One, of all squares that are worth at least EQUAL_VALUE_SHARE of the best; [] when nothing unseen comes into
-        sight from a square where the robot did not look yet.
+    reachable : (rows, columns) bool on the arrays of the view, the squares that one move reaches.
+    move_cost, square_cost : the cost of a move, and of each square of its way, in the same unit.
     """
     candidates = np.flatnonzero(reachable & unlooked_floor(cost_maps, VIEW_SPACING))
     gain = cost_maps.information_gain.ravel()[candidates]
@@ -376,10 +269,6 @@ def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
     """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached.
 
     A flat index on the arrays of the view, as those given (at least one); the first of them when none is reached.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     reached = cost_maps.nearest(squares)
     if reached is None:
@@ -395,7 +284,6 @@ def unlooked_floor(cost_maps: CostMaps, apart: int) -> Bools:
 
     apart : floor within so many rows and columns of an earlier viewpoint, a square looked from, is left out; 0 for that
         square only.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     mask: Bools = cost_maps.floor & ~dilate(cost_maps.looked_from, apart)
     return mask
@@ -406,8 +294,6 @@ def _stretches(mask: Bools) -> Labels:
 
     Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
 
-    Parameters
-    ----------
     mask : (rows, columns) bool on the arrays of the view.
     """
     labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
@@ -419,8 +305,6 @@ def group_by_label(labels: Labels) -> list[SquareIndices]:
 
     Returns one array of flat indices (row * columns + column) for each label that occurs, each ascending and not empty.
 
-    Parameters
-    ----------
     labels : (rows, columns) whole numbers, 0 for no label.
     """
     flat = labels.ravel()
@@ -436,8 +320,6 @@ def _grown_labels(labels: Labels, squares: int) -> Labels:
     (rows, columns) labels, 0 for none; returns a new array of the same shape, in which only zeros and lesser labels
     change.
 
-    Parameters
-    ----------
     labels : (rows, columns) whole numbers, 0 for none.
     squares : how far, in rows and columns; each way, with the corners.
     """

@@ -55,24 +55,14 @@ TO_REACH, TO_TAKE = Approach(take=False), Approach(take=True)
 def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[SquareIndices, Viewpoint]]:
     """Find the viewpoints for the places that may hold a wanted object which is not settled.
 
-    A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY.
-
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Places come in the order of their first squares, row by row from the south; one entry each.
+    A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY. Places come in the order
+    of their first squares, row by row from the south; one entry each.
 
     Parameters
     ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    likely : Floats
-        (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted object.
-    what : str
-        What is not known there, in words.
-    to : Approach
-        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
-        if any, it shall be brought.
+    likely : (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted
+        object.
+    what : what is not known there, in words.
 
     Returns
     -------
@@ -98,25 +88,8 @@ def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> l
 def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> Viewpoint:
     """Return the floor from which an object is seen better than it was.
 
-    A Viewpoint holds the squares where the robot would stand (flat indices (row * columns + column) on the arrays of
-    the view), what is not known in words, and its chance in percent.
-
-    Parameters
-    ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    node : Node
-        The object.
-    chance : float
-        The probability, 0 to 1, that it is the wanted one.
-    to : Approach
-        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
-        if any, it shall be brought.
-
-    Returns
-    -------
-    Viewpoint
-        Its own chance is 100 percent whatever `chance` is; without squares when the robot looked from everywhere.
+    A Viewpoint without squares when the robot looked from everywhere. Its own chance is 100 percent whatever `chance`
+    is: the probability, 0 to 1, that the object is the wanted one.
     """
     squares = inspection_squares(cost_maps, cost_maps.model.mask(node.patch), chance, to)
     return Viewpoint(squares, f"it is not clear what {node.name} is")
@@ -128,23 +101,11 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked at
     from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
 
-    Parameters
-    ----------
-    cost_maps : CostMaps
-        The present world model on arrays of squares, with the ways from where the robot stands.
-    mask : Bools
-        (rows, columns) bool on the arrays of the view, the squares that it may cover.
-    chance : float
-        The probability, 0 to 1, that it is the wanted one.
-    to : Approach
-        What the robot goes there for: to take the object or only to be beside it, and towards which corner of walls,
-        if any, it shall be brought.
+    Flat indices (row * columns + column) on the arrays of the view, (n,), of squares where the robot would stand; empty
+    when it looked from everywhere.
 
-    Returns
-    -------
-    SquareIndices
-        Flat indices (row * columns + column) on the arrays of the view, (n,), of squares where the robot would stand;
-        empty when it looked from everywhere.
+    mask : (rows, columns) bool on the arrays of the view, the squares that it may cover.
+    chance : the probability, 0 to 1, that it is the wanted one.
     """
     beside = dilate(mask, 1)
     near = (
@@ -174,9 +135,6 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareInd
     The sides of the squares that surely belong to it come first, else the sides of all that may belong to it. Of these
     only those count that one move reaches, if there are any, else those with reachable floor; empty when there is none.
 
-    Parameters
-    ----------
-    cost_maps : of the present world model.
     mask : (rows, columns) bool, the squares that the object may cover.
     to : the purpose; with a corner, the sides towards its walls are avoided.
     """
@@ -197,7 +155,6 @@ def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> B
     a corner in `to`, all of these.
 
     surely : (rows, columns) bool, the squares of the object.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     sides = with_edge_neighbours(surely)
     if to.corner is None:
@@ -215,9 +172,6 @@ def _most_revealing(
     Returns flat indices, a part of `near`: all that are worth at least EQUAL_VALUE_SHARE of the best; `near` itself
     when it has less than two squares or nothing is unsettled.
 
-    Parameters
-    ----------
-    cost_maps : of the present world model.
     near : (n,) flat indices on the arrays of the view, the squares to choose from.
     mask : (rows, columns) bool, the squares that the thing may cover.
     chance : the probability, 0 to 1, that it is the wanted one. With it, a robot that is not beside it must set out

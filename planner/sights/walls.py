@@ -99,10 +99,6 @@ def unfelt_walls(model: WorldModel) -> Bools:
 
     Floor counts to which it comes if all things that can be moved are moved away, and so does the floor under these.
     (rows, columns) bool on the arrays of the view; squares of objects do not count.
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
     """
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     mask: Bools = with_edge_neighbours(_ground(model)) & model.view.seen & ~model.space & ~felt & ~_things(model)
@@ -114,9 +110,7 @@ def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = A
 
     Parameters
     ----------
-    model : what is believed.
     reached : the floor that the robot reaches.
-    scope : which walls matter.
     """
     ground, space, seen = _ground(model), model.space, model.view.seen
     unfelt = unfelt_walls(model) & _leading(model, reached, scope)
@@ -152,11 +146,6 @@ def feeling_places(cost_maps: CostMaps, scope: FeelingScope = ALL_WALLS) -> list
     """Return the reachable squares from which walls in question are felt, with what is felt there; [] for none.
 
     Squares from which the robot looked already are left out: what can be felt there was felt.
-
-    Parameters
-    ----------
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
-    scope : which walls matter.
     """
     model, floor = cost_maps.model, cost_maps.floor
     kinds = walls_in_question(model, floor, scope)

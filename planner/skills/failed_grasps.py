@@ -31,11 +31,6 @@ class FailedGrasps:
         square are recorded, for plans grasp from the middle.
 
         Two grasps are appended: from the present place, then from the middle of its square.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
-        model : what is believed, with its frame and its map view.
         """
         if node is None or node.polygon is None:
             return
@@ -48,10 +43,6 @@ class FailedGrasps:
         """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
 
         Along the axes of the map, in the order of recording; () for none. The middle is the centroid of the outline.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
         """
         return rotated_grasps(self._failed.get(node.name, ()), node.turned)
 
@@ -62,10 +53,6 @@ class FailedGrasps:
         nothing is forgotten, and False is returned.
 
         True when some were forgotten; each time counts against MAX_RETRIES.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
         """
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:

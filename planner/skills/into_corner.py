@@ -37,11 +37,6 @@ class IntoCorner:
 
         Where walls lie askew, it may then stand in a square that they fill in part. False for a stage without such a
         goal.
-
-        Parameters
-        ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         asked = [situation.corners[side] for side in map(corner_side, stage.own) if side in situation.corners]
         squares = [_map_square(corner, situation) for corner in asked]
@@ -53,15 +48,8 @@ class IntoCorner:
     def next(self, stage: Stage, situation: Situation) -> Command | None:
         """Return the next move into the corners of a stage, and remember it; None when it is as near as can be.
 
-        A Move in the robot's own frame, in squares. Also None while the orientation of the map frame is uncertain, and
-        for a stage that asks for no corner.
-
-        A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
-
-        Parameters
-        ----------
-        stage : its goals of the robot itself may name corners.
-        situation : what is believed; the robot is in the corner's square, or presses on from there.
+        The robot is in the corner's square, or presses on from there. Also None while the orientation of the map frame
+        is uncertain, and for a stage that asks for no corner.
         """
         model, here = situation.model, _square_at(situation.model.place)
         for side in () if orientation_is_uncertain(model) else [side for side in map(corner_side, stage.own) if side]:
@@ -82,8 +70,6 @@ class IntoCorner:
     def _note_first(self, square: Square, dx: int, dy: int) -> bool:
         """Note a move from a square, and return whether it is the first such move there.
 
-        Parameters
-        ----------
         square : (x, y) of the map frame.
         dx, dy : the signs of the move along the axes of the map, each -1, 0 or 1; both 0 for the move to the halting
             place.
@@ -98,15 +84,7 @@ def halting_place(corner: Corner, situation: Situation) -> XY:
 
     It lies HALT_DISTANCE squares from each of the two edges of the square that the walls are on.
 
-    Parameters
-    ----------
-    corner : in squares, view frame.
-    situation : what is believed; its view tells where the view frame lies.
-
-    Returns
-    -------
-    tuple of float
-        (x, y) in squares, map frame.
+    A point (x, y) of the map frame, in squares.
     """
     view, (column, row), (sx, sy) = situation.model.view, corner.square, wall_sides(corner)
     return view.west + column + 0.5 + sx * (0.5 - HALT_DISTANCE), view.south + row + 0.5 + sy * (0.5 - HALT_DISTANCE)
@@ -115,16 +93,8 @@ def halting_place(corner: Corner, situation: Situation) -> XY:
 def halt_beside_walls(command: Command | None, stage: Stage, situation: Situation) -> Command | None:
     """Return a move that ends in the square of a stage's corner, changed to end right beside the walls.
 
-    All other commands and None are returned as they are, and so are moves that would then lead over squares that are
-    not safe.
-
-    A Command is a move, push, turn, grasp or release, in squares or degrees, in the robot's own frame.
-
-    Parameters
-    ----------
-    command : the command that was decided, in the robot's own frame.
-    stage : its goals of the robot itself may name a corner; the first one counts.
-    situation : what is believed (world model, rooms, doors, corners, track).
+    The first corner that a goal for the robot names counts. All other commands and None are returned as they are, and
+    so are moves that would then lead over squares that are not safe.
     """
     side = next((side for side in map(corner_side, stage.own) if side), "")
     if not isinstance(command, Move) or side not in situation.corners or orientation_is_uncertain(situation.model):
@@ -137,11 +107,6 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
     """Return whether both walls of a corner lie along the grid, as far as their squares tell.
 
     Only the STRAIGHT_LENGTH squares beside the corner along each wall are looked at.
-
-    Parameters
-    ----------
-    corner : in squares, view frame.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     floor = np.pad(known_floor(situation.model), STRAIGHT_LENGTH + 1)
     column, row = (number + STRAIGHT_LENGTH + 1 for number in corner.square)
@@ -153,12 +118,7 @@ def lies_straight(corner: Corner, situation: Situation) -> bool:
 
 
 def _square_at(place: XY) -> Square:
-    """Return the square (x, y) of the map frame in which a point (x, y) of it lies.
-
-    Parameters
-    ----------
-    place : (x, y) in squares.
-    """
+    """Return the square (x, y) of the map frame in which a point (x, y) of it lies."""
     return math.floor(place[0]), math.floor(place[1])
 
 
@@ -174,7 +134,6 @@ def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
     """Return whether the straight line from the robot to a point of the map frame stays on safe squares.
 
     place : (x, y) in squares; it lies on the arrays of the view.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)

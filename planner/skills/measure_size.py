@@ -38,9 +38,6 @@ class SizeEstimator:
         object that was never moved is first pushed so far that it shows whether it moves at all. Each call counts as
         one push; after MAX_SIZE_PUSHES nothing is yielded.
 
-        An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
-        positive, then a translation (x, y) in squares.
-
         node : the object; its outline is known.
         """
         wanted = push_parts(node)
@@ -65,15 +62,10 @@ def push_parts(node: Node) -> tuple[float | None, float | None] | None:
     The insets of an object are how far its sides may lie within the squares in which it was seen. It cannot be measured
     while its place is inexact or no inset is known.
 
-    Parameters
-    ----------
-    node : the object; its outline is known when its insets are.
+    (dx, dy), each from -0.5 to 0.5 squares along the axes of the map; None for an axis along which the size is known.
+    None alone when the size is known, or cannot be measured.
 
-    Returns
-    -------
-    tuple of (float or None), or None
-        (dx, dy), each from -0.5 to 0.5 squares along the axes of the map; None for an axis along which the size is
-        known. None alone when the size is known, or cannot be measured.
+    node : the object; its outline is known when its insets are.
     """
     insets = node.insets
     if insets is None or node.inexact or node.dubious:
@@ -93,10 +85,6 @@ def least_outline(node: Node) -> Any:
 
     A shapely Polygon, in squares, map frame. Its sides along the grid are moved in as far as impressions allow. Where
     nothing tells how far, it is the believed outline.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     """
     return node.polygon if node.insets is None else inset_outline(node.polygon, node.short)
 
@@ -106,13 +94,6 @@ def _turned_back(node: Node) -> Iterator[At]:
 
     At ends relative to where it lies, in squares and degrees, at most about TURN_BACK_RANGE squares away along each
     axis.
-
-    An At end is a pose relative to the object as it lies: a turn about its centroid in degrees, counter-clockwise
-    positive, then a translation (x, y) in squares.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     """
     x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)
@@ -139,8 +120,6 @@ def _wanted_depth(insets: SubcellExtent, axis: int) -> float | None:
 
     The last row is that of the greatest numbers: the eastern column or the northern row.
 
-    Parameters
-    ----------
     insets : how far in each side may lie, in squares, in the order west, east, south, north.
     axis : 0 for west and east, 2 for south and north.
     """

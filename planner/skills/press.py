@@ -23,7 +23,10 @@ CORNER_SHIFT = 2.0  # squares by which a corner may seem to move when a press sh
 
 
 class Presser:
-    """Gives the presses of one object towards one goal, and remembers whether they were stopped."""
+    """Gives the presses of one object towards one goal, and remembers whether they were stopped.
+
+    A press is a push against a wall that may be further away than believed. The goals are about corners.
+    """
 
     def __init__(self) -> None:
         """Remember no press yet."""
@@ -41,12 +44,6 @@ class Presser:
 
         Forgets the presses when the last one was not stopped, the object was lost, or the corner lies elsewhere now.
         False when no press for this goal and object is remembered.
-
-        Parameters
-        ----------
-        goal : a goal about a corner.
-        node : the object; its outline is known.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if self._of != (str(goal), node.name):
             return False
@@ -59,15 +56,8 @@ class Presser:
     def begin(self, goal: Fact, node: Node, land: Placement, situation: Situation) -> None:
         """Note the presses of a held object that is believed to lie where a goal holds.
 
-        A press is a push against a wall that may be further away than believed. `next` then returns them in order.
-        Notes nothing when the placement asks for no press, or the object is not held.
-
-        Parameters
-        ----------
-        goal : a goal about a corner.
-        node : the object.
-        land : where the goal holds; its presses are in squares along the axes of the map.
-        situation : what is believed (world model, rooms, doors, corners, track).
+        `next` then returns them in order. Notes nothing when the placement asks for no press, or the object is not
+        held.
         """
         if land.presses and situation.model.held == node.name:
             self._of, self._corner = (str(goal), node.name), _corner_of(goal, situation)
@@ -76,15 +66,8 @@ class Presser:
     def next(self, node: Node, model: WorldModel) -> Act | None:
         """Return the next press as a push that no plan asks for, and remember it; None when none is left.
 
-        A press is a push against a wall that may be further away than believed, as `begin` noted it. None also when
-        those that are left are of another object: goals are asked about in their order, whichever is being pressed for.
-
-        An Act holds a command for now (squares or degrees, in the robot's own frame) and its reason in words.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
-        model : what is believed, with its frame and its map view.
+        None also when those that are left are of another object: goals are asked about in their order, whichever is
+        being pressed for.
         """
         if not self._left or self._of is None or self._of[1] != node.name:
             return None
@@ -97,10 +80,7 @@ class Presser:
 def _corner_of(goal: Fact, situation: Situation) -> XY:
     """Return the corner (x, y) that a goal is about, in squares, map frame.
 
-    Parameters
-    ----------
     goal : about a corner; else KeyError.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
@@ -109,8 +89,6 @@ def _corner_of(goal: Fact, situation: Situation) -> XY:
 def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
     """Return whether a push of an object fell short by more than STOPPED_SHORT squares.
 
-    Parameters
-    ----------
     push : (dx, dy) in squares along the axes of the map.
     before : the middle (x, y) of the object before the push, map frame.
     node : the object now.

@@ -1,4 +1,7 @@
-"""Taking an object along to where the robot wants to look: a walk there without it would need a walk back."""
+"""Taking an object along to where the robot wants to look: a walk there without it would need a walk back.
+
+Pushes are of the held object, straight, (dx, dy) in squares along the axes of the map; None when no such push is free.
+"""
 
 import math
 from itertools import product
@@ -25,23 +28,9 @@ MAX_ESCAPE = 8  # squares along each axis by which an object that shuts the robo
 
 
 def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> Translate | None:
-    """Return the shortest straight push with the held object that brings the robot to one of some squares.
+    """Return the shortest push that brings the robot to the centre of one of some squares.
 
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
-
-    Of equally short pushes, the first of the squares; only squares that the pushes tried lead to count (at most
-    MAX_TRIED_PUSHES).
-
-    Parameters
-    ----------
-    node : the held object.
-    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
-    situation : what is believed (world model, rooms, doors, corners, track).
-
-    Returns
-    -------
-    Translate or None
-        (dx, dy) in squares along the axes of the map, to the centre of a square; None when no such push is free.
+    Of equally short pushes, the first of the squares; at most MAX_TRIED_PUSHES are tried.
     """
     pushes = _pushes_to(squares, situation)
     body = ContactBody(to_view_frame(node.polygon, situation), [situation.model.place_on_view])
@@ -50,25 +39,13 @@ def shortest_push(node: Node, squares: SquareIndices, situation: Situation) -> T
 
 
 def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situation) -> Translate | None:
-    """Return the first of two straight pushes to an end, so that the robot comes to one of some squares between them.
+    """Return the first of two pushes to an end, so that the robot comes to one of some squares between them.
 
-    Of all such pairs it is the shortest.
-
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
-
-    Of equally short pairs the one with the shorter first push.
+    Of all such pairs it is the shortest, and of equally short ones the one with the shorter first push.
 
     Parameters
     ----------
-    node : the held object.
-    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
     end : how far (x, y) the end lies from where the object is, in squares along the axes of the map.
-    situation : what is believed (world model, rooms, doors, corners, track).
-
-    Returns
-    -------
-    Translate or None
-        (dx, dy) in squares along the axes of the map; None when no such pair is free.
     """
     x, y = situation.model.place_on_view
     pushes = _pushes_to(squares, situation)
@@ -83,21 +60,9 @@ def detour_push(node: Node, squares: SquareIndices, end: XY, situation: Situatio
 
 
 def escape_push(node: Node, situation: Situation) -> Translate | None:
-    """Return the shortest straight push, by whole squares, after which the held object does not shut the robot in.
+    """Return the shortest push, by whole squares, after which the held object does not shut the robot in.
 
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
-
-    Of equally short pushes the westernmost, then the southernmost.
-
-    Parameters
-    ----------
-    node : the held object.
-    situation : what is believed (world model, rooms, doors, corners, track).
-
-    Returns
-    -------
-    Translate or None
-        (dx, dy) in squares along the axes of the map, each at most MAX_ESCAPE; None when no such push is free.
+    It leads at most MAX_ESCAPE squares along each axis. Of equally short pushes the westernmost, then the southernmost.
     """
     model = situation.model
     x, y = model.place_on_view
@@ -120,13 +85,6 @@ def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
     """Return the free region near some squares, as an end for an object; None when nothing is free there.
 
     In squares, view frame. Near is within VIEWPOINT_RADIUS rows and columns.
-
-    An Inside end is met when the whole outline lies within one of its polygons, at any place and angle.
-
-    Parameters
-    ----------
-    squares : (n,) flat indices (row * columns + column) on the arrays of the view.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     free = situation.cost_maps.free(0) & dilate(
         indices_to_mask(squares, situation.model.labels.shape), VIEWPOINT_RADIUS
@@ -135,17 +93,10 @@ def region_near(squares: SquareIndices, situation: Situation) -> Inside | None:
 
 
 def _pushes_to(squares: SquareIndices, situation: Situation) -> Floats:
-    """Return the pushes that bring the robot to the middles of some squares, the shortest first.
+    """Return the pushes that bring the robot to the middles of some squares, the shortest first, (n, 2) float64.
 
-    (n, 2) float64, (dx, dy) in squares along the axes of the map. At most MAX_TRIED_PUSHES of them, spread over all
-    lengths; none longer than one move of an exploring robot, and none of at most MIN_PUSH squares.
-
-    Ties keep the order of `squares`.
-
-    Parameters
-    ----------
-    squares : flat indices.
-    situation : what is believed: world model, rooms, doors, corners and track.
+    At most MAX_TRIED_PUSHES of them, spread over all lengths; none longer than one move of an exploring robot, and none
+    of at most MIN_PUSH squares.
     """
     model = situation.model
     rows, columns = np.divmod(squares, model.labels.shape[1])
@@ -164,13 +115,6 @@ def _workspace(node: Node, situation: Situation) -> Workspace:
     """Return what is surely free for an object and the robot that holds it, as a workspace in squares, view frame.
 
     The object's own squares are free, the necks of forbidden doors are not.
-
-    A Workspace holds the free squares, (rows, columns) bool, and the walls around them as polygons.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     free = situation.cost_maps.free(0) & ~forbidden_squares(node, situation)
     return Workspace(free | situation.model.mask(node.patch))

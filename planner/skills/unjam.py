@@ -26,13 +26,10 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
     pass beside what stopped it. Where it is known exactly, nothing that is known can have stopped it. A push of no
     length is returned as it is.
 
-    A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
-
     Parameters
     ----------
     node : the object where it was stopped; its outline is known.
     pushed : the push that was stopped, (dx, dy) in squares along the axes of the map.
-    model : what is believed.
     doubted : the object was stopped again where nothing known is in its way, so it lies, or is shaped, otherwise than
         believed. It is drawn back to the middle of the room that there is to either side then. By default an exactly
         known object is drawn straight back, an inexactly known one aside as well where that lets it pass.
@@ -43,8 +40,6 @@ def retreat_push(node: Node, pushed: Translate, model: WorldModel, doubted: bool
 
     def retreat(aside: float) -> Translate:
         """Return the push back and aside, in squares along the axes of the map.
-
-        A Translate is a straight push: dx to the east and dy to the north of the map, in squares.
 
         aside : squares to the left of `pushed`; negative to the right.
         """
@@ -81,13 +76,6 @@ def _walls_near(node: Node, model: WorldModel) -> Obstacles:
     """Return all squares near an object that are surely occupied, but for its own, as obstacles in squares, map frame.
 
     Near is within SEARCH_RIM + ROOM_AHEAD squares of its bounding box.
-
-    Obstacles hold shapely polygons, prepared for the exact first contact of a motion.
-
-    Parameters
-    ----------
-    node : the object, a node of the world model.
-    model : what is believed, with its frame and its map view.
     """
     view, reach = model.view, SEARCH_RIM + ROOM_AHEAD
     x0, y0, x1, y1 = node.polygon.bounds

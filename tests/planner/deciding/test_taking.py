@@ -77,7 +77,7 @@ def way_of(situation: Situation) -> str | None:
     (node,) = situation.model.objects
     leg = Leg(situation.model.place, (1, 0), ())
     plan = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
-    return grasp_direction(leg, plan, situation.model)
+    return grasp_direction(plan, situation.model)
 
 
 @pytest.mark.parametrize(
@@ -170,7 +170,7 @@ def test_an_object_that_would_be_grasped_again_from_here_is_not_released(aside: 
     leg = Leg((0.5, 0.5 - aside), (1, 0), (push,))
     plan = RemainingPlan(node.name, "r", node.polygon, (leg,), node.patch, 0)
     ends = {"r": Inside(shapely.box(14, 2, 19, 14))}
-    advice = PlanExecutor()._take(plan, leg, ends, held)
+    advice = PlanExecutor()._take(plan, ends, held)
     assert isinstance(advice, Act)
     assert advice.command == (Push(10.0, 0.0) if goes_on else Release())
 
