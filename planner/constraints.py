@@ -60,14 +60,10 @@ def in_robot_frame(shape: Any, frame: Frame) -> Any:
 
 
 def region_squares(region: Any, shape: tuple[int, ...], wholly: bool, margin: int = 0) -> Bools:
-    """Return the squares that a region meets, or only those that lie wholly within it.
+    """Return the squares that a region (shapely geometry, in squares, view frame) meets.
 
-    (rows + 2 margin, columns + 2 margin) bool; square [margin, margin] is square [0, 0] of the view.
-
-    region : shapely geometry, in squares, view frame.
-    shape : (rows, columns) of the arrays of the view.
-    wholly : whether a square counts only when all of it is in the region.
-    margin : squares that are added on each side.
+    (rows + 2 margin, columns + 2 margin) bool; square [margin, margin] is square [0, 0] of the view, whose arrays have
+    `shape`. wholly : whether a square counts only when all of it is in the region.
     """
     rows, columns = shape[0] + 2 * margin, shape[1] + 2 * margin
     areas = covered_areas(affinity.translate(region, margin, margin), columns, rows)

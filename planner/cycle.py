@@ -230,8 +230,6 @@ class Robot:
         """Interpret an impression, decide what is done next, and return the report of the turn (steps 11 to 13, 8).
 
         command : the command before the impression; None on waking.
-        impression : what the body returned.
-        why : the reason of the command, in words.
         decides_afresh : whether a held object is released first, because nothing is known of how it is to be carried.
         """
         with record_decisions() as decisions:
@@ -259,14 +257,8 @@ class Robot:
     def _restart(self, impression: Impression) -> Accommodation | None:
         """Forget all beliefs and begin anew from an impression; a held object is released first.
 
-        Changes `model`, `decision` and what the robot knows. While an object is held, only `decision` changes, to its
-        release: the restart follows after that.
-
-        It holds the chosen explanation, and how each of the 160 fields of the retina is accounted for.
-
-        How the impression is explained in the new map; None when a held object must be released first.
-
-        impression : what the body returned last.
+        Returns how the impression is explained in the new map. While an object is held, only `decision` changes, to its
+        release, and None is returned: the restart follows after that.
         """
         held = self.model.held
         if held is not None:
@@ -286,14 +278,7 @@ class Robot:
         why: str,
         decisions: Sequence[SolverCall],
     ) -> StepReport:
-        """Return the report of one turn of the cycle.
-
-        command : the command that was given; None on waking.
-        impression : what the body returned after it.
-        accommodated : how the impression was explained.
-        why : the reason of the command, in words.
-        decisions : the answers of encodings since the step before.
-        """
+        """Return the report of one turn; `decisions` are the answers of encodings since the step before."""
         places = Places(self.decider.rooms, self.decider.corners)
         task = self.decider.task
         objects = (name for name, parameter in task.parameters.items() if parameter.kind == "object")
@@ -310,10 +295,7 @@ class Robot:
         return attempt.failure_facts if attempt is not None and self.decision.verdict != TaskVerdict.DONE else ()
 
     def _test(self) -> None:
-        """Finish when the task is done, when it cannot be done, or when the limit of commands is reached (step 8).
-
-        Sets `verdict` and `finished` then; else nothing changes.
-        """
+        """Set `verdict` and `finished` when the task is done or cannot be done, or after the last command (step 8)."""
         decision = self.decision
         if decision.command is None:
             assert decision.verdict is not None

@@ -95,10 +95,7 @@ class Situation:
         return self.model.object(self.binding.get(parameter, ""))
 
     def along_with(self, patch: Patch) -> "Situation":
-        """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way.
-
-        patch : the squares that the object covers now, map frame; they count as free.
-        """
+        """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way."""
         return replace(self, cost_maps=CostMaps(self.model, self.model.mask(patch), self.cost_maps.kept_off))
 
     def next_rooms(self, place: XY) -> tuple[Bools, tuple[Viewpoint, ...]]:
@@ -171,10 +168,7 @@ class Situation:
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
-        """The sure doors that the robot has not gone through, by its track; view frame.
-
-        In the order of `rooms.doors`; () for none.
-        """
+        """The sure doors that the robot has not gone through, by its track, in the order of `rooms.doors`."""
         west, south = self.model.view.west, self.model.view.south
         track = np.array(self.track).reshape(-1, 2) - (west, south)
         return tuple(door for door in self.rooms.sure if not went_through(track, door))
@@ -224,8 +218,7 @@ def doubtful_wall_ends(situation: Situation) -> tuple[Viewpoint, ...]:
     """List where to look at pieces of verge that go on unseen and are hardly long enough to be walls.
 
     If one of them is an object, rooms end elsewhere. One Viewpoint for each region of such squares that can be seen
-    better from reachable floor; () for none. In the ascending order of the labels of the regions. The verge is what
-    bounds the floor: walls, and all that is taken for wall.
+    better from reachable floor. The verge is what bounds the floor: walls, and all that is taken for wall.
     """
     model = situation.model
     pieces = model.verge & ~model.walls & dilate(~model.view.seen, 1)

@@ -55,11 +55,8 @@ class Stage:
 def stages(task: Task) -> tuple[Stage, ...]:
     """Split the goals of a task into its stages, in the order in which they shall hold.
 
-    Returns
-    -------
-    tuple[Stage, ...]
-        Goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). The
-        last stage has the wishes. Empty for a task of constraints alone.
+    They are goals without their first(...) or then(...), and without the constraints, such as not_through(utak, d). The
+    last stage has the wishes. Empty for a task of constraints alone.
     """
     steps: list[list[Fact]] = [[]]
     for fact in task.goals:
@@ -117,22 +114,14 @@ def wishes(task: Task) -> tuple[tuple[Fact, int], ...]:
 
 
 def _inner(fact: Fact) -> Fact:
-    """Return the goal within first(...), then(...) or prefer(...); any other fact itself.
-
-    fact : a goal of the task, perhaps wrapped.
-    """
+    """Return the goal within first(...), then(...) or prefer(...); any other fact itself."""
     inner = fact.args[0] if fact.name in WRAPPING_GOALS else fact
     assert isinstance(inner, Symbol)
     return inner
 
 
 def _ordered(goals: list[Fact]) -> list[Stage]:
-    """Order the goals of one step: each goal of the track in a stage alone, then the others together in one stage.
-
-    Returns [] for no goals.
-
-    goals : in the order of the task; those of the track are on what the robot's way does, such as circled.
-    """
+    """Order the goals of one step: each goal of the track in a stage alone, then the others together in one stage."""
     of_track = [Stage((goal,)) for goal in goals if goal.name in TRACK_GOALS]
     of_place = tuple(goal for goal in goals if goal.name not in TRACK_GOALS)
     return of_track + ([Stage(of_place)] if of_place else [])

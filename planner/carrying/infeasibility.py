@@ -33,8 +33,7 @@ class Refutation:
     def neck(self) -> XY | None:
         """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none.
 
-        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`); a neck is
-        a narrow place of the floor.
+        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`).
         """
         passage = closest_refuted(self.plans).passage
         return None if passage is None else passage.place
@@ -57,10 +56,8 @@ class Refutation:
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words; "" for none.
 
-        Also "" when no passage is too narrow, or a wider one would not help.
-
-        A clause such as "the passage at ..., which is between 1.00 and 2.41 squares wide, is wide enough"; places in
-        the robot frame. It is about the refuted plan that comes closest to leading somewhere.
+        Also "" when no passage is too narrow, or a wider one would not help. A clause such as "the passage at ...,
+        which is between 1.00 and 2.41 squares wide, is wide enough"; places in the robot frame.
         """
         closest = closest_refuted(self.plans)
         passage = closest.passage
@@ -85,26 +82,15 @@ class Infeasibility:
     refutation: Refutation | None = None
 
     def reason(self) -> str:
-        """Return why nothing can be done, in words, without full stop; "" when nothing is known.
-
-        May take time, to find the passage that is too narrow.
-        """
+        """Return why nothing can be done, in words, without full stop. It may take time, to find the narrow passage."""
         return self.message or (self.refutation.reason() if self.refutation is not None else "")
 
     def neck(self) -> XY | None:
-        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none.
-
-        It is the passage of the refuted plan that comes closest to leading somewhere (see `closest_refuted`); a neck is
-        a narrow place of the floor.
-        """
+        """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
         return None if self.refutation is None else self.refutation.neck()
 
     def unless(self) -> str:
-        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none.
-
-        A clause such as "the passage at ..., which is between 1.00 and 2.41 squares wide, is wide enough"; places in
-        the robot frame. It is about the refuted plan that comes closest to leading somewhere.
-        """
+        """Return the open fact by which the passage may be wide enough, in words, without full stop; "" for none."""
         return "" if self.refutation is None else self.refutation.unless()
 
 
@@ -115,7 +101,7 @@ def certify(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldM
     believed to lie. Never proved when there are no plans.
 
     plans : every plan that geometry did not find (squares, view frame), with the certainty level of the squares that it
-        was asked for (0 allows the fewest squares), in the order of asking; none when there was nothing to ask for.
+        was asked for (0 allows the fewest squares), in the order of asking.
     """
     if not plans:
         return Infeasibility(False, f"it is not known where {node.name} could be carried")
@@ -131,8 +117,6 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
     """Return why an object may lie elsewhere than believed, in words; "" for no reason.
 
     A clause without full stop, with the name of the object.
-
-    plans : all refuted, each with its certainty level, in the order of asking; at least one.
     """
     _, last = plans[-1]
     if last.reason == "start":  # nothing lies in a wall
@@ -155,9 +139,7 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     """Return the refuted plan that comes closest to leading somewhere.
 
     It is the last one of the most permissive level that a wider passage would make possible; if there is none, the last
-    one of that level. The most permissive level is the greatest number: it allows the most squares, 0 only the surest.
-
-    plans : refuted plans, each with its certainty level, in the order of asking; at least one, else ValueError.
+    one of that level. The most permissive level is the greatest number. At least one plan is given.
     """
     most_permissive = max(level for level, _ in plans)
     asked = [plan for level, plan in reversed(plans) if level == most_permissive]
@@ -168,7 +150,5 @@ def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
     """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help.
 
     False when no passage is too narrow.
-
-    plan : a plan that geometry refuted.
     """
     return plan.passage is not None and not plan.opens

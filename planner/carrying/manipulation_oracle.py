@@ -320,11 +320,7 @@ def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:
     """Return the free squares and the walls (shapely) for an object that keeps WALL_CLEARANCE, but where it touches.
 
     Walls are thickened by WALL_CLEARANCE squares except near the object; squares beside blocked ones no longer count as
-    free.
-
-    (rows, columns) bool, and a shapely geometry in squares in the same frame.
-
-    free : (rows, columns) bool. shape : the outline of the object, shapely Polygon, in squares, frame of `free`.
+    free. All in squares, in the frame of `free`.
     """
     rows, columns = free.shape
     walls = shapely.box(0, 0, columns, rows).difference(mask_to_polygon(free))
@@ -362,12 +358,8 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     These are the free squares of a certainty level and the object's own; with OtherObjects.ASIDE those of movable
     objects, too. At the level of unseen squares, which serves for proofs, also every square that may turn out free:
     where an inexact object touches another, where an immovable object covers the squares at its rim only in part, and
-    what may be an object, or its hidden part, in what seems to be wall. Necks of
-    forbidden doors (the narrow places between their walls) and forbidden regions are never among them.
-
-    node : the object to carry.
-    level : the certainty level of squares, 0 the surest, UNSEEN_LEVEL the most permissive.
-    others : what is done about the other objects.
+    what may be an object, or its hidden part, in what seems to be wall. Necks of forbidden doors and forbidden regions
+    are never among them.
     """
     model = situation.model
     own = model.mask(node.patch)
@@ -395,7 +387,7 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
 def _least_way(end: End, shape: Any) -> float:
     """Return the straight distance from a shape to an end, in squares: a lower bound of the way.
 
-    For an At end it is the length of its translation; for a Roomy end 0. shape : shapely Polygon, frame of the end.
+    For an At end it is the length of its translation; for a Roomy end 0.
     """
     if isinstance(end, At):
         return math.hypot(end.pose.x, end.pose.y)

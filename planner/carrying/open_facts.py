@@ -99,9 +99,7 @@ def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: st
 def _nearest_square(mask: Bools, near: XY) -> XY | None:
     """Return the middle (x, y) of the marked square nearest to a place, the first of several; None for an empty mask.
 
-    In squares, in the frame of the mask, (rows, columns) bool; `near` is a point (x, y) of the same frame.
-
-    mask : the squares to choose from.
+    In squares, in the frame of the mask, (rows, columns) bool, as is the place `near`.
     """
     rows, columns = np.nonzero(mask)
     if not len(rows):

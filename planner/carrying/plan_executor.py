@@ -223,10 +223,7 @@ class PlanExecutor:
             self._plan = None
 
     def depart(self, act: Act) -> None:
-        """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan.
-
-        act : what is given; nothing is noted for a command of a plan.
-        """
+        """Note that a command is given. A push that no plan asks for ends the plan under way, and counts as a plan."""
         if act.unplanned_push is not None:
             self._plan, self._plans, self._pushed = None, self._plans + 1, act.unplanned_push
 
@@ -259,9 +256,8 @@ class PlanExecutor:
 
         An object that touches something can hardly be pushed along it after a slip, or where the frame is believed a
         degree off, for it is pushed against it as well. So an object that has moved before is drawn back first. Returns
-        None when nothing failed, or when nothing is held: then a grasp that the plan relied on is marked as failed.
-
-        plan : the one that no longer holds; None for none.
+        None when nothing failed, or when nothing is held: then a grasp that the plan, which no longer holds, relied on
+        is marked as failed.
         """
         held = model.object(model.held) if model.held else None
         if held is None and plan is not None and plan.grasped:
@@ -289,8 +285,6 @@ class PlanExecutor:
 
         Where an obstacle must be moved aside first, the plan is for that obstacle. Failed grasps are tried again when
         nothing else is found and nothing is proved.
-
-        hoped : returns the hoped ends, by name, in squares, view frame.
         """
         node, asked = request.node, request
         found = self._oracle.find(request, situation, hoped)
@@ -328,8 +322,6 @@ class PlanExecutor:
         First of all it is felt whether the obstacle is an object, where that is not certain. Of several obstacles that
         one is moved which takes fewest commands, of equal ones the first of the model's objects; only a plan that needs
         nothing else moved counts.
-
-        found : the plan, view frame; its `aside` names at least one obstacle. node : the object that it carries.
         """
         touch = touch_of_obstacle(found, situation)
         if touch is not None:
@@ -346,7 +338,6 @@ class PlanExecutor:
     def _request(self, node: Node, ends: Mapping[str, End], last: str, model: WorldModel) -> Request:
         """Return the question to the oracle. The present grasp may be kept, but not where it has led to no progress.
 
-        ends : where it shall lie, by name, in squares, view frame.
         last : the name of the end of the plan before; "" for none.
         """
         stalled = self._went_on is not None and math.dist(self._went_on, model.place) < NO_PROGRESS
@@ -365,8 +356,6 @@ class PlanExecutor:
         None, too, when the other plan does not name it as an obstacle, or when it could only go once a further object
         is moved. The object is `other` itself; it is pulled out of a wall where that may hide a part of it, else
         carried to any surely free place off those squares.
-
-        other : the object that may be in the way. found : the other plan, view frame.
         """
         if other.name not in found.aside or other.polygon is None or other.movable == 0:
             return None
@@ -383,7 +372,6 @@ class PlanExecutor:
 
         The plan, without that step, becomes the plan under way.
 
-        plan : the remaining plan, map frame; it has at least one leg.
         ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
         """
         self._plan = plan
@@ -407,9 +395,6 @@ class PlanExecutor:
 
         A held object that must be grasped otherwise is released first. Returns None where nothing is felt that could be
         the object: it lies otherwise than believed.
-
-        plan : the remaining plan, map frame, before the grasp of its first leg.
-        ends : where the plan may lead, by name, in squares, view frame; {} when that is not known.
         """
         model, leg = situation.model, plan.legs[0]
         there = model.view.locate(*model.place) == model.view.locate(*leg.place)

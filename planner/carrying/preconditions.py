@@ -28,8 +28,6 @@ def needed_view(found: ManipulationPlan, node: Node, situation: Situation) -> Se
     grasp is trusted, and so is one over hoped squares. But before a long plan, a square that takes away the room for a
     shorter one, and may be free, is looked at too. Looked at are all unsure squares of the way together, from floor
     from which any of them is seen best.
-
-    node : the object that it carries; its own squares need not be seen.
     """
     model, is_long = situation.model, found.plan.commands > LONG_PLAN
     if found.hopes or (found.plan.goes_on and not is_long):
@@ -54,8 +52,6 @@ def touch_of_obstacle(found: ManipulationPlan, situation: Situation) -> See | No
     Also None when there is no floor beside it from which the robot did not feel it yet. Then it is felt how far an
     obstacle goes that touches a wall or another object. The first is meant in the order of the model's objects; only
     obstacles that are objects with less than CERTAIN_OBJECT percent count.
-
-    found : the plan; its `aside` names the obstacles.
     """
     things = [thing for thing in situation.model.objects if thing.name in found.aside]
     unsure = (touch_viewpoint(situation.cost_maps, thing) for thing in things if thing.confidence < CERTAIN_OBJECT)
@@ -68,8 +64,6 @@ def look_at_obstacle(found: ManipulationPlan, situation: Situation) -> See | Non
 
     Also None when the robot looked at each of them from everywhere. Open squares are not determined yet. The first is
     meant in the order of `found.aside`.
-
-    found : the plan; its `aside` names the obstacles.
     """
     named = (situation.model.object(name) for name in found.aside)
     unclear = (other for other in named if other is not None and other.open)
@@ -88,8 +82,5 @@ def turn_cost(model: WorldModel) -> float:
 
 
 def _first_see(looks: Iterable[Viewpoint]) -> See | None:
-    """Return the advice to use the first of some viewpoints that has squares; None when none has.
-
-    looks : the viewpoints, in the order of preference.
-    """
+    """Return the advice to use the first of some viewpoints that has squares; None when none has."""
     return next((See(look) for look in looks if len(look.squares)), None)

@@ -75,11 +75,7 @@ class RemainingPlan:
 
 
 def begin_plan(found: ManipulationPlan, node: Node, model: WorldModel) -> RemainingPlan:
-    """Return all of a manipulation plan that was just made, as a remaining plan in the map frame.
-
-    node : the object that it carries; its outline is known.
-    model : what is believed; its view tells where the view frame lies.
-    """
+    """Return all of a manipulation plan that was just made, as a remaining plan in the map frame."""
     west, south = model.view.west, model.view.south
     legs = tuple(shifted(leg, west, south) for leg in found.plan.legs)
     needed = Patch(west, south, found.swept)
@@ -124,7 +120,6 @@ def start_from_robot(plan: RemainingPlan, ends: Mapping[str, End], situation: Si
 
     Returns None when it would not lead to one of the ends so.
 
-    plan : the remaining plan, map frame, before its first grasp.
     ends : where it must lead, by name, in squares, view frame; None is returned for {}.
     """
     model = situation.model
@@ -144,8 +139,6 @@ def safe_prefix(found: ManipulationPlan, node: Node, situation: Situation) -> Ma
     by a walk there and back. Plans with turns or several grasps have no such part, for these depend on what is not
     seen. It is the pushes of the first leg, in order, up to the first that is not free over safe squares; of that one
     the longest free part, if any. Its level and its end's name stay as they were.
-
-    node : the object that it carries.
     """
     first, *others = found.plan.legs
     pushes = [motion for motion in first.motions if isinstance(motion, Translate)]
@@ -189,21 +182,13 @@ class PlanOperations:
 
 
 def square_index(place: XY, model: WorldModel) -> SquareIndices:
-    """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies.
-
-    It is row * columns + column; without meaning for a point outside of the arrays of the view.
-
-    place : (x, y) in squares.
-    """
+    """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies."""
     row, column = model.view.locate(*place)
     return np.array([row * model.labels.shape[1] + column])
 
 
 def is_at(model: WorldModel, place: XY) -> bool:
-    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding.
-
-    place : (x, y) in squares.
-    """
+    """Return whether the robot stands exactly at a point (x, y) of the map frame, in squares, but for rounding."""
     return math.dist(model.place, place) < PLACE_TOLERANCE
 
 
@@ -235,13 +220,10 @@ def grasp_direction(plan: RemainingPlan, model: WorldModel) -> str | None:
 def _longest_part(workspace: Workspace, shape: Any, place: XY, push: Translate) -> Translate | None:
     """Return the longest part of a push, rounded to whole squares, that is free; None for none.
 
-    It is shorter than the push, in squares along the axes of the map. Parts are tried from the longest on, in steps of
-    one square, so it is at least about one square long.
+    Parts are tried from the longest on, in steps of one square, so it is at least about one square long. In squares,
+    view frame.
 
-    workspace : what is free for the object and the robot.
-    shape : the outline of the object before the push, shapely Polygon, in squares, view frame.
-    place : the robot's place (x, y) before the push, view frame.
-    push : (dx, dy) in squares, not free to its end.
+    shape, place : the outline of the object and the place of the robot before the push, which is not free to its end.
     """
     steps = math.floor(math.hypot(push.dx, push.dy))
     parts = ((round(push.dx * n / steps), round(push.dy * n / steps)) for n in range(steps - 1, 0, -1))
@@ -254,8 +236,6 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
 
     These are the free ones of the plan's certainty level, or of KEPT_LEVEL if that is more permissive, and the object's
     own, without the necks of forbidden doors and without forbidden regions.
-
-    plan : the remaining plan, with its certainty level.
     """
     free = situation.cost_maps.free(max(plan.level, KEPT_LEVEL)) | situation.model.mask(node.patch)
     return free & ~forbidden_squares(node, situation)
@@ -264,10 +244,7 @@ def _kept_squares(plan: RemainingPlan, node: Node, situation: Situation) -> Bool
 def _end_outline(plan: RemainingPlan, node: Node, free: Bools, situation: Situation) -> Any:
     """Return the outline after a plan from where the object really lies, view frame; None if it is blocked.
 
-    A shapely Polygon, in squares. Also None when a grasp would reach nothing.
-
-    node : the object; its outline is known.
-    free : (rows, columns) bool on the arrays of the view, the squares that may be used.
+    A shapely Polygon, in squares. Also None when a grasp would reach nothing. free : the squares that may be used.
     """
     west, south = situation.model.view.west, situation.model.view.south
     first, *others = plan.legs

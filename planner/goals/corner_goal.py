@@ -1,6 +1,7 @@
 """Placements in a corner of the known floor: where a carried object must end, or what must be seen first to tell.
 
-The side of a corner is northeast, northwest, southeast or southwest in the robot's own frame.
+The side of a corner is northeast, northwest, southeast or southwest in the robot's own frame. Ends, and the outlines of
+objects (`shape`, shapely Polygons), are in squares, view frame.
 """
 
 import itertools
@@ -73,13 +74,11 @@ class RoomsByTheWay:
 
 
 def corner_placement(side: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is in the furthest corner towards a side; ends in squares, view frame.
+    """Return where an object is in the furthest corner towards a side.
 
     How the floor goes on around the corner does not matter once the object covers it. Whether an unseen room has a
     corner further on is looked at last, for mostly there is none; or on the way, with the object in hand. While it is
     not known where the corner is, the placement has no ends, and says what is missing and where to look.
-
-    node : the object; its outline is known.
     """
     column, row = situation.corners[side].square
     if not situation.model.mask(node.patch)[row, column]:
@@ -125,7 +124,7 @@ def approach_for_goals(goals: Iterable[Fact], situation: Situation) -> Approach:
 def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
     """Return the viewpoints of unseen rooms that may go further towards a side, with the floor short of them.
 
-    What lies behind their squares is seen from there, too. Flat indices on the arrays of the view; () for no such room.
+    What lies behind their squares is seen from there, too.
     """
     rooms = rooms_to_see(side, situation)
     return tuple(
@@ -134,7 +133,7 @@ def _room_viewpoints(side: str, situation: Situation) -> tuple[Viewpoint, ...]:
 
 
 def _in_corner(side: str, node: Node, situation: Situation) -> Placement:
-    """Return the placement in a corner of the known floor, at its very point; ends in squares, view frame.
+    """Return the placement in a corner of the known floor, at its very point.
 
     When its walls are settled, to be within a square of them is enough; else they may be further away than believed.
     When the places of the robot and the object are not certain, the corner is looked at first: then the placement has
@@ -169,9 +168,7 @@ def _settled_placement(side: str, end: InCorner, node: Node, shape: Any) -> Plac
     square. So it counts as in the corner when it looks as if it touched the walls, or was seen not to be smaller. An
     object whose place is inexact is brought nearer if possible.
 
-    side : the name of the end, such as northeast.
-    end : the corner as an end with the default slack of one square, view frame.
-    shape : its outline, shapely Polygon, in squares, view frame.
+    end : the corner, with the default slack of one square.
     """
     close = replace(end, slack=APPROACH_GAP)
     if not is_off_quarter_turn(node):
@@ -192,12 +189,7 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
     """Return the placement between slanted walls, at any angle: brought near to both, and then pressed against them.
 
     Slanted walls are seen as stairs of squares and lie somewhere behind these. Only what stops the object tells where.
-    The presses are named into, one and two (towards both walls, the first, the second), in this order, in squares along
-    the axes of the map; none while the goal does not hold.
-
-    side : the name of the end, such as northeast.
-    end : the corner, in squares, view frame.
-    shape : the outline of the object, shapely Polygon, in squares, view frame.
+    The presses are named into, one and two: towards both walls, the first, the second.
     """
     one, two = end.gaps(shape)
     gaps = {
@@ -213,10 +205,7 @@ def _between_placement(side: str, end: Between, shape: Any) -> Placement:
 def _pressed(end: InCorner) -> InCorner:
     """Return an end in a corner to which the object is pressed on, where moves by whole squares leave a gap.
 
-    The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much. Same
-    frame.
-
-    end : the corner, in squares, with its slack: the greatest gap to each wall.
+    The object must come nearer to the walls by PRESS_DISTANCE squares, and is planned to end short by as much.
     """
     return replace(end, slack=end.slack - PRESS_DISTANCE, press=PRESS_DISTANCE)
 
@@ -228,10 +217,7 @@ def _wall_pushes(end: InCorner, node: Node, shape: Any) -> Mapping[str, Translat
     Right beside the wall's squares, an object with a settled side is within a square of the wall wherever that is. With
     a part of a square free in between, seen or not, it may not be.
 
-    "across" along x and "up" along y, in squares along the axes of the map; without those whose gap is at most
-    CONTACT_GAP.
-
-    end : the corner, in squares, view frame. shape : its outline, shapely Polygon, in squares, view frame.
+    They are named "across", along x, and "up", along y; without those whose gap is at most CONTACT_GAP.
     """
     x, y = (gap + far for gap, far in zip(end.gaps(shape.bounds), _further_in(end, node), strict=True))
     pushes = {
@@ -255,8 +241,6 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
     """Return whether an object is in a corner, however far in its sides lie.
 
     It may lie up to WALL_DEPTH within the wall's squares, for the wall may lie deeper in them.
-
-    end : the corner, in squares, view frame. shape : its outline, shapely Polygon, in squares, view frame.
     """
     gaps, further = end.gaps(shape.bounds), _further_in(end, node)
     return all(
@@ -266,20 +250,15 @@ def _surely(end: InCorner, node: Node, shape: Any) -> bool:
 
 
 def _corner_end(side: str, situation: Situation) -> InCorner:
-    """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls.
-
-    In squares, view frame.
-    """
+    """Return the end in the furthest corner of the known floor towards a side: at most one square from both walls."""
     corner = situation.corners[side]
     return InCorner(*corner.point, *wall_sides(corner))
 
 
 def _further_corner(side: str, name: str, situation: Situation) -> Mapping[str, End]:
-    """Return the corner of likely floor, under a name, where that goes further than the sure floor; else {}.
+    """Return the corner of likely floor, as an end by `name`, where that goes further than the sure floor; else {}.
 
-    In squares, view frame. It lies at most MAX_CORNER_SHIFT squares further along each axis.
-
-    name : the key of the end.
+    It lies at most MAX_CORNER_SHIFT squares further along each axis.
     """
     (column, row), end = situation.corners[side].square, _corner_end(side, situation)
     view = situation.model.view
@@ -301,11 +280,9 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
     """Return places from which the robot with the object in hand sees a corner well; {} when the object is in it.
 
     Best is the corner of what is seen. The robot takes the object so that it does not stand in its way there, and if
-    that is the true corner, the object is there already. Second best is anywhere around it. Ends in squares, view
-    frame, by the names near_<side> and about_<side>, the best first; the second is left out when it is empty or the
-    object is there.
-
-    floor : (rows, columns) bool on the arrays of the view, the squares that the robot can reach.
+    that is the true corner, the object is there already. Second best is anywhere around it, on the floor that the robot
+    can reach. The ends are named near_<side> and about_<side>; the second is left out when it is empty or the object is
+    there.
     """
     end, shape = _corner_end(side, situation), to_view_frame(node.polygon, situation)
     if meets_end(end, shape):
@@ -317,10 +294,10 @@ def _near(side: str, node: Node, situation: Situation, floor: Bools) -> Mapping[
 
 
 def _region_of_corner(side: str, node: Node, situation: Situation) -> Bools:
-    """Return the region that an object in a corner must reach: unseen squares, or the floor around the known corner.
+    """Return the squares that an object in a corner must reach: unseen ones, and the floor around the known corner.
 
-    (rows, columns) bool on the arrays of the view. Around is as far as the object's bounding box is long, and
-    a square more.
+    Around is as far as the object's bounding box is long, and a square more. (rows, columns) bool on the arrays of the
+    view.
     """
     column, row = situation.corners[side].square
     x0, y0, x1, y1 = node.polygon.bounds
@@ -331,10 +308,7 @@ def _region_of_corner(side: str, node: Node, situation: Situation) -> Bools:
 
 
 def _around(side: str, squares: int, situation: Situation) -> Bools:
-    """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool.
-
-    Axes as those of the view's arrays.
-    """
+    """Return the squares within `squares` rows and columns of the square of a corner, (rows, columns) bool."""
     column, row = situation.corners[side].square
     high, wide = situation.model.view.seen.shape
     rows, columns = np.ogrid[:high, :wide]
@@ -345,8 +319,8 @@ def _around(side: str, squares: int, situation: Situation) -> Bools:
 def _reachable_floor(node: Node, situation: Situation) -> Bools:
     """Return the squares that the robot can reach when the object to be carried moves along, (rows, columns) bool.
 
-    Axes as those of the view's arrays; only squares that are surely floor are crossed, and those of the object. Squares
-    under other objects beside them count, for these can be moved aside.
+    Only squares that are surely floor are crossed, and those of the object. Squares under other objects beside them
+    count, for these can be moved aside.
     """
     cost_maps = situation.cost_maps
     model = situation.model

@@ -63,10 +63,7 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
 
 
 def _may_share(one: End, other: End, shape: Any) -> bool:
-    """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only.
-
-    one, other : the ends, in squares, in one frame. shape : shapely Polygon, in squares, in the same frame.
-    """
+    """Return whether the regions of two ends have enough area in common for a shape: a necessary condition only."""
     room = enclosing_region(one, shape).intersection(enclosing_region(other, shape))
     return bool(room.area >= shape.area - REGION_ROUNDING)
 
@@ -74,10 +71,8 @@ def _may_share(one: End, other: End, shape: Any) -> bool:
 def enclosing_region(end: End, shape: Any) -> Any:
     """Compute a region that holds a shape wholly wherever it meets an end, at any orientation.
 
-    A shapely Polygon or MultiPolygon in squares, in the frame of the two. Raises ValueError for a Roomy end, which no
-    goal of a task has.
-
-    end : in squares; an At end is relative to the shape as it lies. shape : shapely geometry, in squares.
+    A shapely Polygon or MultiPolygon; all in squares, in one frame. An At end is relative to the shape as it lies.
+    Raises ValueError for a Roomy end, which no goal of a task has.
     """
     if isinstance(end, Inside):
         return end.polygon.buffer(REGION_ROUNDING)
@@ -94,10 +89,7 @@ def enclosing_region(end: End, shape: Any) -> Any:
 def _corner_region(end: InCorner, longest: float) -> Any:
     """Return the box (shapely Polygon) in a corner that holds any shape that meets the end.
 
-    In squares, in the frame of the end.
-
     longest : the greatest distance between two points of the shape, or more, in squares.
-    end : the corner, with its slack and how far the box may reach from the walls.
     """
     reach = end.slack + end.press + longest + REGION_ROUNDING
     far_x, far_y = end.x - math.copysign(reach, end.sx), end.y - math.copysign(reach, end.sy)

@@ -1,4 +1,4 @@
-"""Placements beside another object, at the start, and at a pose."""
+"""Placements beside another object, at the start, and at a pose. Ends and outlines are in squares, view frame."""
 
 import math
 from typing import Any
@@ -25,20 +25,17 @@ POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the me
 def start_placement(node: Node, situation: Situation) -> Placement:
     """Return where an object is at the start: within one square of the unit square around where the robot woke.
 
-    Ends in squares, view frame, named start_east, start_north, start_west and start_south, and a loose one, start.
+    The ends are named start_east, start_north, start_west and start_south; a loose one is named start.
     """
     place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
     return _touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
-    """Return where an object is beside another one: within one square of its squares.
+    """Return where an object is beside another one, the meaning of a parameter: within one square of its squares.
 
-    Ends in squares, view frame, named by the other object and a side of it, such as o2_east. When nothing is known to
-    be the other object, there are no ends, and `missing` says so.
-
-    other : the parameter of the task that means the other object.
-    node : the object to be carried; its outline is known.
+    The ends are named by the other object and a side of it, such as o2_east. When nothing is known to be the other
+    object, there are no ends, and `missing` says so.
     """
     target = situation.object_of(other)
     if target is None:
@@ -48,14 +45,11 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
 
 
 def _touching(shape: Any, target: Any, name: str) -> Placement:
-    """Return where a shape is within one square of a target.
+    """Return where a shape is within one square of a target; both are shapely Polygons.
 
-    Best are the four sides of the target, with the bounding boxes touching. Where none of them is possible, any place
-    near the target will do. No such place is further away than the length of the shape. It holds when the distance of
-    the two is at most BESIDE_DISTANCE.
-
-    shape, target : shapely Polygons, in squares, view frame.
-    name : of the target; the ends are named name_east, name_north, name_west and name_south, the loose one by the name.
+    Best are the four sides of the target, with the bounding boxes touching: name_east, name_north, name_west and
+    name_south. Where none of them is possible, any place near the target will do. No such place is further away than
+    the length of the shape. It holds when the distance of the two is at most BESIDE_DISTANCE.
     """
     west, south, east, north = shape.bounds
     x0, y0, x1, y1 = target.bounds
@@ -76,13 +70,12 @@ def _touching(shape: Any, target: Any, name: str) -> Placement:
 
 
 def pose_placement(goal: Fact, node: Node, situation: Situation) -> Placement:
-    """Return where an object is at the pose of a goal: one end, "pose", in squares and degrees, view frame.
+    """Return where an object is at the pose of a goal: one end, "pose".
 
     It holds within POSE_TOLERANCE squares and ANGLE_TOLERANCE degrees.
 
     goal : pose(x, "POINT (x y)", degrees): where its middle shall be, in squares, in the robot's own frame; and the
         rotation from its first orientation, in degrees, counter-clockwise positive.
-    node : the object; its outline is known.
     """
     place, degrees = goal.args[1:]
     assert isinstance(place, Text)

@@ -36,10 +36,7 @@ class OptimisticEnds:
     situation: Situation
 
     def ends(self) -> Mapping[str, End]:
-        """Compute each end as if the floor went on as optimistic planning assumes, by the same names.
-
-        In squares, view frame; an end may reach beyond the arrays of the view.
-        """
+        """Compute each end as if the floor went on as optimistic planning assumes; it may reach beyond the view."""
         wider = {name: spread_into_unseen(mask, self.situation) for name, mask in self.masks.items()}
         return {name: moved(end, -UNSEEN_MARGIN, -UNSEEN_MARGIN) for name, end in RegionEnds(wider).ends().items()}
 
@@ -48,18 +45,13 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
     """Compute where a goal holds for an object.
 
     The goal holds when the object meets one of the ends as it is now; for a corner see `planner.goals.corner_goal`.
+    While what is settled may be wrong, the regions end REGION_RIM squares before their edges.
 
     Parameters
     ----------
     goal : a goal whose first argument is an object parameter.
     node : the object; its outline is known.
     began : where its middle was at first, a point (x, y) of the map frame, in squares.
-
-    Returns
-    -------
-    Placement
-        Ends in squares, view frame. While what is settled may be wrong, its regions end REGION_RIM squares before their
-        edges.
 
     Raises
     ------
@@ -74,10 +66,7 @@ def goal_placement(goal: Fact, node: Node, began: XY, situation: Situation) -> P
 
 
 def _without_rim(end: End) -> End:
-    """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged.
-
-    end : in squares, in any frame; the result is in the same one.
-    """
+    """Shrink a region by REGION_RIM squares, unless nothing would be left; return other ends unchanged."""
     if not isinstance(end, Inside):
         return end
     inner = Inside(end.polygon.buffer(-REGION_RIM, join_style="mitre"))
@@ -85,13 +74,7 @@ def _without_rim(end: End) -> End:
 
 
 def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Placement:
-    """Compute where a goal holds for an object, whether or not what is settled may be wrong.
-
-    Ends in squares, view frame. Raises ValueError when the goal is none for an object.
-
-    began : where the middle of the object was at first, (x, y) of the map frame, in squares.
-    goal : a goal of the task whose first argument is the parameter of an object.
-    """
+    """Compute where a goal holds for an object, as for `goal_placement`, as if nothing that is settled were wrong."""
     where = goal.args[1]
     if side := corner_side(goal):
         return corner_placement(side, node, situation)
@@ -109,10 +92,7 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
 
 
 def _meets_one(ends: Mapping[str, End], node: Node, situation: Situation) -> bool:
-    """Return whether an object meets one of some ends as it is now.
-
-    ends : by name, in squares, view frame.
-    """
+    """Return whether an object meets one of some ends as it is now."""
     return meets_any_end(ends, to_view_frame(node.polygon, situation))
 
 
@@ -120,7 +100,7 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
     """Return the placement beyond a door of the room that holds `began`, a point (x, y) of the map frame, in squares.
 
     At first a likely door will do: the way there shows whether it is one. Walls that may be objects, and so might make
-    other rooms, are only looked at when the object is there. Ends in squares, view frame, named by rooms: r1, r2, ...
+    other rooms, are only looked at when the object is there. Ends are named by rooms: r1, r2, ...
     """
     rooms = situation.rooms
     beyond, viewpoints = situation.next_rooms(began)
@@ -142,20 +122,14 @@ def _room_parts(rooms: Rooms, mask: Bools) -> dict[str, Bools]:
     """Return the parts of a mask that belong to each room, by the name of the room: r1, r2, ...
 
     Both are (rows, columns) bool on the arrays of the view; rooms without such squares are left out.
-
-    In the ascending order of the rooms' numbers.
-
-    rooms : the partition of the floor into rooms. mask : the squares to divide.
     """
     return {f"r{n}": mask & (rooms.labels == n) for n in room_numbers(rooms, mask)}
 
 
 def _around_corner(began: XY, node: Node, situation: Situation) -> Placement:
-    """Return the placement out of sight of `began`, with a corner of the verge in between.
+    """Return the placement out of sight of `began`, a point (x, y) of the map frame, behind a corner of the verge.
 
-    One end, "hidden", in squares, view frame; none while the hidden squares are fewer than the object needs.
-
-    began : a point (x, y) of the map frame, in squares.
+    One end, "hidden"; none while the hidden squares are fewer than the object needs.
     """
     model = situation.model
     hidden = hidden_from(model.verge, model, began) & (model.space | model.mask(node.patch))

@@ -86,11 +86,9 @@ class Origins:
 
 
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:
-    """Return the middles of the doors of the room that holds a point, as points (east, north) of the robot's own frame.
+    """Return the middles of the doors of the room that holds a place, as points (east, north) of the robot's own frame.
 
-    In squares; () for no door.
-
-    place : a point (x, y) of the map frame, in squares.
+    In squares. place : a point (x, y) of the map frame.
     """
     model, rooms = situation.model, situation.rooms
     room = int(rooms.labels[model.view.locate(*place)])

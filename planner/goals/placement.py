@@ -238,17 +238,11 @@ def pull_out_end(node: Node, needed: Bools, situation: Situation) -> At | None:
 
 
 def robot_can_leave(node: Node, situation: Situation) -> bool:
-    """Return whether the robot can walk away from an object; False when it holds it and stands in a nook behind it.
-
-    True for an object that is not held.
-    """
+    """Return whether the robot can walk away from an object: it does not hold it, or stands in no nook behind it."""
     held = situation.model.held == node.name
     return not held or floor_leads_away(situation.cost_maps.floor, situation.model.mask(node.patch))
 
 
 def floor_leads_away(floor: Bools, thing: Bools) -> bool:
-    """Return whether reachable floor leads further than NOOK_RANGE rows and columns from an object.
-
-    floor, thing : (rows, columns) bool, the reachable squares and the squares of the object.
-    """
+    """Return whether reachable floor leads further than NOOK_RANGE rows and columns from the squares of an object."""
     return bool((floor & ~dilate(thing, NOOK_RANGE)).any())

@@ -84,10 +84,7 @@ def unknown_destination(missing: str, viewpoints: tuple[Viewpoint, ...] = ()) ->
 
 
 def corner_side(goal: Fact) -> str:
-    """Return the side of the corner that a goal is about, such as "northeast"; "" when it is about no corner.
-
-    The side is one of the robot's own frame, as in at(utak, corner(northeast)).
-    """
+    """Return the side of the corner that a goal is about, as in at(utak, corner(northeast)); "" for no corner."""
     where = goal.args[1] if len(goal.args) > 1 else None
     is_corner = goal.name == "at" and isinstance(where, Symbol) and where.name == "corner"
     return str(where.args[0]) if is_corner and isinstance(where, Symbol) else ""
@@ -148,7 +145,7 @@ def missing_for_corner(side: str, situation: Situation, floor: Bools) -> Destina
     It is not known where the floor goes on unseen at its furthest point, or is seen beyond walls there. The Destination
     has no squares then, but words and viewpoints.
 
-    floor : (rows, columns) bool on the arrays of the view, the squares that can be reached.
+    floor : (rows, columns) bool, the squares that can be reached.
     """
     model, cost_maps = situation.model, situation.cost_maps
     (column, row), best = situation.corners[side].square, _corner_square(side, situation)
@@ -224,10 +221,7 @@ def _reach_limits(side: str, view: Viewpoint, situation: Situation) -> tuple[int
 
 
 def _is_narrow(view: Viewpoint, model: WorldModel) -> bool:
-    """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns.
-
-    The span is the difference of the greatest and the least number of a row, or column.
-    """
+    """Return whether the squares of a viewpoint span less than MAX_DOOR_SQUARES rows and columns."""
     return bool(max(np.ptp(v) for v in np.divmod(view.squares, model.labels.shape[1])) < MAX_DOOR_SQUARES)
 
 
@@ -269,8 +263,6 @@ def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> f
 
     Measured from where the robot woke, east and north added, at the centres of the squares; the greater, the nearer to
     the corner.
-
-    squares : (n,) flat indices on the arrays of the view, at least one.
     """
     rows, columns = np.divmod(squares, model.labels.shape[1])
     points = np.stack([columns + model.view.west + 0.5, rows + model.view.south + 0.5])
@@ -279,14 +271,12 @@ def _furthest_towards(side: str, squares: SquareIndices, model: WorldModel) -> f
 
 
 def beside_destination(parameter: str, situation: Situation) -> Destination:
-    """Return the floor that is at most one square away from an object.
+    """Return the floor that is at most one square away from the object that a parameter means.
 
     Only squares count that share an edge with one of its squares, if there are any: its outline may end short of the
     corner of a square. Of these only those count that are at most one square from its believed outline, or nearest.
     Without squares, and with what is missing, when nothing is known to be the object, or no way leads to it. When no
     way leads there, the viewpoint is all floor beside the object.
-
-    parameter : the parameter of the task that means the object.
     """
     node = situation.object_of(parameter)
     if node is None:
@@ -349,8 +339,7 @@ def next_room_missing(situation: Situation) -> str:
 def _likely_rooms(situation: Situation) -> list[Viewpoint]:
     """List the rooms beyond likely doors, none once the robot looked from one: the way there tests the doors.
 
-    One Viewpoint for each room, with all its reachable squares (flat indices on the arrays of the view). In the
-    ascending order of the rooms' numbers.
+    One Viewpoint for each room, in the ascending order of their numbers, with all its reachable squares.
     """
     model = situation.model
     rooms, beyond = situation.likely_next_rooms(model.frame.origin)
@@ -362,10 +351,9 @@ def _likely_rooms(situation: Situation) -> list[Viewpoint]:
 
 
 def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
-    """Return the numbers of the rooms that have squares of a mask, in ascending order; [] for an empty mask.
+    """Return the numbers of the rooms that have squares of a mask, in ascending order.
 
-    mask : (rows, columns) bool on the arrays of the view. Number 0 stands for floor that is part of no room.
-    rooms : the partition of the floor into rooms; number 1 is the one in which the robot woke.
+    Number 0 stands for floor that is part of no room, 1 for the room in which the robot woke.
     """
     return [int(number) for number in np.unique(rooms.labels[mask])]
 
@@ -373,10 +361,7 @@ def room_numbers(rooms: Rooms, mask: Bools) -> list[int]:
 def door_viewpoints(situation: Situation, tried: bool = False) -> tuple[Viewpoint, ...]:
     """Find where a door may come into sight: at possible doors, and at floor that is seen and cannot be reached yet.
 
-    Viewpoints on the arrays of the view, those of doors first; () for none.
-
-    tried : whether likely doors are left out, because the robot goes through them anyway; by default all possible doors
-        count.
+    Those of doors come first. tried : whether likely doors are left out, because the robot goes through them anyway.
     """
     doors = [door for door in situation.rooms.doors if not (tried and door.likely)]
     return (*door_jambs(situation.cost_maps, doors), *unreached_rooms(situation.cost_maps))
@@ -415,8 +400,6 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
 
 def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
     """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own.
-
-    Flat indices on the arrays of the view, (n,).
 
     point : (x, y) of the map frame, in squares.
     """

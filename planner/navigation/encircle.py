@@ -19,10 +19,7 @@ from planner.screen.projection import UNSEEN_LEVEL, CostMaps
 def winding_number(track: Sequence[XY], node: Node) -> int:
     """Compute how many turns a track makes around an object, counter-clockwise positive; a whole number.
 
-    Parameters
-    ----------
-    track : points (x, y) of the map frame in squares, each taken as the centre of its square; closed by its first
-        point.
+    The track, points (x, y) of the map frame in squares, is closed by its first point.
     """
     return crossing_number(_centred([*track, track[0]]), encircled_point(node))
 
@@ -65,10 +62,7 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
 
 
 def _centred(track: Sequence[XY]) -> Floats:
-    """Move each point of a track to the centre of its square, (n, 2) float64: routes are made of centres, too.
-
-    track : points (x, y) in squares; the frame is kept.
-    """
+    """Move each point of a track to the centre of its square, (n, 2) float64: routes are made of centres, too."""
     centres: Floats = np.floor(np.array(track)) + 0.5
     return centres
 
@@ -77,9 +71,7 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
     """Make an edge-connected route of squares connected by edge or corner: diagonal steps get a square between.
 
     That square lies in the column of the later square and the row of the former. The length, in squares, is that of the
-    given squares; the clearance is assumed to be 0.5 squares.
-
-    squares : (column, row) on the arrays of the view, at least two. level : the certainty level of the squares.
+    given squares, at least two; the clearance is assumed to be 0.5 squares.
     """
     path = [squares[0]]
     for column, row in squares[1:]:
@@ -93,9 +85,8 @@ def _route(squares: Sequence[Square], level: int) -> PlannedRoute:
 def encircled_point(node: Node) -> XY:
     """Return a point (x, y) within the object, in squares, map frame.
 
-    It is the centre of that square of the object which is nearest to the mean of its squares.
-
-    Of squares that are equally near, the westernmost, then the southernmost.
+    It is the centre of that square of the object which is nearest to the mean of its squares: of several the
+    westernmost, then the southernmost.
     """
     x, y = node.patch.centre
     column, row = min(node.patch.squares(), key=lambda s: (round(np.hypot(s[0] + 0.5 - x, s[1] + 0.5 - y), 6), s))

@@ -81,20 +81,12 @@ class FewestMoves:
         return subgoal._replace(price=subgoal.price + MOVE_COST * moves - (1 - SQUARE_COST) * reached.cost)
 
     def _met(self, subgoal: Subgoal) -> SquareIndices:
-        """Return the squares of a subgoal that one move reaches: a part of `subgoal.squares`, possibly none.
-
-        In the order of `subgoal.squares`.
-        """
+        """Return the squares of a subgoal that one move reaches, in their order."""
         near: SquareIndices = subgoal.squares[self._first(subgoal.kind).ravel()[subgoal.squares]]
         return near
 
     def _first(self, kind: str) -> Bools:
-        """Return all squares that one move reaches, (rows, columns) bool, by the kind of the subgoal.
-
-        On the arrays of the view: row 0 in the south.
-
-        kind : of the subgoal; it decides how long a move may be, and which squares it may cross.
-        """
+        """Return all squares that one move reaches, (rows, columns) bool, by the kind of the subgoal."""
         key = CARRYING_PACE.most(kind, self._cost_maps.model), kind == SubgoalKind.INSPECT
         if key not in self._reached:
             self._reached[key] = one_move_squares(self._cost_maps, kind)
@@ -135,9 +127,6 @@ class FewestMoves:
         return found
 
     def _square(self, flat: int) -> Square:
-        """Return the square (column, row) of a flat index (row * columns + column) on the arrays of the view.
-
-        flat : row * columns + column.
-        """
+        """Return the square (column, row) of a flat index (row * columns + column) on the arrays of the view."""
         row, column = divmod(flat, self._cost_maps.safe.shape[1])
         return column, row

@@ -57,12 +57,8 @@ def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:
     """Find the tight routes of the shortest topological classes, from the pathgraph of the skeleton.
 
     A topological class holds the routes that pass the same obstacles on the same sides; a tight route is the shortest
-    of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings.
-
-    At most MAX_ROUTES, the shortest first: each the points (x, y) of a line from centre to centre in the view frame,
-    its length and its clearance, all in squares. Empty when no route leads there.
-
-    free : (rows, columns) bool, True where free, on the arrays of the view. start, goal : free squares (column, row).
+    of its class. The skeleton are the lines of greatest clearance; the pathgraph joins their crossings. At most
+    MAX_ROUTES, the shortest first.
     """
     routes = Screen(free).routes(_centre(start), _centre(goal), k=MAX_ROUTES)
     return [(route.points.tolist(), route.length, route.clearance) for route in routes]
@@ -170,17 +166,11 @@ def leads_through(route: PlannedRoute, door: Door) -> bool:
     """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side.
 
     Both are in the view frame; the route counts as the line through the centres of its squares.
-
-    route : squares (column, row) on the arrays of the view, in order.
-    door : its neck is the segment from a to b, in squares, view frame.
     """
     points = np.array(route.squares) + 0.5
     return bool(count_crossings(points, door) % 2)
 
 
 def _centre(square: Square) -> XY:
-    """Return the centre (x, y) of a square (column, row), in squares, in the same frame.
-
-    square : (column, row) on any array with (0, 0) at the outer corner of square [0, 0].
-    """
+    """Return the centre (x, y) of a square (column, row), in squares, in the same frame."""
     return square[0] + 0.5, square[1] + 0.5

@@ -32,11 +32,7 @@ class StickyRoute:
         return [(x - model.view.west, y - model.view.south) for x, y in self._path]
 
     def subgoal(self, model: WorldModel) -> frozenset[int]:
-        """Return the squares of the subgoal, as flat indices on the arrays of the present view.
-
-        A flat index is row * columns + column. Squares outside of the view are left out; empty when there is no
-        subgoal.
-        """
+        """Return the squares of the subgoal on the arrays of the present view, as flat indices."""
         return frozenset(np.flatnonzero(model.squares(self._subgoal)).tolist())
 
     def rest(self, subgoal: Subgoal, level: int, model: WorldModel, cost_maps: CostMaps) -> PlannedRoute | None:

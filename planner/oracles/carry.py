@@ -100,10 +100,7 @@ class Floors:
 
 
 def floors_of(problem: TaskProblem, situation: Situation) -> Floors:
-    """Return the squares that may be used as if no thing of a problem were there, with a margin for unseen floor.
-
-    problem : its things lie as they are now; ends may lie beyond the view.
-    """
+    """Return the squares that may be used as if no thing of a problem were there, with a margin for unseen floor."""
     model = situation.model
     covered = np.zeros(model.labels.shape, np.bool_)
     for node in problem.nodes.values():

@@ -36,10 +36,6 @@ class Lying:
         """Return an end that is meant for the object as it lies now, for the object as it lies in this state.
 
         Only a pose (At) is relative to how the object lies; other ends are returned unchanged.
-
-        Parameters
-        ----------
-        end : where the object shall lie, in squares, view frame.
         """
         if not isinstance(end, At):
             return end
@@ -65,13 +61,7 @@ class TableState:
     last: str = "start"
 
     def after(self, name: str, lying: Lying, robot: XY) -> "TableState":
-        """Return the state after an object was brought somewhere and released.
-
-        Parameters
-        ----------
-        lying : how it lies then.
-        robot : where the robot stands then, (x, y) in squares, view frame.
-        """
+        """Return the state after an object was brought somewhere and released, and where the robot stands then."""
         return replace(self, things={**self.things, name: lying}, robot=robot, held=None, last=name)
 
     def without(self, names: frozenset[str]) -> "TableState":

@@ -32,20 +32,16 @@ UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no wh
 
 
 def orientation_is_uncertain(model: WorldModel) -> bool:
-    """Return whether the angle of the map frame may likely be wrong by more than ORIENTATION_TOLERANCE (5 degrees).
+    """Return whether the angle of the map frame may likely be wrong by more than ORIENTATION_TOLERANCE.
 
     The angle is that between the map frame and the robot frame. Angles that are unlikely by all sampled completions of
-    the map do not count: this is the weaker doubt, `model.likely_spread`, while `orientation_is_settled` asks for all
-    doubt.
+    the map do not count: this is the weaker doubt, while `orientation_is_settled` asks for all doubt.
     """
     return model.likely_spread > ORIENTATION_TOLERANCE
 
 
 def orientation_is_settled(model: WorldModel) -> bool:
-    """Return whether the angle of the map frame is known within ORIENTATION_TOLERANCE (5 degrees) beyond doubt.
-
-    The angle is that between the map frame and the robot frame; unlikely angles count, too (`model.spread`).
-    """
+    """Return whether the angle of the map frame is known within ORIENTATION_TOLERANCE beyond all doubt."""
     return model.spread <= ORIENTATION_TOLERANCE
 
 
@@ -155,21 +151,18 @@ def one_move_squares(cost_maps: CostMaps, kind: str, candidates: Bools | None = 
 def _roomy(cost_maps: CostMaps) -> Bools | None:
     """Return the safe squares with safe squares all around, (rows, columns) bool on the arrays of the view.
 
-    Returns None while the orientation is certain enough, so that no such room is asked for.
-
-    Safe squares are those over which a move is made without looking first.
+    None while the orientation is certain enough, so that no such room is asked for.
     """
     return ~dilate(~cost_maps.safe, 1) if orientation_is_uncertain(cost_maps.model) else None
 
 
 def _is_roomy(roomy: Bools | None, here: Square, there: Square) -> bool:
-    """Return whether a straight move between two squares keeps enough room.
+    """Return whether a straight move between two squares (column, row) keeps enough room.
 
     True when the move is no longer than TIGHT_MOVE_LENGTH squares (the greater of its rows and columns), or when a unit
     square sweeps only `roomy` squares from halfway to its end.
 
     roomy : (rows, columns) bool on the arrays of the view; None when all squares are roomy.
-    here, there : the first and the last square (column, row).
     """
     far = max(abs(there[0] - here[0]), abs(there[1] - here[1]))
     halfway = (here[0] + there[0]) // 2, (here[1] + there[1]) // 2
@@ -193,11 +186,11 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
     While the orientation is uncertain, a move whose end some whole-degree turn would put on a grid line ends a little
     off the centre. On a grid line it would be chance in which square the robot sees itself, which no hypothesis could
     explain. Later a move ends, where that costs nothing, near the edge of its square: if the origin lies elsewhere
-    within its square than believed, the robot sees itself in the next square then. In all other cases (0.0, 0.0), the
+    within its square than believed, the robot sees itself in the next square then. In all other cases it ends at the
     centre.
 
-    square : the last square (column, row) on the arrays of the view.
-    kind : of the subgoal (SubgoalKind); only OFF_CENTRE_KINDS may end near the edge.
+    square : (column, row) on the arrays of the view. kind : of the subgoal; only OFF_CENTRE_KINDS may end near the
+        edge.
     """
     model = cost_maps.model
     if orientation_is_uncertain(model):
@@ -217,9 +210,7 @@ def _end_offset(cost_maps: CostMaps, square: Square, kind: str) -> tuple[float, 
 def _may_end_on_grid_line(model: WorldModel, square: Square) -> bool:
     """Return whether a move to a square's centre, turned by some whole number of degrees, ends on a grid line.
 
-    The turn is about where the robot stands, by 0 to 89 degrees; grid lines are the borders of squares.
-
-    model : what is believed; the move begins at its `place`. square : (column, row) on the arrays of the view.
+    The turn is about where the robot stands, by 0 to 89 degrees. square : (column, row) on the arrays of the view.
     """
     x, y = model.view.west + square[0] + 0.5 - model.place[0], model.view.south + square[1] + 0.5 - model.place[1]
     ends = np.array([turned(x, y, degrees) for degrees in range(90)]) + model.place
@@ -246,8 +237,7 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
 def _same_side(part: Sequence[Square], about: XY | None) -> bool:
     """Return whether a straight line may replace part of a path without passing `about` on its other side.
 
-    part : squares (column, row) on the arrays of the view; the line goes from the centre of the first to that of the
-        last.
-    about : a point (x, y) in the view frame, in squares; None for no such condition: then True.
+    part : squares (column, row) on the arrays of the view, whose first and last the line joins.
+    about : a point (x, y) in the view frame, in squares; None for no such condition.
     """
     return about is None or crossing_number(np.array([*part, part[0]]) + 0.5, about) == 0

@@ -105,10 +105,7 @@ class CostMaps:
 
     @cached_property
     def distances(self) -> "DistanceMaps":
-        """The length of the shortest way from the robot to every square, by certainty level (UNSEEN_LEVEL included).
-
-        `distances[level]` is (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
-        """
+        """The length of the shortest way from the robot to every square, by certainty level."""
         return DistanceMaps(self)
 
     def nearest(self, squares: SquareIndices) -> Reached | None:
@@ -156,9 +153,8 @@ class CostMaps:
     def believed(self) -> Bools:
         """The squares of bold moves, (rows, columns) bool: the safe ones, and all that are hardly occupied.
 
-        A bold move crosses squares that are only believed to be free; a safe square is one that any move crosses
-        without looking first. Squares that are hardly occupied are free at level 0 (the surest) and not beside unseen
-        squares. For the case that being stopped costs less than looking first.
+        The latter are free at level 0 (the surest) and not beside unseen squares. For the case that being stopped costs
+        less than looking first.
         """
         view = self.model.view
         return self.safe | (self.free(0) & (view.probability <= MAX_TRUSTED_PROBABILITY) & ~dilate(~view.seen, 1))
@@ -167,9 +163,8 @@ class CostMaps:
     def approachable(self) -> Bools:
         """The squares of bold moves up to an object, (rows, columns) bool.
 
-        A bold move crosses squares that are only believed to be free. These are the squares of `believed`, and those
-        that share an edge with an object and are free at APPROACH_LEVEL. Where such a square is occupied after all, the
-        object itself stops the robot, right where it wants to be.
+        These are the squares of `believed`, and those that share an edge with an object and are free at APPROACH_LEVEL.
+        Where such a square is occupied after all, the object itself stops the robot, right where it wants to be.
         """
         view = self.model.view
         things = view.seen & (view.probability >= SURELY_OCCUPIED) & ~self.model.verge
@@ -205,10 +200,7 @@ class DistanceMaps:
         self._known: dict[int, NDArray[np.int32]] = {}
 
     def __getitem__(self, level: int) -> NDArray[np.int32]:
-        """Return the distances of all squares from the robot at a certainty level, 0 to UNSEEN_LEVEL.
-
-        (rows, columns) int32, in fifths of squares; -1 (GEODESIC_UNREACHED) where no way leads.
-        """
+        """Return the distances of all squares from the robot at a certainty level, 0 to UNSEEN_LEVEL."""
         if level not in self._known:
             self._known[level] = reach(self._cost_maps.free(level), *self._cost_maps.here)
         return self._known[level]
@@ -236,10 +228,9 @@ def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:
 
 
 def shift_mask(mask: NDArray[T], columns: int, rows: int) -> NDArray[T]:
-    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; squares that come in from outside are False or 0.
+    """Return `mask` moved by (`columns`, `rows`), each 1, 0 or -1; what comes in from outside is False or 0.
 
-    Positive numbers move it towards greater indices: 1 column to the east, 1 row to the north. The result is a new
-    array of the shape of `mask`, (rows, columns), of any type of values.
+    Positive numbers move it towards greater indices: 1 column to the east, 1 row to the north.
     """
     high, wide = mask.shape
     padded = np.pad(mask, 1)

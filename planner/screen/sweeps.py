@@ -21,12 +21,10 @@ SWEEP_TOLERANCE = 1e-9  # squares; smaller overlaps are rounding errors of float
 
 @cache
 def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
-    """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`).
+    """Compute the squares that a unit square sweeps when it moves by (`columns`, `rows`), in squares, of either sign.
 
     The columns and the rows of the squares whose interior is met, (n,) int64 each, relative to the square of the start;
     the squares of the start and of the end are among them. Both are shared with later calls: do not change them.
-
-    columns, rows : the move, in squares, positive towards greater indices; either may be negative.
     """
     c, r = np.meshgrid(
         np.arange(min(0, columns), max(0, columns) + 1), np.arange(min(0, rows), max(0, rows) + 1), indexing="xy"
@@ -41,10 +39,7 @@ def swept_offsets(columns: int, rows: int) -> tuple[Longs, Longs]:
 
 
 def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
-    """Return whether a unit square that moves from square `a` to square `b` sweeps free squares only.
-
-    free : (rows, columns) bool, True where free. a, b : (column, row) in that array, both inside it.
-    """
+    """Return whether a unit square that moves between two squares (column, row) sweeps free squares only."""
     columns, rows = swept_offsets(b[0] - a[0], b[1] - a[1])
     return bool(free[rows + a[1], columns + a[0]].all())
 
@@ -52,10 +47,7 @@ def sweep_is_free(free: Bools, a: Square, b: Square) -> bool:
 def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
     """Return whether a unit square sweeps free squares only while its centre moves from point `a` to point `b`.
 
-    free : (rows, columns) bool, True where free; squares outside of the array count as not free.
-
-    a, b : (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer corner of square [0, 0]),
-        anywhere within squares.
+    Squares outside of the array count as not free. a, b : (x, y) in squares, in the frame of the array.
     """
     reach = [np.arange(math.floor(min(p, q) - 0.5), math.ceil(max(p, q) + 0.5)) for p, q in zip(a, b, strict=True)]
     columns, rows = np.meshgrid(*reach, indexing="xy")
@@ -76,18 +68,12 @@ def line_sweep_is_free(free: Bools, a: XY, b: XY) -> bool:
 def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square]:
     """Find the shortest edge-connected path of free squares among those that a polyline touches.
 
-    Where the line runs along the edge or through the corner of squares, the squares on both sides are touched.
+    Where the line runs along the edge or through the corner of squares, the squares on both sides are touched. The
+    squares (column, row) lead from that of the first point to that of the last point, both included.
 
     Parameters
     ----------
-    free : (rows, columns) bool, True where free.
-    points : the polyline: points (x, y) in squares, in the frame of the array (x = column, y = row, (0, 0) the outer
-        corner of square [0, 0]). Its ends lie within free squares.
-
-    Returns
-    -------
-    list[Square]
-        Squares (column, row), from the square of the first point to the square of the last point, both included.
+    points : (x, y) in squares, in the frame of the array. The ends lie within free squares.
 
     Raises
     ------
@@ -106,9 +92,9 @@ def squares_along(free: Bools, points: Sequence[Sequence[float]]) -> list[Square
 
 
 def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Square]:
-    """Search the shortest edge-connected path within `squares`, breadth first.
+    """Search the shortest edge-connected path within `squares` from `start` to `goal`, both included, breadth first.
 
-    Returns its squares (column, row) from `start` to `goal`, both included; raises ValueError when there is none.
+    Raises ValueError when there is none.
     """
     before = {start: start}
     queue = deque([start])
@@ -129,7 +115,7 @@ def _shortest_path(squares: set[Square], start: Square, goal: Square) -> list[Sq
 def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
     """Compute the squares (column, row) that the segment from `a` to `b` meets, even at an edge or corner only.
 
-    a, b : points (x, y) in squares; the square (column, row) reaches from x = column to column + 1, and y likewise.
+    a, b : points (x, y) in squares.
     """
     cuts = {0.0, 1.0}
     for p, q in zip(a, b, strict=True):
@@ -144,9 +130,7 @@ def squares_met(a: Sequence[float], b: Sequence[float]) -> set[Square]:
 def _touched_by(x: float, y: float) -> list[Square]:
     """List the square (column, row) that holds a point (x, y), or all squares on whose shared edge or corner it lies.
 
-    The point is in squares; it lies on an edge within SWEEP_TOLERANCE. One, two or four squares.
-
-    x : in squares, x = column at the western edge. y : in squares, y = row at the southern edge.
+    It lies on an edge within SWEEP_TOLERANCE.
     """
     columns, rows = ({math.floor(v - SWEEP_TOLERANCE), math.floor(v + SWEEP_TOLERANCE)} for v in (x, y))
     return [(column, row) for column in columns for row in rows]

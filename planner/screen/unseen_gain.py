@@ -25,10 +25,7 @@ def expected_gain(view: MapView) -> Floats:
     """Compute the expected information gain of looking from each square, (rows, columns) float64.
 
     It is the weighted number of unseen squares within GAIN_REACH rows and columns, those beyond the arrays of the view
-    included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT. Axes as those
-    of the view's arrays.
-
-    view : the map as it is seen: row 0 in the south, column 0 in the west.
+    included. The unit is one unseen square that the floor likely goes on into; others count VERGE_WEIGHT.
     """
     seen = np.pad(view.seen, GAIN_REACH)
     labels = np.pad(np.where(view.probability <= OCCUPIED_THRESHOLD, BESIDE_FLOOR, BESIDE_WALL), GAIN_REACH)
@@ -55,10 +52,8 @@ def window_sums(padded: Floats, reach: int) -> Floats:
 def _nearest_label(labels: Longs, seen: Bools) -> NDArray[np.int8]:
     """Give each unseen square within GAIN_REACH steps the least label of the nearest seen squares.
 
-    (rows, columns) int8, a new array. A step leads to a square that shares an edge. Seen squares keep their label;
-    unseen squares further away get BESIDE_NOTHING.
-
-    labels : (rows, columns), BESIDE_FLOOR or BESIDE_WALL; read where `seen` only. seen : (rows, columns) bool.
+    A step leads to a square that shares an edge. Seen squares keep their label, BESIDE_FLOOR or BESIDE_WALL; unseen
+    squares further away get BESIDE_NOTHING.
     """
     near = np.where(seen, labels, BESIDE_NOTHING).astype(np.int8)
     for _ in range(GAIN_REACH):

@@ -71,9 +71,8 @@ def likely_gaps(cost_maps: CostMaps) -> list[Viewpoint]:
 
     A stretch next to floor that surely goes on unseen is left out: it belongs to a frontier.
 
-    Returns one Viewpoint for each gap; [] for none. Its squares (flat indices on the arrays of the view) are the
-    squares of the gap itself: a way leads to them at certainty level GAP_LEVEL, and from them the robot would see
-    beyond.
+    One Viewpoint for each gap. Its squares are those of the gap itself: a way leads to them at certainty level
+    GAP_LEVEL, and from them the robot would see beyond.
     """
     view = cost_maps.model.view
     edge = view.seen & dilate(~view.seen, 1)
@@ -106,7 +105,7 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
 def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
     """Return the floor beside an object from which the robot feels its colour and did not look yet.
 
-    Floor of the eight neighbours counts. A Viewpoint without squares when there is none.
+    Floor of the eight neighbours counts.
     """
     beside = dilate(cost_maps.model.mask(node.patch), 1)
     return Viewpoint(np.flatnonzero(unlooked_floor(cost_maps, 0) & beside), f"the colour of {node.name} is not known")
@@ -115,9 +114,7 @@ def touch_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint:
 def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     """Return the floor from which the robot feels whether something is part of a wall, and where it did not look yet.
 
-    A Viewpoint without squares when there is none. Only floor that shares an edge with the thing counts.
-
-    mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
+    Only floor that shares an edge with the thing counts.
     """
     beside = np.flatnonzero(unlooked_floor(cost_maps, 0) & with_edge_neighbours(mask))
     return Viewpoint(beside, "whether something stands against the wall was not felt")
@@ -169,19 +166,17 @@ def viewpoint_of(cost_maps: CostMaps, mask: Bools, what: str) -> Viewpoint:
 def fovea_squares(cost_maps: CostMaps, x: float, y: float) -> SquareIndices:
     """Return the floor from which all squares around a point lie within the fovea, whether looked from or not.
 
-    x, y : the point, in squares, map frame. Returns flat indices (row * columns + column) on the arrays of the view,
-        (n,), possibly none.
+    x, y : the point, in squares, map frame.
     """
     mask = cost_maps.model.squares([(math.floor(x), math.floor(y))])
     return np.flatnonzero(cost_maps.floor & dilate(mask, FOVEA_RANGE - 1))
 
 
 def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareIndices:
-    """Return the floor from which the robot sees what lies behind `squares`.
+    """Return the floor from which the robot sees what lies behind some squares.
 
     The squares themselves count, if they can be reached, and floor within LOOK_AHEAD_RANGE of them that is more than
-    VIEW_SPACING from every square looked from. Given and returned are flat indices (row * columns + column) on the
-    arrays of the view, (n,); possibly none is returned.
+    VIEW_SPACING from every square looked from.
     """
     mask = indices_to_mask(squares, cost_maps.floor.shape)
     near = unlooked_floor(cost_maps, VIEW_SPACING) & dilate(mask, LOOK_AHEAD_RANGE)
@@ -191,9 +186,8 @@ def look_ahead_squares(cost_maps: CostMaps, squares: SquareIndices) -> SquareInd
 def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
     """Find the floor from which the unsettled walls beside each door are seen closely.
 
-    Returns at most one Viewpoint for each door, each with squares, in the order of the doors.
-
-    doors : possible doors; those that are sure, or whose walls are settled or cannot be seen better, are left out.
+    At most one Viewpoint for each door, in their order. Doors that are sure are left out, and those whose walls are
+    settled or cannot be seen better.
     """
     view = cost_maps.model.view
     vague = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY)
@@ -268,7 +262,7 @@ def _chance(gain: float) -> int:
 def _nearest(cost_maps: CostMaps, squares: SquareIndices) -> int:
     """Return that of `squares` with the shortest way for the robot, at the surest level at which any is reached.
 
-    A flat index on the arrays of the view, as those given (at least one); the first of them when none is reached.
+    The first of them, of which there is at least one, when none is reached.
     """
     reached = cost_maps.nearest(squares)
     if reached is None:
@@ -293,8 +287,6 @@ def _stretches(mask: Bools) -> Labels:
     """Label the connected stretches of a mask, (rows, columns) int32: 1 and up, 0 outside the mask.
 
     Squares are connected when the squares around them (3 x 3) overlap or share an edge, so also across small gaps.
-
-    mask : (rows, columns) bool on the arrays of the view.
     """
     labels: Labels = np.where(mask, components(dilate(mask, 1)).labels, 0)
     return labels
@@ -303,9 +295,7 @@ def _stretches(mask: Bools) -> Labels:
 def group_by_label(labels: Labels) -> list[SquareIndices]:
     """Group the flat indices of a (rows, columns) array by label, in ascending order of labels, without label 0.
 
-    Returns one array of flat indices (row * columns + column) for each label that occurs, each ascending and not empty.
-
-    labels : (rows, columns) whole numbers, 0 for no label.
+    One array for each label that occurs, in ascending order.
     """
     flat = labels.ravel()
     squares = np.flatnonzero(flat)
@@ -315,14 +305,7 @@ def group_by_label(labels: Labels) -> list[SquareIndices]:
 
 
 def _grown_labels(labels: Labels, squares: int) -> Labels:
-    """Grow labels by `squares` rows and columns; where two labels meet the greater one wins.
-
-    (rows, columns) labels, 0 for none; returns a new array of the same shape, in which only zeros and lesser labels
-    change.
-
-    labels : (rows, columns) whole numbers, 0 for none.
-    squares : how far, in rows and columns; each way, with the corners.
-    """
+    """Return labels grown by `squares` rows and columns; where two labels meet the greater one wins."""
     for _ in range(squares):
         for axis in (0, 1):
             padded = np.pad(labels, [(1, 1) if a == axis else (0, 0) for a in (0, 1)])

@@ -53,23 +53,17 @@ TO_REACH, TO_TAKE = Approach(take=False), Approach(take=True)
 
 
 def sightings(cost_maps: CostMaps, likely: Floats, what: str, to: Approach) -> list[tuple[SquareIndices, Viewpoint]]:
-    """Find the viewpoints for the places that may hold a wanted object which is not settled.
+    """Find the viewpoints for the places that may hold a wanted object which is not settled, with the squares of each.
 
     A place is a 4-connected part where the probability is at least MIN_SIGHTING_PROBABILITY. Places come in the order
-    of their first squares, row by row from the south; one entry each.
+    of their first squares, row by row from the south. A viewpoint has the greatest probability in the place as chance,
+    in percent. Places that are settled are left out, and those that cannot be seen better.
 
     Parameters
     ----------
     likely : (rows, columns) on the arrays of the view, the probability (0 to 1) that a square belongs to a wanted
         object.
     what : what is not known there, in words.
-
-    Returns
-    -------
-    list[tuple[SquareIndices, Viewpoint]]
-        For each place its squares (flat indices on the arrays of the view), and the floor to look from, with the
-        greatest probability in the place as chance, in percent. Places that are settled, or have no such floor, are
-        left out.
     """
     view = cost_maps.model.view
     spots = group_by_label(components(likely >= MIN_SIGHTING_PROBABILITY).labels)
@@ -96,13 +90,10 @@ def inspection(cost_maps: CostMaps, node: Node, chance: float, to: Approach) -> 
 
 
 def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Approach) -> SquareIndices:
-    """Choose the floor from which something is seen better than it was.
+    """Choose the floor from which something is seen better than it was; none when the robot looked from everywhere.
 
     At first it is looked at from its sides. Something that is not to be taken and is hardly the wanted one is looked at
     from further away first: most of it is settled from there. After that, the best squares nearby are chosen.
-
-    Flat indices (row * columns + column) on the arrays of the view, (n,), of squares where the robot would stand; empty
-    when it looked from everywhere.
 
     mask : (rows, columns) bool on the arrays of the view, the squares that it may cover.
     chance : the probability, 0 to 1, that it is the wanted one.
@@ -130,13 +121,11 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
 
 
 def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareIndices:
-    """List the squares beside an object from which it may be taken: flat indices on the arrays of the view, (n,).
+    """List the squares beside an object from which it may be taken. mask : the squares that it may cover.
 
-    The sides of the squares that surely belong to it come first, else the sides of all that may belong to it. Of these
-    only those count that one move reaches, if there are any, else those with reachable floor; empty when there is none.
-
-    mask : (rows, columns) bool, the squares that the object may cover.
-    to : the purpose; with a corner, the sides towards its walls are avoided.
+    The sides of the squares that surely belong to it come first, without those in its way; else the sides of all that
+    may belong to it. Of these only those count that one move reaches, if there are any, else those with reachable
+    floor.
     """
     surely = mask & (cost_maps.model.view.probability >= SURELY_OCCUPIED)
     sides = _sides_out_of_the_way(cost_maps, surely, to)
@@ -151,8 +140,7 @@ def _taking_squares(cost_maps: CostMaps, mask: Bools, to: Approach) -> SquareInd
 def _sides_out_of_the_way(cost_maps: CostMaps, surely: Bools, to: Approach) -> Bools:
     """Return the sides of an object, without those where the robot would be in its way, if others have floor.
 
-    (rows, columns) bool: the squares of the object and those that share an edge with one, whether floor or not. Without
-    a corner in `to`, all of these.
+    (rows, columns) bool: the squares of the object and those that share an edge with one, whether floor or not.
 
     surely : (rows, columns) bool, the squares of the object.
     """
@@ -169,14 +157,11 @@ def _most_revealing(
 ) -> SquareIndices:
     """Choose those of `near` from which most unsettled squares of something are in the fovea for the way there.
 
-    Returns flat indices, a part of `near`: all that are worth at least EQUAL_VALUE_SHARE of the best; `near` itself
-    when it has less than two squares or nothing is unsettled.
+    All that are worth at least EQUAL_VALUE_SHARE of the best; `near` itself when it has less than two squares or
+    nothing is unsettled. A robot that is not beside the thing must set out once more if it is the wanted one.
 
-    near : (n,) flat indices on the arrays of the view, the squares to choose from.
     mask : (rows, columns) bool, the squares that the thing may cover.
-    chance : the probability, 0 to 1, that it is the wanted one. With it, a robot that is not beside it must set out
-        once more.
-    to : whether the robot wants to take it.
+    chance : the probability, 0 to 1, that it is the wanted one.
     """
     beside = dilate(mask, 1)
     open_ = beside & ~cost_maps.model.told

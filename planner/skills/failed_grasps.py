@@ -27,10 +27,8 @@ class FailedGrasps:
     def record(self, node: Node | None, model: WorldModel) -> None:
         """Record that a grasp of an object from the robot's present square failed.
 
-        Nothing is recorded for None, and for an object of unknown outline. Both the present place and the middle of the
-        square are recorded, for plans grasp from the middle.
-
-        Two grasps are appended: from the present place, then from the middle of its square.
+        Both the present place and the middle of the square are recorded, for plans grasp from the middle. Nothing is
+        recorded for None, and for an object of unknown outline.
         """
         if node is None or node.polygon is None:
             return
@@ -42,7 +40,7 @@ class FailedGrasps:
     def grasps(self, node: Node) -> tuple[XY, ...]:
         """Return the failed grasps of an object as it lies now: (x, y) of the robot from its middle, in squares.
 
-        Along the axes of the map, in the order of recording; () for none. The middle is the centroid of the outline.
+        Along the axes of the map, in the order of recording. The middle is the centroid of the outline.
         """
         return rotated_grasps(self._failed.get(node.name, ()), node.turned)
 
@@ -50,9 +48,7 @@ class FailedGrasps:
         """Forget the failed grasps of an object, and return whether there were any and they may be tried again.
 
         A grasp may have failed because of a slip, or for want of room that there is by now. After MAX_RETRIES times
-        nothing is forgotten, and False is returned.
-
-        True when some were forgotten; each time counts against MAX_RETRIES.
+        nothing is forgotten.
         """
         again = self._retries.get(node.name, 0)
         if not self._failed.get(node.name) or again >= MAX_RETRIES:
@@ -63,10 +59,6 @@ class FailedGrasps:
 
 
 def rotated_grasps(grasps: Sequence[XY] | Floats, degrees: float) -> tuple[XY, ...]:
-    """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares.
-
-    grasps : (n, 2), (x, y) from the object's middle, in squares.
-    degrees : counter-clockwise positive.
-    """
+    """Return grasps after the object is turned by degrees, counter-clockwise: (x, y) from its middle, in squares."""
     points = np.array(grasps, np.float64).reshape(-1, 2)
     return tuple((float(x), float(y)) for x, y in Rotate(degrees, (0.0, 0.0)).points(points))

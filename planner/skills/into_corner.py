@@ -82,9 +82,8 @@ class IntoCorner:
 def halting_place(corner: Corner, situation: Situation) -> XY:
     """Return where in the square of a corner the robot halts: the point right beside its outer lines.
 
-    It lies HALT_DISTANCE squares from each of the two edges of the square that the walls are on.
-
-    A point (x, y) of the map frame, in squares.
+    A point (x, y) of the map frame, HALT_DISTANCE squares from each of the two edges of the square that the walls are
+    on.
     """
     view, (column, row), (sx, sy) = situation.model.view, corner.square, wall_sides(corner)
     return view.west + column + 0.5 + sx * (0.5 - HALT_DISTANCE), view.south + row + 0.5 + sy * (0.5 - HALT_DISTANCE)
@@ -123,17 +122,14 @@ def _square_at(place: XY) -> Square:
 
 
 def _map_square(corner: Corner, situation: Situation) -> Square:
-    """Return the square (x, y) of the map frame in which a corner of the floor lies: the one of floor.
-
-    corner : in squares, view frame. situation : its view tells where the view frame lies.
-    """
+    """Return the square (x, y) of the map frame in which a corner of the floor lies: the one of floor."""
     return corner.square[0] + situation.model.view.west, corner.square[1] + situation.model.view.south
 
 
 def _is_safe_line(place: XY, cost_maps: CostMaps) -> bool:
-    """Return whether the straight line from the robot to a point of the map frame stays on safe squares.
+    """Return whether the straight line from the robot to a place (x, y) stays on safe squares.
 
-    place : (x, y) in squares; it lies on the arrays of the view.
+    place : a point of the map frame, in squares.
     """
     view, here = cost_maps.model.view, cost_maps.model.place_on_view
     there = (place[0] - view.west, place[1] - view.south)

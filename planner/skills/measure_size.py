@@ -34,11 +34,8 @@ class SizeEstimator:
     def poses(self, node: Node) -> Iterator[At]:
         """Yield where to push an object by parts of a square, to measure it better; nothing when its size is known.
 
-        The best first: At ends relative to where the object lies, in squares and degrees, along the axes of the map. An
-        object that was never moved is first pushed so far that it shows whether it moves at all. Each call counts as
-        one push; after MAX_SIZE_PUSHES nothing is yielded.
-
-        node : the object; its outline is known.
+        The best first. An object that was never moved is first pushed so far that it shows whether it moves at all.
+        Each call counts as one push; after MAX_SIZE_PUSHES nothing is yielded.
         """
         wanted = push_parts(node)
         if wanted is None or self._tries.get(node.name, 0) >= MAX_SIZE_PUSHES:
@@ -59,13 +56,9 @@ class SizeEstimator:
 def push_parts(node: Node) -> tuple[float | None, float | None] | None:
     """Return by which part of a square an object is pushed along x and y to measure it.
 
-    The insets of an object are how far its sides may lie within the squares in which it was seen. It cannot be measured
-    while its place is inexact or no inset is known.
-
     (dx, dy), each from -0.5 to 0.5 squares along the axes of the map; None for an axis along which the size is known.
-    None alone when the size is known, or cannot be measured.
-
-    node : the object; its outline is known when its insets are.
+    None alone when the size is known, or cannot be measured: while its place is inexact or no inset is known. The
+    insets of an object are how far its sides may lie within the squares in which it was seen.
     """
     insets = node.insets
     if insets is None or node.inexact or node.dubious:
@@ -92,8 +85,7 @@ def least_outline(node: Node) -> Any:
 def _turned_back(node: Node) -> Iterator[At]:
     """Yield where an object lies along the grid as it did when it was first held, the nearest place first.
 
-    At ends relative to where it lies, in squares and degrees, at most about TURN_BACK_RANGE squares away along each
-    axis.
+    At most about TURN_BACK_RANGE squares away along each axis.
     """
     x0, y0, _, _ = shape_at_pose(node.polygon, Pose(0.0, 0.0, -node.turned)).bounds
     offsets = range(-TURN_BACK_RANGE, TURN_BACK_RANGE + 1)
@@ -118,10 +110,7 @@ def _steps(part: float | None) -> list[float]:
 def _wanted_depth(insets: SubcellExtent, axis: int) -> float | None:
     """Return how much of its last row an object should cover to be measured, 0 to 1 squares; None when that is known.
 
-    The last row is that of the greatest numbers: the eastern column or the northern row.
-
-    insets : how far in each side may lie, in squares, in the order west, east, south, north.
-    axis : 0 for west and east, 2 for south and north.
+    The last row is that of the greatest numbers: the eastern column (axis 0) or the northern row (axis 2).
     """
     (low, least), (most_low, most) = insets.least[axis : axis + 2], insets.most[axis : axis + 2]
     if not (low or least):

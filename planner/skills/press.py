@@ -78,10 +78,7 @@ class Presser:
 
 
 def _corner_of(goal: Fact, situation: Situation) -> XY:
-    """Return the corner (x, y) that a goal is about, in squares, map frame.
-
-    goal : about a corner; else KeyError.
-    """
+    """Return the corner (x, y) that a goal is about, in squares, map frame."""
     (x, y), view = situation.corners[corner_side(goal)].point, situation.model.view
     return x + view.west, y + view.south
 
@@ -89,9 +86,7 @@ def _corner_of(goal: Fact, situation: Situation) -> XY:
 def _is_stopped(push: Translate, before: XY, node: Node) -> bool:
     """Return whether a push of an object fell short by more than STOPPED_SHORT squares.
 
-    push : (dx, dy) in squares along the axes of the map.
     before : the middle (x, y) of the object before the push, map frame.
-    node : the object now.
     """
     moved = np.subtract((node.polygon.centroid.x, node.polygon.centroid.y), before)
     length = math.hypot(push.dx, push.dy)
