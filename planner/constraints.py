@@ -23,9 +23,7 @@ CARRY_NOTHING_THROUGH = "carry_nothing_through"
 MIN_COVERED = 1e-9  # squares squared: a square covered by less is only touched, as in geometry.raster.rasterize
 OBJECT_DISTANCE = 1.0  # squares that plans keep objects from a region: more than the doubt of where these are (derived)
 MAX_KEPT_SPREAD = 0.04  # radians of doubt of the frame's angle that plans allow for: 2 degrees; more settles on the way
-TURN_STEP = (
-    2.0  # degrees between sampled poses of a turn: 0.17 squares of arc at 5 squares from the robot; a convention
-)
+TURN_STEP = 2.0  # degrees between sampled poses of a turn: an arc of 0.17 squares at 5 squares off; a convention
 SAME_PLACE = 1e-6  # squares by which a thing may differ and count as not moved (convention)
 
 

@@ -94,6 +94,8 @@ class _Before(NamedTuple):
 class Robot:
     """The mind of Utak. The numbers in comments are the steps of the paper.
 
+    Whatever takes in an impression raises BadInputError when the user's encodings are wrong.
+
     Attributes
     ----------
     body : what senses and acts.
@@ -130,16 +132,8 @@ class Robot:
         self._before: _Before | None = None  # the mind before the newest impression; None until the robot wakes
 
     def wake(self) -> StepReport:
-        """Receive the first impression, interpret it and make the first plan (steps 1 to 7); the report has no command.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
-        """
-        impression = self.body.wake()  # (2)
-        self._keep_mind(None, impression, "the robot wakes")
-        return self._take_in(None, impression, "the robot wakes")
+        """Receive the first impression, interpret it and make the first plan (steps 1 to 7); report it."""
+        return self._receive(None, self.body.wake(), "the robot wakes")  # (2)
 
     def step(self) -> StepReport:
         """Give the decided command, perceive, and decide anew (steps 8 to 13); report what is believed after it.
@@ -148,8 +142,6 @@ class Robot:
         ------
         ValueError
             When the task has ended.
-        BadInputError
-            The user's encodings are wrong.
         """
         command, why = self.decision.command, self.decision.why  # (9)
         if command is None:
@@ -164,17 +156,11 @@ class Robot:
         Parameters
         ----------
         why : the reason of the command, in words.
-
-        Raises
-        ------
-        BadInputError
-            The user's encodings are wrong.
         """
         self.finished = False
         impression = self.body.act(command)  # (10)
         self.steps += 1
-        self._keep_mind(command, impression, why)
-        return self._take_in(command, impression, why)
+        return self._receive(command, impression, why)
 
     def adopt(self, task: Task, options: Options) -> StepReport:
         """Take another task and other options from the newest impression on, and report it again, with its command.
@@ -191,8 +177,6 @@ class Robot:
         ------
         ValueError
             When the robot has not been woken.
-        BadInputError
-            The user's encodings are wrong.
         """
         if self._before is None:
             raise ValueError("the robot has not been woken yet")
@@ -211,8 +195,8 @@ class Robot:
         self.finished = False
         return self._take_in(before.command, before.impression, before.why, decides_afresh)
 
-    def _keep_mind(self, command: Command | None, impression: Impression, why: str) -> None:
-        """Keep a copy of the mind as it is before an impression is interpreted, for `adopt`."""
+    def _receive(self, command: Command | None, impression: Impression, why: str) -> StepReport:
+        """Take in an impression after a copy of the mind is kept as it is before that, for `adopt`."""
         self._before = _Before(
             command,
             impression,
@@ -223,6 +207,7 @@ class Robot:
             self._must_restart,
             self._has_restarted,
         )
+        return self._take_in(command, impression, why)
 
     def _take_in(
         self, command: Command | None, impression: Impression, why: str, decides_afresh: bool = False

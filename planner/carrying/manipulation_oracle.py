@@ -41,11 +41,7 @@ from planner.screen.projection import UNSEEN_LEVEL, dilate
 from planner.situation import Situation
 
 EndsFunction = Callable[[], Mapping[str, End]]  # ends by their names; it is called only where they are needed
-TRIED_LEVELS = (
-    0,
-    OPTIMISTIC_LEVEL,
-    UNSEEN_LEVEL,
-)  # certainty levels of squares (planner.screen.projection), the surest first
+TRIED_LEVELS = (0, OPTIMISTIC_LEVEL, UNSEEN_LEVEL)  # certainty levels of squares, the surest first
 MIN_PLAN_COMMANDS = 2  # commands of the shortest plan with an object in hand: one push and the release (derived)
 MAX_ORACLE_ROUNDS = 12  # options that geometry is asked about for one request; a bound on time
 SWEEP_STRIDE = 0.25  # squares between the sampled places of a motion; a convention, well below one square

@@ -31,10 +31,9 @@ from planner.carrying.remaining_plan import (
     RemainingPlan,
     grasp_direction,
     is_at,
-    square_index,
 )
 from planner.goals.placement import mask_to_polygon, pull_out_end
-from planner.screen.projection import SquareIndices
+from planner.screen.projection import SquareIndices, square_index
 from planner.situation import Situation
 from planner.skills.failed_grasps import FailedGrasps, rotated_grasps
 from planner.skills.take_along import detour_push, escape_push, region_near, shortest_push

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
@@ -23,7 +22,7 @@ from kb.mapping.patch import Patch
 from kb.world.model import Node, WorldModel
 from planner.carrying.manipulation_oracle import ManipulationPlan, swept_squares
 from planner.goals.placement import forbidden_squares, meets_any_end, to_view_frame
-from planner.screen.projection import SquareIndices
+from planner.screen.projection import square_index
 from planner.situation import Situation
 
 PLACE_TOLERANCE = 1e-6  # squares within which the robot is where a plan says: rounding only
@@ -179,12 +178,6 @@ class PlanOperations:
     revalidate: Callable[[RemainingPlan, Mapping[str, End] | None, Situation], RemainingPlan | None] = revalidate
     start_from_robot: Callable[[RemainingPlan, Mapping[str, End], Situation], RemainingPlan | None] = start_from_robot
     safe_prefix: Callable[[ManipulationPlan, Node, Situation], ManipulationPlan | None] = safe_prefix
-
-
-def square_index(place: XY, model: WorldModel) -> SquareIndices:
-    """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies."""
-    row, column = model.view.locate(*place)
-    return np.array([row * model.labels.shape[1] + column])
 
 
 def is_at(model: WorldModel, place: XY) -> bool:

@@ -43,16 +43,12 @@ CONTACT_GAP = 0.1  # squares between an object and walls that it touches, at mos
 ROTATED_ALLOWANCE = 1.25  # squares that a rotated object may reach further from its walls than a straight one (tuned)
 WALL_DEPTH = 1.0  # squares: so deep a wall may lie in the squares in which it was seen (derived)
 STAIR_DEPTH = math.sqrt(2)  # squares: so far behind its stairs of squares a slanted wall may be (derived: a diagonal)
-WALL_RELEASE = (
-    0.4  # squares away from one slanted wall while pressed on the other: the first would stop it else (tuned)
-)
+WALL_RELEASE = 0.4  # squares away from a slanted wall, which would stop it, while pressed on the other one (tuned)
 PRESS_DISTANCE = 0.25  # squares that an object is pressed on into a corner; what stops it shows its extent (tuned)
 APPROACH_GAP = 0.5  # squares from its walls at which an object is brought to a corner that is settled (tuned)
 MAX_LIKELY_FREE = 0.4  # a square occupied with at most this probability is rather floor than not (tuned)
-MAX_CORNER_SHIFT, CORNER_SHIFT_WIDTH = (
-    2,
-    3,
-)  # squares that a corner may lie beyond sure floor, over so many squares width
+MAX_CORNER_SHIFT = 2  # squares that a corner may lie beyond sure floor
+CORNER_SHIFT_WIDTH = 3  # squares of likely floor beside each other that are asked for there
 
 
 @dataclass(frozen=True, eq=False)

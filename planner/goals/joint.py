@@ -14,10 +14,7 @@ from planner.goals.robot_goals import corner_side
 from planner.situation import Situation
 
 REGION_ROUNDING = 1e-6  # squares, or squares of area, that rounding errors of shapely may make (convention)
-CORNER_REACH = (
-    1.0,
-    1.0,
-)  # squares from a corner, east and north, within which the robot is at it (meaning of the goal)
+CORNER_REACH = (1.0, 1.0)  # squares east and north of a corner within which the robot is at it (meaning of the goal)
 OPPOSITE_CORNERS = (("northeast", "southwest"), ("northwest", "southeast"))
 
 

@@ -16,9 +16,7 @@ from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, mask_
 from planner.situation import Situation
 
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)
-BESIDE_AXIS_DISTANCE = (
-    0.7  # squares in each axis that are surely less than BESIDE_DISTANCE, across a corner too (derived)
-)
+BESIDE_AXIS_DISTANCE = 0.7  # squares in each axis: less than BESIDE_DISTANCE across a corner, too (derived)
 POSE_TOLERANCE = 0.25  # squares from a pose within which it is attained (the meaning of the goal)
 
 

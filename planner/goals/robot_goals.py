@@ -17,7 +17,7 @@ from kb.language.terms import Fact, Symbol
 from kb.world.corners import Corner
 from kb.world.model import WorldModel
 from kb.world.rooms import Rooms
-from planner.screen.projection import SquareIndices, dilate
+from planner.screen.projection import SquareIndices, dilate, square_index
 from planner.sights.frontiers import (
     VIEW_SPACING,
     Viewpoint,
@@ -33,10 +33,7 @@ from planner.situation import Situation
 # How much further towards a corner (east and north added, in squares) unseen floor may go. All were tuned on random
 # worlds (benchmarks.campaign).
 MAX_UNSEEN_REACH = 45  # at most, wherever it goes on
-MIN_CHANCE, REACH_PER_PERCENT = (
-    12,
-    2,
-)  # behind a frontier: so many squares for each percent of its chance over MIN_CHANCE
+MIN_CHANCE, REACH_PER_PERCENT = 12, 2  # so many squares for each percent of a frontier's chance over MIN_CHANCE
 NARROW_REACH, MAX_DOOR_SQUARES = 36, 6  # at least so much behind a frontier less than MAX_DOOR_SQUARES wide
 WIDE_REACH = 24  # at least so much behind a wider frontier of another room
 UNREACHED_REACH = 30  # behind floor that no way leads to yet
@@ -413,5 +410,4 @@ def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
 
 def robot_stands_on(squares: SquareIndices, model: WorldModel) -> bool:
     """Return whether the robot stands on one of some squares; False for no squares."""
-    row, column = model.view.locate(*model.place)
-    return bool((squares == row * model.labels.shape[1] + column).any())
+    return bool((squares == square_index(model.place, model)).any())

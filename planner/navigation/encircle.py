@@ -49,13 +49,10 @@ def encircling_routes(cost_maps: CostMaps, track: Sequence[XY], node: Node) -> d
         found = {}
         for turn in (1, -1):
             number = turn - done
-            squares = (
-                shortest_path_with_crossing_number(free, cost_maps.here, goal, about, number)
-                if abs(number) <= MAX_CROSSING_NUMBER
-                else None
-            )
-            if squares and len(squares) > 1:
-                found[turn] = _route(squares, level)
+            if abs(number) <= MAX_CROSSING_NUMBER:
+                squares = shortest_path_with_crossing_number(free, cost_maps.here, goal, about, number)
+                if squares and len(squares) > 1:
+                    found[turn] = _route(squares, level)
         if found:
             return found
     return {}

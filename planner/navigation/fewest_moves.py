@@ -19,9 +19,7 @@ from planner.screen.projection import CostMaps, SquareIndices
 from planner.subgoal_kind import SubgoalKind
 
 MOVE_COST, SQUARE_COST = 20.0, 0.3  # the cost of a move, and of each square of its way, in squares (tuned)
-SEEN_SQUARE_VALUE = (
-    0.05  # squares of way that an unseen square in sight from the turn is worth (tuned on random worlds)
-)
+SEEN_SQUARE_VALUE = 0.05  # squares of way that an unseen square in sight from the turn is worth (tuned)
 ASSUMED_MOVES = 3  # the number of moves that is assumed for a route of more than two
 MAX_TRIED_SQUARES = 8  # squares of a subgoal to which two moves are sought (tuned: more take time and gain little)
 

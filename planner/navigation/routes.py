@@ -22,9 +22,7 @@ from planner.screen.projection import CostMaps, SquareIndices
 from planner.screen.sweeps import squares_along
 
 MAX_ROUTES = 4  # topologically distinct routes that are offered for a choice (tuned on random worlds)
-MIN_SHARED = (
-    0.6  # a route that has more than this share of its squares in common with the last one continues it (tuned)
-)
+MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
 class PlannedRoute(NamedTuple):
@@ -45,12 +43,10 @@ class PlannedRoute(NamedTuple):
     level: int
 
 
-FoundLine = tuple[
-    list[list[float]], float, float
-]  # points (x, y) in the view frame, length and clearance, all in squares
-PathFinder = Callable[
-    [Bools, Square, Square], list[FoundLine]
-]  # of free squares (rows, columns), the start and the goal
+# Points (x, y) from centre to centre in the view frame, length and clearance, all in squares.
+FoundLine = tuple[list[list[float]], float, float]
+# Of the free squares, (rows, columns), the start and the goal.
+PathFinder = Callable[[Bools, Square, Square], list[FoundLine]]
 
 
 def _by_skeleton(free: Bools, start: Square, goal: Square) -> list[FoundLine]:

@@ -14,7 +14,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.kernels.arrays import Bools, Floats
+from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.raster.components import with_edge_neighbours
 from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED, reach
 from kb.mapping.occupancy import FREE, OPEN
@@ -23,12 +23,8 @@ from planner.screen.unseen_gain import expected_gain
 
 T = TypeVar("T", bound=np.generic)
 SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + column
-LEVEL_MAX_PROBABILITY = (
-    MAX_FREE_PROBABILITY,
-    0.15,
-    0.3,
-    0.45,
-)  # by level: a square occupied with at most this may be crossed (tuned)
+# By level: a square occupied with at most this probability may be crossed (tuned).
+LEVEL_MAX_PROBABILITY = (MAX_FREE_PROBABILITY, 0.15, 0.3, 0.45)
 UNSEEN_LEVEL = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
 APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
@@ -133,6 +129,12 @@ class CostMaps:
         return self.model.squares(self.model.looked_from)
 
     @cached_property
+    def unsettled(self) -> Bools:
+        """The squares that were seen, but neither settled nor taken for floor, (rows, columns) bool."""
+        mask: Bools = self.model.view.seen & (self.model.view.state == OPEN) & ~self.model.space
+        return mask
+
+    @cached_property
     def safe(self) -> Bools:
         """The squares over which a move is made without looking first, (rows, columns) bool.
 
@@ -140,9 +142,8 @@ class CostMaps:
         robot's own square is always one of them; squares that stopped a motion are not.
         """
         view = self.model.view
-        doubtful_squares = view.seen & (view.state == OPEN) & (view.probability >= MIN_DOUBTFUL_PROBABILITY)
-        doubtful = dilate(doubtful_squares, 1) | dilate(~view.seen, 1)
-        mask: Bools = (view.state == FREE) | (view.seen & (view.probability <= MAX_FREE_PROBABILITY) & ~doubtful)
+        doubtful = self.unsettled & (view.probability >= MIN_DOUBTFUL_PROBABILITY) | ~view.seen
+        mask: Bools = (view.state == FREE) | (self.model.space & ~dilate(doubtful, 1))
         mask &= ~self._barred
         if self.kept_off is not None:
             mask &= ~self.kept_off
@@ -218,6 +219,12 @@ def costs_to_objects(cost_maps: CostMaps) -> dict[str, float]:
         if reached is not None:
             found[node.name] = reached.cost
     return found
+
+
+def square_index(place: XY, model: WorldModel) -> SquareIndices:
+    """Return the flat index, an array (1,), of the view's square in which a point (x, y) of the map frame lies."""
+    row, column = model.view.locate(*place)
+    return np.array([row * model.labels.shape[1] + column])
 
 
 def indices_to_mask(squares: SquareIndices, shape: tuple[int, ...]) -> Bools:

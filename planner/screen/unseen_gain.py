@@ -11,12 +11,8 @@ from numpy.typing import NDArray
 from geometry.kernels.arrays import Bools, Floats, Longs
 from kb.mapping.occupancy import MapView
 
-GAIN_REACH = (
-    14  # squares, in rows and columns, within which an unseen square comes into sight; just under the retina's 16
-)
-VERGE_WEIGHT = (
-    0.1  # the weight of an unseen square beside the verge, where one beside floor counts 1 (tuned on random worlds)
-)
+GAIN_REACH = 14  # squares, in rows and columns, within which an unseen square comes into sight: below the retina's 16
+VERGE_WEIGHT = 0.1  # the weight of an unseen square beside the verge, where one beside floor counts 1 (tuned)
 OCCUPIED_THRESHOLD = 0.5  # a seen square with at most this probability of being occupied counts as floor here
 BESIDE_FLOOR, BESIDE_WALL, BESIDE_NOTHING = 0, 1, 2  # labels of squares by what is nearest; the least one wins
 

@@ -14,8 +14,7 @@ import numpy as np
 from geometry.kernels.arrays import Bools, Labels
 from geometry.raster.components import components, with_edge_neighbours
 from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
-from kb.mapping.occupancy import OPEN
-from kb.world.model import MAX_FREE_PROBABILITY, Node
+from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.screen.projection import (
     SURELY_OCCUPIED,
@@ -23,6 +22,7 @@ from planner.screen.projection import (
     SquareIndices,
     dilate,
     indices_to_mask,
+    square_index,
 )
 from planner.screen.unseen_gain import VERGE_WEIGHT
 
@@ -94,10 +94,9 @@ def unsettled_boundaries(cost_maps: CostMaps, apart: int, odd: bool) -> list[Vie
     odd : whether only squares count that may well be floor, and so part of a door or of the floor behind an object;
         False for all squares that are not settled.
     """
-    view = cost_maps.model.view
-    open_ = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY) & dilate(cost_maps.floor, 1)
+    open_ = cost_maps.unsettled & dilate(cost_maps.floor, 1)
     if odd:
-        open_ &= view.probability < SURELY_OCCUPIED
+        open_ &= cost_maps.model.view.probability < SURELY_OCCUPIED
     near = np.where(unlooked_floor(cost_maps, apart), _grown_labels(_stretches(open_), FOVEA_RANGE), 0)
     return [Viewpoint(squares, "what bounds the floor is not clear") for squares in group_by_label(near)]
 
@@ -131,8 +130,8 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
     model = cost_maps.model
     if node.moved or model.held == node.name:
         return None
-    own, (column, row) = model.mask(node.patch), cost_maps.here
-    rim, here = with_edge_neighbours(own), row * own.shape[1] + column
+    own = model.mask(node.patch)
+    rim, here = with_edge_neighbours(own), square_index(model.place, model)
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     touches = any((rim & mask).any() for mask in standing)
     unfelt = own & ~model.squares(model.felt)
@@ -189,19 +188,16 @@ def door_jambs(cost_maps: CostMaps, doors: Iterable[Door]) -> list[Viewpoint]:
     At most one Viewpoint for each door, in their order. Doors that are sure are left out, and those whose walls are
     settled or cannot be seen better.
     """
-    view = cost_maps.model.view
-    vague = view.seen & (view.state == OPEN) & (view.probability > MAX_FREE_PROBABILITY)
     found = []
-    for door in doors:
-        ends = np.zeros(vague.shape, np.bool_)
+    for door in (one for one in doors if not one.sure):
+        ends = np.zeros(cost_maps.unsettled.shape, np.bool_)
         for x, y in (door.a, door.b):
             row, column = round(y), round(x)
             rows = slice(max(row - JAMB_RANGE, 0), row + JAMB_RANGE)
             columns = slice(max(column - JAMB_RANGE, 0), column + JAMB_RANGE)
             ends[rows, columns] = True
-        view_of_ends = viewpoint_of(cost_maps, vague & ends, "whether there is a door is not clear")
-        found += [view_of_ends] * bool(not door.sure and len(view_of_ends.squares))
-    return found
+        found.append(viewpoint_of(cost_maps, cost_maps.unsettled & ends, "whether there is a door is not clear"))
+    return [view for view in found if len(view.squares)]
 
 
 def unreached_rooms(cost_maps: CostMaps) -> list[Viewpoint]:

@@ -26,9 +26,7 @@ from planner.sights.frontiers import (
 )
 from planner.subgoal_kind import SubgoalKind
 
-MIN_SIGHTING_PROBABILITY = (
-    0.1  # a place that holds a wanted object with at least this probability is worth a look (tuned)
-)
+MIN_SIGHTING_PROBABILITY = 0.1  # a place that holds a wanted object with at least this is worth a look (tuned)
 MIN_APPROACH_PROBABILITY = 0.5  # with at least this probability the robot goes right up to it (tuned on random worlds)
 RESTART_COST_WALKING = 4.0  # squares of way that setting out anew after a look costs a robot that only walks (tuned)
 RESTART_COST_CARRYING = 12.0  # the same for a robot that carries objects and counts commands (tuned on random worlds)
@@ -99,11 +97,8 @@ def inspection_squares(cost_maps: CostMaps, mask: Bools, chance: float, to: Appr
     chance : the probability, 0 to 1, that it is the wanted one.
     """
     beside = dilate(mask, 1)
-    near = (
-        _taking_squares(cost_maps, mask, to)
-        if to.take
-        else np.flatnonzero(cost_maps.floor & with_edge_neighbours(mask))
-    )
+    beside_floor = np.flatnonzero(cost_maps.floor & with_edge_neighbours(mask))
+    near = _taking_squares(cost_maps, mask, to) if to.take else beside_floor
     worth_it = chance >= MIN_APPROACH_PROBABILITY or to.take
     if worth_it and len(near) and not (beside & cost_maps.looked_from).any():
         return _most_revealing(cost_maps, near, mask, chance, to) if to.take else near
