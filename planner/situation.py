@@ -161,9 +161,7 @@ class Situation:
 
     def within_shut_doors(self) -> "Situation":
         """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
-        kept_off = neck_squares(self.shut(ROBOT), self.model.labels.shape)
-        if self.cost_maps.kept_off is not None:
-            kept_off = kept_off | self.cost_maps.kept_off
+        kept_off = neck_squares(self.shut(ROBOT), self.model.labels.shape) | self.cost_maps.kept_off
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))
 
     @cached_property

@@ -1,4 +1,7 @@
-"""Placements beside another object, at the start, and at a pose. Ends and outlines are in squares, view frame."""
+"""Placements beside another object, at the start, and at a pose.
+
+Ends and outlines are in squares, view frame.
+"""
 
 import math
 from typing import Any

@@ -56,7 +56,7 @@ class CostMaps:
     ----------
     model : the world model.
     here : the square (column, row) of the robot, on the arrays of the view.
-    kept_off : bool, the squares that the task forbids to the robot; None for none.
+    kept_off : bool, the squares that the task forbids to the robot.
     """
 
     def __init__(self, model: WorldModel, carried: Bools | None = None, kept_off: Bools | None = None) -> None:
@@ -68,8 +68,9 @@ class CostMaps:
             object.
         """
         self.model = model
-        self.kept_off = kept_off
-        self._carried = carried
+        nothing: Bools = np.zeros(model.labels.shape, np.bool_)
+        self.kept_off = nothing if kept_off is None else kept_off
+        self._carried = nothing if carried is None else carried
         row, column = model.view.locate(*model.place)
         self.here = (column, row)
         self._barred = model.squares(model.barred)
@@ -91,11 +92,7 @@ class CostMaps:
             mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVEL_MAX_PROBABILITY[-1])
         else:
             mask &= view.seen
-        mask &= ~self._barred
-        if self._carried is not None:
-            mask |= self._carried
-        if self.kept_off is not None:
-            mask &= ~self.kept_off
+        mask = (mask & ~self._barred | self._carried) & ~self.kept_off
         mask[self.here[1], self.here[0]] = True
         return mask
 
@@ -144,9 +141,7 @@ class CostMaps:
         view = self.model.view
         doubtful = self.unsettled & (view.probability >= MIN_DOUBTFUL_PROBABILITY) | ~view.seen
         mask: Bools = (view.state == FREE) | (self.model.space & ~dilate(doubtful, 1))
-        mask &= ~self._barred
-        if self.kept_off is not None:
-            mask &= ~self.kept_off
+        mask &= ~(self._barred | self.kept_off)
         mask[self.here[1], self.here[0]] = True
         return mask
 
