@@ -360,23 +360,20 @@ def usable_squares(node: Node, situation: Situation, level: int, others: OtherOb
     model = situation.model
     own = model.mask(node.patch)
     free = situation.cost_maps.free(level) | own
-    if level == UNSEEN_LEVEL:
-        for other in (other for other in model.objects if other.name != node.name):
-            mask = model.mask(other.patch)
-            if other.movable == 0:
-                free |= mask & dilate(~mask, 1)
-            if node.inexact and (dilate(own, 1) & mask).any():
-                free |= mask
-    if others == OtherObjects.ASIDE:
-        for other in (other for other in model.objects if other.name != node.name):
-            if other.movable > 0 and other.confidence >= CERTAIN_OBJECT:
-                free |= model.mask(other.patch)
-            if level == UNSEEN_LEVEL and other.confidence >= POSSIBLE_OBJECT:
-                hidden = np.any(
-                    [possible_extension(other, side, MAX_HIDDEN_DEPTH, model) for side in SIDE_DIRECTIONS], axis=0
-                )
-                if other.movable > 0 or hidden.any():
-                    free |= hidden | model.mask(other.patch)
+    aside, proves = others == OtherObjects.ASIDE, level == UNSEEN_LEVEL
+    for other in (other for other in model.objects if other.name != node.name):
+        mask = model.mask(other.patch)
+        if aside and other.movable > 0 and other.confidence >= CERTAIN_OBJECT:
+            free |= mask
+        if aside and proves and other.confidence >= POSSIBLE_OBJECT:
+            parts = [possible_extension(other, side, MAX_HIDDEN_DEPTH, model) for side in SIDE_DIRECTIONS]
+            hidden = np.any(parts, axis=0)
+            if other.movable > 0 or hidden.any():
+                free |= hidden | mask
+        if proves and other.movable == 0:
+            free |= mask & dilate(~mask, 1)
+        if proves and node.inexact and (dilate(own, 1) & mask).any():
+            free |= mask
     return free & ~forbidden_squares(node, situation)
 
 

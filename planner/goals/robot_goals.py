@@ -113,7 +113,7 @@ def destination(goal: Fact, situation: Situation) -> Destination:
     if side := corner_side(goal):
         return corner_destination(side, situation)
     if goal.name == "at" and str(where) == "start":
-        return Destination(_within(situation.model, situation.model.frame.origin, 1.0))
+        return Destination(_start_squares(situation.model))
     if goal.name in ("at", "beside", "circled"):
         return beside_destination(str(where), situation)
     if goal.name in ("in", "through"):
@@ -395,16 +395,12 @@ def hidden_from(verge: Bools, model: WorldModel, place: XY) -> Bools:
     return mask
 
 
-def _within(model: WorldModel, point: XY, reach: float) -> SquareIndices:
-    """Return the squares whose centres are less than `reach` squares from a point in each axis, and the point's own.
-
-    point : (x, y) of the map frame, in squares.
-    """
-    row, column = model.view.locate(*point)
+def _start_squares(model: WorldModel) -> SquareIndices:
+    """Return the squares whose centres are less than a square in each axis from where the robot woke, and that one."""
+    (x, y), view = model.frame.origin, model.view
     rows, columns = np.ogrid[: model.labels.shape[0], : model.labels.shape[1]]
-    x, y = point[0] - model.view.west, point[1] - model.view.south
-    near = (abs(columns + 0.5 - x) < reach) & (abs(rows + 0.5 - y) < reach)
-    near[row, column] = True
+    near = (abs(columns + 0.5 - (x - view.west)) < 1.0) & (abs(rows + 0.5 - (y - view.south)) < 1.0)
+    near[view.locate(x, y)] = True
     return np.flatnonzero(near)
 
 
