@@ -93,6 +93,9 @@ class HeldObject:
         are not parallel to the grid.
     stopped : bool
         Whether one of its motions ended early, or beside its predicted place.
+    seen_on : Patch or None
+        The squares on which it was seen before it was grasped, map frame; None when these are not known any more, for
+        the frame is another one.
     """
 
     name: str
@@ -116,6 +119,7 @@ class HeldObject:
     insets: SubcellExtent | None = None
     stopped: bool = False
     whole: bool = False
+    seen_on: Patch | None = None
 
     @property
     def dubious(self) -> bool:

@@ -369,6 +369,7 @@ def grasped(node: Node) -> HeldObject:
         first=node.polygon,
         slack=outline_tolerance(node.polygon),
         insets=initial_insets(node.polygon),
+        seen_on=node.patch,
         shape=node.shape,
         colour=node.colour,
         support=node.support,

@@ -17,10 +17,10 @@ def plan_that_settles(
     given: Sequence[str],
     refuted: tuple[RefutedStep, ...] = (),
 ) -> tuple[TaskPlan, tuple[str, ...]]:
-    """Return the plan of the encoding where something is open, and the steps that settle something.
+    """Return the plan of the encoding where something is open, and the steps that users' rules may have kept out of it.
 
     Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
-    unmet in it. Where no step settles anything though some are left, users' rules forbid these.
+    unmet in it. The steps returned are all that may settle something, where users have rules; () where they have none.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def plan_that_settles(
     hoped = [errand.goal for errand in found.errands if errand.settles and errand.goal]
     unmet = tuple(dict.fromkeys([*hoped, *found.unmet]))
     plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=goals, refutations=refuted)
-    return plan, found.left
+    return plan, found.left if situation.rules else ()
 
 
 def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:

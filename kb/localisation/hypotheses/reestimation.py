@@ -108,7 +108,7 @@ class WalkCorrection(NamedTuple):
         if not any(aside):
             return held
         first = held.first if held.name == self.in_hand else aside.carry(held.first)
-        return replace(held.lying(aside.carry(held.polygon), held.slack), first=first)
+        return replace(held.lying(aside.carry(held.polygon), held.slack), first=first, seen_on=None)
 
     def _aside(self, name: str) -> Position:
         """Return the shift of an object, (east, north) in squares, Utak's own frame; (0, 0) when it is not shifted.

@@ -340,7 +340,7 @@ def _first_held(held: HeldObject, new: Frame, old: Frame, occupancy: OccupancyMa
     insets = (
         held.insets if skew == 0.0 and seen is None else SubcellExtent() if is_grid_aligned(lying.polygon) else None
     )
-    return replace(lying, first=lying.polygon, skewed=skewed, insets=insets)
+    return replace(lying, first=lying.polygon, skewed=skewed, insets=insets, seen_on=None)
 
 
 def _straightened(polygon: Any, occupancy: OccupancyMap) -> Any:
@@ -410,7 +410,7 @@ def _moved_to(taken: HeldObject, held: HeldObject, pose: ObjectPose, new: Frame)
     aside = Rotate(pose.degrees, (0.0, 0.0)).points(began)[0]
     middle = new.place_from_utak(pose.middle[0] + float(aside[0]), pose.middle[1] + float(aside[1]))
     lying = held.lying(_placed(taken.first, pose.degrees, middle), pose.slack)
-    return replace(lying, first=taken.first, skewed=taken.skewed, insets=taken.insets)
+    return replace(lying, first=taken.first, skewed=taken.skewed, insets=taken.insets, seen_on=None)
 
 
 def _placed(polygon: Any, degrees: float, middle: Position) -> Any:

@@ -57,7 +57,7 @@ def _agreeing(surprise: Surprise, held: HeldObject, motion: Translate, roughly: 
 
     roughly : whether the part lies only about where its squares are, by up to CUT_TOLERANCE; then the distance is 1.
     """
-    patch = patch_of_polygon(held.polygon)
+    patch = held.seen_on or patch_of_polygon(held.polygon)
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
     for mask in halves(patch.mask):
         part, rest = _parted(held, patch, mask, roughly), Patch(patch.west, patch.south, patch.mask & ~mask)
@@ -89,7 +89,7 @@ def _parted(held: HeldObject, patch: Patch, mask: Bools, roughly: bool) -> HeldO
     polygon = held.polygon.intersection(cells) if is_grid_aligned(held.polygon) else cells
     if polygon.geom_type != "Polygon" or polygon.is_empty:
         return None
-    part = replace(held.lying(polygon), first=polygon, shape={}, insets=None)
+    part = replace(held.lying(polygon), first=polygon, shape={}, insets=None, seen_on=None)
     return replace(part, slack=CUT_TOLERANCE, inexact=True) if roughly else part
 
 

@@ -110,7 +110,7 @@ def test_an_immovable_object_is_found_out(tmp_path: Path) -> None:
     done = run(folder)
     assert not done.result.believed
     assert "cannot be moved" in done.result.reason
-    assert done.result.steps < 60
+    assert done.result.steps < 90  # it was pushed each way, and the walls were felt
 
 
 @pytest.mark.parametrize(
