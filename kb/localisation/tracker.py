@@ -34,7 +34,7 @@ from kb.localisation.hypotheses.what_if import command_motion
 from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
-from kb.mapping.occupancy import FREE, OCCUPIED, OPEN, OccupancyMap
+from kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
 from kb.mapping.patch import patch_of_squares
 from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
 from kb.perception.retina import count_ranges
@@ -266,8 +266,7 @@ class Tracker:
         if chosen.left:
             occupancy, rest = self.state.occupancy, patch_of_squares(chosen.left)
             squares = occupancy.squares(rest.west, rest.south, rest.mask)
-            value = OPEN if chosen.instead is not None and chosen.instead.inexact else OCCUPIED
-            occupancy.declare(squares, value, len(self.state.observations) - 1)
+            occupancy.declare(squares, OCCUPIED, len(self.state.observations) - 1)
         self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
         held, motion = self.state.held_objects[name], command_motion(command, self.state.frame, self.state.place)
         suspected = contact_suspects(self.state, held, chosen, motion)

@@ -16,7 +16,7 @@ SETTLING_WORDS = {  # steps that settle something, in words; {} is what they set
     "pursue": "the robot sees how {} can hold",
     "pull": "a thing that may go on in a wall is drawn out of it, for {}",
     "make_way": "what blocks the robot's way is moved aside, for {}",
-    "try": "things that may be several are felt all round or moved by a square, for {}",
+    "try": "things that may be several are felt all round, and pushed each way where they did not move, for {}",
     "feel": "walls are felt that may be things, for {}",
     "bare": "what stands before walls that were never felt is moved away, for {}",
 }

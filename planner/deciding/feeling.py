@@ -18,7 +18,7 @@ from planner.decision import Decision
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
-from planner.sights.things import UnfeltRim
+from planner.sights.frontiers import Viewpoint
 from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
 from planner.situation import Situation, neck_squares
 from planner.stages import Stage
@@ -98,15 +98,15 @@ def feel_walls(turn: StageTurn) -> Decision | None:
     )
 
 
-def feel_rims(rims: Sequence[UnfeltRim], turn: StageTurn) -> Decision | None:
+def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
     """Return the next command to feel things all round; None when none can be reached to be felt.
 
     Parameters
     ----------
-    rims : what was not felt of each.
+    rims : for each the floor from which it is felt.
     turn : the stage, what is believed, and the tools.
     """
-    felt = turn.seek([Subgoal(SubgoalKind.INSPECT, *rim.look) for rim in rims]) if rims else None
+    felt = turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]) if rims else None
     return None if felt is None or felt.command is None else felt
 
 

@@ -1,6 +1,6 @@
-"""Trials: what seems one thing may be several that touch. It is felt all round, or moved by a square to find out."""
+"""Trials: what seems one thing may be several that touch, and what did not move one way may move another way."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import product
 
 from geometry.manipulation.goals import At
@@ -17,7 +17,6 @@ from planner.sights.walls import EDGE_STEPS
 from planner.situation import Situation
 
 TRIAL_TARGET = "trial"  # the ends of plans that move a thing by a square, with the number of the direction after it
-TRIAL_COMMANDS = 4  # commands that it takes to move a thing by a square: walk, grasp, push, release
 
 Trial = tuple[str, int]  # the name of a thing, and the number of the direction in EDGE_STEPS
 
@@ -53,8 +52,8 @@ class Trials:
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left.
 
-        Such a thing is felt all round where that takes fewer commands than to move it, and moved else: what moves
-        together is one thing. What the goals speak of stays where it is.
+        Such a thing is felt all round: two colours tell for sure. What did not move when it was pushed is then pushed
+        each other way by a square. What the goals speak of stays where it is.
 
         Parameters
         ----------
@@ -63,28 +62,21 @@ class Trials:
         """
         situation = turn.situation
         scope = feeling_scope(turn.stage, situation)
-        rims = unfelt_rims(situation.cost_maps, scope)
+        felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
+        if felt is not None:
+            return felt
         meant = {situation.binding.get(str(term), "") for goal in goals for term in goal.args}
         asked = things_in_question(situation.model, situation.cost_maps, scope)
-        things = [node for node in asked if node.name not in meant]
-        ways: tuple[Callable[[], Decision | None], ...] = (
-            lambda: feel_rims([rim for rim in rims if rim.halts < TRIAL_COMMANDS], turn),
-            lambda: self._move_by_a_square(things, turn),
-            lambda: feel_rims(rims, turn),
-        )
-        tried = (way() for way in ways)
-        return next((one for one in tried if one is not None), nothing_to_do("no thing is left to try"))
+        moved = self._move_by_a_square([node for node in asked if node.stuck and node.name not in meant], turn)
+        return moved or nothing_to_do("no thing is left to try")
 
     def _move_by_a_square(self, things: Sequence[Node], turn: StageTurn) -> Decision | None:
-        """Return the next command to move one of some things by a square; None where none can be.
-
-        A thing that did not move as one one way is moved another way.
-        """
+        """Return the next command to move one of some things by a square, each way once; None where none can be."""
         for node, number in product(things, range(len(EDGE_STEPS))):
             trial, (dx, dy) = (node.name, number), EDGE_STEPS[number]
             if trial in self._made:
                 continue
-            purpose = f"whether {node.name} is one thing is not known: "
+            purpose = f"{node.name} did not move, and may move another way: "
             moved = bring_to_end(node, f"{TRIAL_TARGET}{number}", At(Pose(float(dx), float(dy), 0.0)), turn, purpose)
             if moved is not None:
                 self._begun = trial

@@ -14,20 +14,17 @@ from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
-from kb.mapping.occupancy import OCCUPIED, OPEN
+from kb.mapping.occupancy import OCCUPIED
 from kb.mapping.patch import Patch, patch_of_polygon
 from kb.objects.held_object import HeldObject, is_grid_aligned
 from kb.perception.seams import halves
-
-CUT_TOLERANCE = 0.5  # squares by which a cut along the grid may be off: if by more, the next line is nearer
 
 
 def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iterator[Explanation]:
     """Yield the explanation that a push went as commanded and the object is only a part of what seemed one thing.
 
-    At most one: of the straight cuts with which the observation agrees the one that leaves the simplest outlines; where
-    it agrees with none, of those with which it agrees roughly. What is in hand touches the robot's square, and does not
-    move over the rest.
+    At most one: of the straight cuts with which the observation agrees the one that leaves the simplest outlines. What
+    is in hand touches the robot's square, and does not move over the rest.
 
     Only for an object that never moved before; nothing for a turn.
 
@@ -41,26 +38,14 @@ def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     ------
     Explanation
         Of kind parted, at the commanded place (x, y) in squares, map frame. Without residual; `instead` is the object
-        before the push, `left` the squares of the rest; `distance` is 1 where the observation agrees only roughly.
+        before the push, and `left` the squares of the rest.
     """
     if held.proven or not isinstance(motion, Translate):
         return
-    for roughly in (False, True):
-        found = next(_agreeing(surprise, held, motion, roughly), None)
-        if found is not None:
-            yield found
-            return
-
-
-def _agreeing(surprise: Surprise, held: HeldObject, motion: Translate, roughly: bool) -> Iterator[Explanation]:
-    """Yield the cuts with which the observation agrees, the simplest outlines first.
-
-    roughly : whether the part lies only about where its squares are, by up to CUT_TOLERANCE; then the distance is 1.
-    """
     patch = held.seen_on or patch_of_polygon(held.polygon)
     others = [other for other in surprise.held_objects.values() if other.name != held.name]
     for mask in halves(patch.mask):
-        part, rest = _parted(held, patch, mask, roughly), Patch(patch.west, patch.south, patch.mask & ~mask)
+        part, rest = _parted(held, patch, mask), Patch(patch.west, patch.south, patch.mask & ~mask)
         if part is None or not _is_beside(part, surprise):
             continue
         outcome = predicted_outcome(surprise.place, part.polygon, motion)._replace(how="parted")
@@ -68,29 +53,26 @@ def _agreeing(surprise: Surprise, held: HeldObject, motion: Translate, roughly: 
             continue
         occupancy = surprise.occupancy.copy()
         squares = occupancy.squares(rest.west, rest.south, rest.mask)
-        occupancy.declare(squares, OPEN if roughly else OCCUPIED, len(surprise.observations) - 1)
+        occupancy.declare(squares, OCCUPIED, len(surprise.observations) - 1)
         held_objects = [*others, part.moved(outcome.polygon, part.slack, commanded=True)]
         if not count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges):
             left = frozenset(rest.squares())
-            yield Explanation(
-                "parted", outcome.place, surprise.frame, 0, float(roughly), outcome, instead=part, left=left
-            )
+            yield Explanation("parted", outcome.place, surprise.frame, 0, 0.0, outcome, instead=part, left=left)
+            return
 
 
-def _parted(held: HeldObject, patch: Patch, mask: Bools, roughly: bool) -> HeldObject | None:
+def _parted(held: HeldObject, patch: Patch, mask: Bools) -> HeldObject | None:
     """Return the part of an object that lies on some of its squares; None where that is no single outline.
 
     An outline askew was fitted to what is no one thing, so the part fills its squares then. Its shape class and
-    sub-cell extent are unknown. patch : the squares of the object. mask : those of the part, bool. roughly : whether it
-    lies only about there.
+    sub-cell extent are unknown. patch : the squares of the object. mask : those of the part, bool.
     """
     squares = Patch(patch.west, patch.south, mask).squares()
     cells = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in squares])
     polygon = held.polygon.intersection(cells) if is_grid_aligned(held.polygon) else cells
     if polygon.geom_type != "Polygon" or polygon.is_empty:
         return None
-    part = replace(held.lying(polygon), first=polygon, shape={}, insets=None, seen_on=None)
-    return replace(part, slack=CUT_TOLERANCE, inexact=True) if roughly else part
+    return replace(held.lying(polygon), first=polygon, shape={}, insets=None, seen_on=None)
 
 
 def _is_beside(part: HeldObject, surprise: Surprise) -> bool:

@@ -61,7 +61,10 @@ def test_an_object_that_was_never_moved_may_be_several() -> None:
         nearest_open_fact(situation_of(model), (0.0, 0.0))
         == f"{node.name}, which was never moved, is more than one thing"
     )
-    assert nearest_open_fact(situation_of(replace(model, objects=(replace(node, moved=True),))), (0.0, 0.0)) == ""
+    moved = situation_of(replace(model, objects=(replace(node, moved=True),)))
+    assert "which was not seen to move as one thing" in nearest_open_fact(moved, (0.0, 0.0))
+    whole = situation_of(replace(model, objects=(replace(node, moved=True, whole=True),)))
+    assert nearest_open_fact(whole, (0.0, 0.0)) == ""
 
 
 def test_an_object_with_reached_floor_all_around_leads_a_walking_robot_nowhere() -> None:

@@ -22,14 +22,13 @@ def felt(rows: list[str], bound: str = "", stuck: int = 0, moved: bool = False) 
     return situation_of(replace(model, objects=objects), {"x": bound} if bound else {})
 
 
-def test_a_small_thing_is_felt_all_round_and_a_large_one_is_moved() -> None:
-    small, large = (Trials().next((), turn_of(ELSEWHERE, known_situation(rows))) for rows in (SMALL, LARGE))
-    assert "felt all round" in small.why and "grasped" in large.why
+def test_things_are_felt_all_round_first() -> None:
+    found = (Trials().next((), turn_of(ELSEWHERE, known_situation(rows))) for rows in (SMALL, LARGE))
+    assert all("felt all round" in decision.why for decision in found)
 
 
-def test_what_was_felt_all_round_is_moved_by_a_square() -> None:
-    decision = Trials().next((), turn_of(ELSEWHERE, felt(SMALL)))
-    assert isinstance(decision.command, Move | Grasp) and "grasped" in decision.why
+def test_what_was_felt_all_round_and_never_pushed_stays_where_it_is() -> None:
+    assert Trials().next((), turn_of(ELSEWHERE, felt(SMALL))).result == "idle"
 
 
 def test_what_was_moved_is_one_thing() -> None:
@@ -37,11 +36,11 @@ def test_what_was_moved_is_one_thing() -> None:
 
 
 def test_what_a_goal_speaks_of_is_not_moved() -> None:
-    assert Trials().next(ELSEWHERE.goals, turn_of(ELSEWHERE, felt(SMALL, "g"))).result == "idle"
+    assert Trials().next(ELSEWHERE.goals, turn_of(ELSEWHERE, felt(SMALL, "g", stuck=1))).result == "idle"
 
 
-def test_each_way_is_tried_once_until_none_is_left() -> None:
-    model, trials, tools, pushes = felt(SMALL).model, Trials(), tools_with(), list[tuple[float, float]]()
+def test_what_did_not_move_is_pushed_other_ways_each_once() -> None:
+    model, trials, tools, pushes = felt(SMALL, stuck=1).model, Trials(), tools_with(), list[tuple[float, float]]()
     for _ in range(40):
         turn = turn_of(ELSEWHERE, situation_of(model), tools)
         begun = trials.begun(turn.situation)
@@ -53,7 +52,7 @@ def test_each_way_is_tried_once_until_none_is_left() -> None:
         held = "g" if isinstance(command, Grasp) else None if isinstance(command, Release) else model.held
         at = (command.east, command.north) if isinstance(command, Move) else (0.0, 0.0)
         model = replace(model, held=held, place=(model.place[0] + at[0], model.place[1] + at[1]))
-    assert sorted(pushes) == [(-1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (1.0, 0.0)]
+    assert len(set(pushes)) == len(pushes) > 1
 
 
 def test_where_no_thing_matters_none_is_tried() -> None:
