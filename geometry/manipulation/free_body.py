@@ -16,11 +16,22 @@ MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
     """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too.
 
+    It is remembered with the workspace: wherever the robot stands, and whatever it holds, the answer is the same.
+
     `query` : the body, the goal and the floor; the robot is not looked at. The plan holds the motions (Translate,
         Rotate) in order, squares and degrees, table frame, and when impossible the passage that is too narrow. Its
         poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
         "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
     """
+    goal = query.goal
+    key = query.shape.wkb, goal.polygon.wkb if isinstance(goal, Inside) else goal
+    if key not in query.workspace.alone:
+        query.workspace.alone[key] = _plan_alone(query)
+    return query.workspace.alone[key]
+
+
+def _plan_alone(query: ManipulationQuery) -> MotionPlan:
+    """Return the motion plan of the body without the robot. `query` : as for `plan_body_alone`."""
     middle = query.shape.centroid
     centred = shapely.transform(query.shape, lambda p: p - np.array([middle.x, middle.y]))
     goal = query.goal

@@ -28,7 +28,7 @@ from geometry.manipulation.legs import Leg, commands, shifted, verified
 from geometry.manipulation.press import press_into_corner
 from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_grasp
-from geometry.manipulation.workspace import Workspace
+from geometry.manipulation.workspace import workspace_of
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import require_bounded, valid_polygons
@@ -179,7 +179,7 @@ def plan_carrying(
         return CarryingPlan("impossible", reason="start", held=held)
     margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    query = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
+    query = ManipulationQuery(shape, workspace_of(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)

@@ -1,11 +1,12 @@
 """Workspace: free squares and the walls around them as polygons, ready for exact first contact."""
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 import shapely
 
+from geometry.cspace.plan_motion import MotionPlan
 from geometry.kernels.arrays import Bools, Floats
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.obstacle_field import ObstacleField
@@ -14,6 +15,7 @@ from geometry.motion.se2 import Motion
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
 FULL_MOTION = 1.0 - 1e-12  # fraction of a motion; rounding: free up to here counts as free to the end
+MAX_KEPT_WORKSPACES = 32  # of squares that were asked for last; a bound on memory, a megabyte or so each
 
 
 class Workspace:
@@ -34,6 +36,7 @@ class Workspace:
     floor_polygon : shapely geometry, squares, table frame, where a body may be.
     walls : list of shapely Polygon, squares, table frame: `outer` without the floor.
     obstacles : the walls, prepared for exact first contact.
+    alone : motion plans of bodies by themselves among these walls, by body and goal; what was asked is remembered here.
     """
 
     def __init__(self, free: Bools, walls: Any = None) -> None:
@@ -46,6 +49,7 @@ class Workspace:
         self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
         self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
         self.obstacles = Obstacles(self.walls)
+        self.alone: dict[Any, MotionPlan] = {}
 
     @cached_property
     def floor(self) -> ObstacleField:
@@ -82,6 +86,26 @@ class Workspace:
         """
         free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
         return free
+
+
+def workspace_of(free: Bools, walls: Any = None) -> Workspace:
+    """Return the workspace of some free squares, the same one as before where it was asked for not long ago.
+
+    Squares are asked about again and again while a robot walks, for several goals.
+
+    Parameters
+    ----------
+    free, walls : as for `Workspace`; those with walls of their own are made anew.
+    """
+    if walls is not None:
+        return Workspace(free, walls)
+    return _workspace_of_squares(free.tobytes(), free.shape[0], free.shape[1])
+
+
+@lru_cache(maxsize=MAX_KEPT_WORKSPACES)
+def _workspace_of_squares(free: bytes, rows: int, columns: int) -> Workspace:
+    """Return the workspace of free squares, given as the bytes of a bool array, row by row."""
+    return Workspace(np.frombuffer(free, np.bool_).reshape(rows, columns).copy())
 
 
 def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
