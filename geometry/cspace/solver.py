@@ -275,4 +275,4 @@ class MotionSolver:
             return places
         own = shapely.intersects_xy(self._disc_room.buffer(self.min_cell), *places.T)
         own[0] = True
-        return places[own]
+        return np.ascontiguousarray(places[own])

@@ -1,12 +1,13 @@
 """The motion of the body alone, as if it moved by itself: what it cannot do, the robot cannot do with it."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import shapely
 
 from geometry.cspace.plan_motion import MotionPlan, plan_motion
-from geometry.manipulation.goals import At, Between, InCorner, Inside
+from geometry.manipulation.goals import At, Between, InCorner, Inside, goal_key
 from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Pose
 
@@ -23,11 +24,7 @@ def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
         poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
         "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
     """
-    goal = query.goal
-    key = query.shape.wkb, goal.polygon.wkb if isinstance(goal, Inside) else goal
-    if key not in query.workspace.alone:
-        query.workspace.alone[key] = _plan_alone(query)
-    return query.workspace.alone[key]
+    return query.workspace.once(("alone", query.shape.wkb, goal_key(query.goal)), partial(_plan_alone, query))
 
 
 def _plan_alone(query: ManipulationQuery) -> MotionPlan:

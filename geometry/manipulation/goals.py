@@ -1,6 +1,7 @@
 """Goals of carrying: at a pose, inside a region, in a corner, between walls; and the cost of each end pose."""
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -146,6 +147,11 @@ class Roomy:
 End = At | Inside | InCorner | Between | Roomy
 
 
+def goal_key(goal: End) -> Hashable:
+    """Return what a goal is, to know it again: the goal itself, and for a region its outline in bytes."""
+    return goal.polygon.wkb if isinstance(goal, Inside) else goal
+
+
 def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
     """Return whether a shape meets the goal as it lies now, to GOAL_TOLERANCE squares.
 
@@ -235,7 +241,10 @@ def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLa
     grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
     for part in shapely.get_parts(goal.polygon):
         outside = grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
-        inside, easy = grid.clear(outside, offsets), grid.clear(outside & ~lattice.solid, grown)
+        inside, easy = (
+            grid.clear(outside, grid.offsets(offsets)),
+            grid.clear(outside & ~lattice.solid, grid.offsets(grown)),
+        )
         cost[inside & (cost != 0)] = TIGHT_END_COST
         cost[inside & easy] = 0
     return cost
@@ -251,7 +260,7 @@ def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLatt
     """
     reach = range(-2, 3)
     grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
-    roomy = grid.clear(lattice.solid, grown)
+    roomy = grid.clear(lattice.solid, grid.offsets(grown))
     if goal.near is None:
         return np.where(roomy, 0, -1).astype(np.int32)
     row, column = np.divmod(np.arange(len(roomy)), grid.stride)

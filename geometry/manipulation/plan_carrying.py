@@ -12,7 +12,7 @@ it cannot pass), and then any place and angle.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -214,7 +214,7 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
     `query` : the body, the robot, the goal, and what is in the way. `off_lattice` : the planners asked after those by
     whole squares; None for none.
     """
-    plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
+    plan = query.workspace.once(("on lattice", *query.key), partial(_pressed_plan_on_lattice, query))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
         plan = _plan_of(query, plan_on_lattice(query))
@@ -232,6 +232,14 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
         plan = _plan_of(query, off_lattice.by_freeing(query))
         plan = plan or _plan_of(query, off_lattice.with_one_grasp(query, body.track))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
+
+
+def _pressed_plan_on_lattice(query: ManipulationQuery) -> CarryingPlan | None:
+    """Return the plan by whole squares and quarter turns, pressed into a corner where that is wished; None for none.
+
+    It is asked for again where no plan on the lattice is found: then all ways are looked for.
+    """
+    return _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:

@@ -1,12 +1,12 @@
 """Workspace: free squares and the walls around them as polygons, ready for exact first contact."""
 
+from collections.abc import Callable, Hashable
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import shapely
 
-from geometry.cspace.plan_motion import MotionPlan
 from geometry.kernels.arrays import Bools, Floats
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.obstacle_field import ObstacleField
@@ -15,7 +15,8 @@ from geometry.motion.se2 import Motion
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
 FULL_MOTION = 1.0 - 1e-12  # fraction of a motion; rounding: free up to here counts as free to the end
-MAX_KEPT_WORKSPACES = 32  # of squares that were asked for last; a bound on memory, a megabyte or so each
+Result = TypeVar("Result")
+MAX_KEPT_WORKSPACES = 128  # of squares that were asked for last; a bound on memory, a megabyte or so each
 
 
 class Workspace:
@@ -36,7 +37,6 @@ class Workspace:
     floor_polygon : shapely geometry, squares, table frame, where a body may be.
     walls : list of shapely Polygon, squares, table frame: `outer` without the floor.
     obstacles : the walls, prepared for exact first contact.
-    alone : motion plans of bodies by themselves among these walls, by body and goal; what was asked is remembered here.
     """
 
     def __init__(self, free: Bools, walls: Any = None) -> None:
@@ -49,7 +49,20 @@ class Workspace:
         self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
         self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
         self.obstacles = Obstacles(self.walls)
-        self.alone: dict[Any, MotionPlan] = {}
+        self._known: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, work: Callable[[], Result]) -> Result:
+        """Return what some work comes to; it is done once for these squares, and remembered.
+
+        Parameters
+        ----------
+        key : what the work is, with all that its result depends on beside the squares and walls.
+        work : returns the result, which nobody changes.
+        """
+        if key not in self._known:
+            self._known[key] = work()
+        found: Result = self._known[key]
+        return found
 
     @cached_property
     def floor(self) -> ObstacleField:
@@ -148,8 +161,7 @@ def _free_rectangles(free: Bools) -> Any:
     """
     rectangles = []
     growing: dict[tuple[int, int], int] = {}
-    for row in range(len(free) + 1):
-        runs = _row_runs(free[row]) if row < len(free) else set()
+    for row, runs in enumerate(_runs_by_row(np.pad(free, ((0, 1), (0, 0))))):
         for (x0, x1), since in sorted(growing.items()):
             if (x0, x1) not in runs:
                 rectangles.append(shapely.box(x0, since, x1, row))
@@ -157,7 +169,13 @@ def _free_rectangles(free: Bools) -> Any:
     return rectangles
 
 
-def _row_runs(line: Bools) -> set[tuple[int, int]]:
-    """Return the runs of True in a row `line`, (columns,) bool, as a set of (first column, column after the last)."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
-    return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}
+def _runs_by_row(free: Bools) -> list[set[tuple[int, int]]]:
+    """Return for each row the runs of True in it: sets of (first column, column after the last).
+
+    `free` : (rows, columns) bool.
+    """
+    found: list[set[tuple[int, int]]] = [set() for _ in free]
+    rows, columns = np.nonzero(np.diff(np.pad(free, ((0, 0), (1, 1))).astype(np.int8), axis=1))
+    for row, (first, after) in zip(rows[::2].tolist(), columns.reshape(-1, 2).tolist(), strict=True):
+        found[row].add((first, after))
+    return found

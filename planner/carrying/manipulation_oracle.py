@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
+from geometry.manipulation.goals import End, goal_key, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
@@ -278,8 +278,7 @@ class ManipulationOracle:
         shape, utak, free, walk = floor
         held, turn, contacts = request.held, request.turn_cost, request.contacts
         avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
-        where = end.polygon.wkb if isinstance(end, Inside) else end
-        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), where, utak, avoid, contacts, held, turn)
+        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), goal_key(end), utak, avoid, contacts, held, turn)
         if key not in self._answers:
             if len(self._answers) > MAX_REMEMBERED:
                 self._answers.clear()
