@@ -225,12 +225,9 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
     body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)
-    if body.status == "found":
+    if body.status == "found":  # else the body and the robot as one thing, which is larger, would not be found to pass
         plan = _plan_of(query, off_lattice.with_one_grasp(query, body.track))
-        plan = plan or _plan_of(query, off_lattice.by_freeing(query))
-    else:  # it lies too tightly for an answer: first bring it out
-        plan = _plan_of(query, off_lattice.by_freeing(query))
-        plan = plan or _plan_of(query, off_lattice.with_one_grasp(query, body.track))
+    plan = plan or _plan_of(query, off_lattice.by_freeing(query))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
 
 
