@@ -1,7 +1,7 @@
 """Goals of carrying: at a pose, inside a region, in a corner, between walls; and the cost of each end pose."""
 
 import math
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -10,6 +10,7 @@ import numpy.typing as npt
 import shapely
 
 from geometry.cspace.solver import Inside
+from geometry.kernels.arrays import Bools
 from geometry.motion.se2 import Pose, turned
 from geometry.raster.rasterize import covered_areas
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
@@ -219,7 +220,11 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
     if isinstance(goal, At):
         return _costs_at_pose(goal.pose, shape, footprints, grid)
     if isinstance(goal, Inside):
-        found = [_costs_inside(goal, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
+        parts = [
+            grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
+            for part in shapely.get_parts(goal.polygon)
+        ]
+        found = [_costs_inside(parts, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
     elif isinstance(goal, Between):
         found = [_costs_between(goal, shape, footprints, k, grid) for k in range(4)]
     elif isinstance(goal, Roomy):
@@ -229,18 +234,21 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
     return np.where(lattice.lies, np.array(found), -1).astype(np.int32)
 
 
-def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
+def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn: higher where the body has less than a free square about it.
 
-    `goal` : the region. `lattice` : the state lattice, of which the solid squares are read. (squares,) int32 by number
-        in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares outside the region
-        count as blocked unless they are free. `offsets` : (n, 2) columns and rows from the square of the centroid to
-        those that the body covers.
+    (squares,) int32 by number in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares
+    outside the region count as blocked unless they are free.
+
+    Parameters
+    ----------
+    parts : for each part of the region, (squares,) bool, which squares do not lie within it.
+    offsets : (n, 2) columns and rows from the square of the centroid to those that the body covers.
+    lattice, grid : the state lattice, of which the solid squares are read, and its numbering.
     """
     cost = np.full(len(lattice.solid), -1, np.int32)
     grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
-    for part in shapely.get_parts(goal.polygon):
-        outside = grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
+    for outside in parts:
         inside, easy = (
             grid.clear(outside, grid.offsets(offsets)),
             grid.clear(outside & ~lattice.solid, grid.offsets(grown)),

@@ -19,7 +19,7 @@ from geometry.manipulation.workspace import padded_shape
 from geometry.motion.se2 import Rotate, Translate
 from geometry.state_lattice.astar import ADMISSIBLE_WEIGHT, costs_to_first_grasp, find_carrying_path
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, new_footprints
-from geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION, cost_to_go
+from geometry.state_lattice.heuristic import can_reach_end, cost_to_go
 from geometry.state_lattice.lattice import (
     COMMAND_COST,
     CORNER_GRASP_COST,
@@ -238,9 +238,9 @@ class _LatticeSearch:
 
         `bend_cost` : in the costs of the lattice, COMMAND_COST for a command.
         """
-        to_go = cost_to_go(self.lattice, self.ends, bend_cost)
-        if not 0 <= to_go[0, NO_DIRECTION, self.place] < COST_UNREACHABLE:
+        if not can_reach_end(self.lattice, self.ends, self.place):
             return None
+        to_go = cost_to_go(self.lattice, self.ends, bend_cost)
         count = 36 * len(self.first_costs) * len(self.lattice.solid)
         for weight, max_nodes in SEARCH_STAGES:
             cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)
