@@ -153,7 +153,7 @@ def _ran(scenario: Path, episode: Path, bounds: RunBounds, maker: RobotMaker) ->
 
 
 def _is_too_long(error: BaseException | None) -> bool:
-    """Return whether an error comes of the alarm: where compiled code returns as it rings, Python makes another of it."""
+    """Return whether an error comes of the alarm. Where it rings in compiled code, Python makes another one of it."""
     while error is not None and not isinstance(error, RunTooLongError):
         error = error.__cause__ or error.__context__
     return error is not None
