@@ -182,7 +182,7 @@ class MotionSolver:
 
     @cached_property
     def _disc_room(self) -> Any:
-        """Where the centre of the disc within the body can be at most: shapely geometry, squares, table frame."""
+        """The floor for the centre of the disc within the body, at most: shapely geometry, squares, table frame."""
         obstacles, radius = shapely.union_all(self.field.polygons), float(self.body.probes[0, 2])
         bounds = self._bounds_grown_by(self._offset + math.hypot(*self.body.probes[0, :2].tolist()))
         return disc_room(obstacles, radius, bounds, self._disc_centre_at(self.ends[0]))

@@ -41,7 +41,7 @@ MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, f
 
 
 class _BodyKey(NamedTuple):
-    """What the footprints of a body depend on, wherever it lies.
+    """All that the footprints of a body depend on, wherever it lies.
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ from geometry.motion.se2 import Motion
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
 FULL_MOTION = 1.0 - 1e-12  # fraction of a motion; rounding: free up to here counts as free to the end
-Result = TypeVar("Result")
+Remembered = TypeVar("Remembered")
 MAX_KEPT_WORKSPACES = 64  # of squares that were asked for last; a bound on memory, a megabyte or so each
 MAX_KEPT_RESULTS = 64  # of one workspace; a bound on memory, some kilobytes each
 
@@ -52,7 +52,7 @@ class Workspace:
         self.obstacles = Obstacles(self.walls)
         self._known: dict[Hashable, Any] = {}
 
-    def once(self, key: Hashable, work: Callable[[], Result]) -> Result:
+    def once(self, key: Hashable, work: Callable[[], Remembered]) -> Remembered:
         """Return what some work comes to; it is remembered, so that it is done once while it is asked for now and then.
 
         Parameters
@@ -60,7 +60,7 @@ class Workspace:
         key : what the work is, with all that its result depends on beside the squares and walls.
         work : returns the result, which nobody changes.
         """
-        found: Result = self._known.pop(key) if key in self._known else work()
+        found: Remembered = self._known.pop(key) if key in self._known else work()
         self._known[key] = found  # the last one: those that were not asked for longest come first
         if len(self._known) > MAX_KEPT_RESULTS:
             del self._known[next(iter(self._known))]

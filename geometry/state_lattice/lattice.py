@@ -205,7 +205,7 @@ def new_lattice_body(grid: Grid, body: Footprints, wide: Footprints) -> LatticeB
 
 
 class LatticeFloor(NamedTuple):
-    """Where a body can lie and be pushed among some squares, and where the robot can step: as in StateLattice.
+    """The poses and pushes of a body among some squares, and the steps of the robot: as in StateLattice.
 
     Attributes
     ----------
