@@ -115,7 +115,7 @@ def _judged(
     try:
         result = _ran(scenario, episode, bounds, maker)
     except Exception as error:  # a crash is the result of the run
-        result, broke = None, reason_of(error)
+        result, broke = None, "" if _is_too_long(error) else reason_of(error)
     took = round(time.process_time() - begun, 1)
     track = list(_track(episode))
     row = replace(known, took=took, commands=max(0, len(track) - 1), verdict=RUN_OUT_OF_TIME)
@@ -150,6 +150,13 @@ def _ran(scenario: Path, episode: Path, bounds: RunBounds, maker: RobotMaker) ->
     with EpisodeLog(episode) as log, suppress(RunTooLongError), _processor_limit(bounds.seconds):
         return Session(read_scenario(scenario), settings, maker, log).run()
     return None
+
+
+def _is_too_long(error: BaseException | None) -> bool:
+    """Return whether an error comes of the alarm. Where it rings in compiled code, Python makes another one of it."""
+    while error is not None and not isinstance(error, RunTooLongError):
+        error = error.__cause__ or error.__context__
+    return error is not None
 
 
 @contextmanager

@@ -32,8 +32,8 @@ def grow_obstacles(obstacles: Any, radius: float, outer: bool) -> Any:
     return shapely.buffer(obstacles, max(radius, 0.0) * times, quad_segs=SIDES_PER_QUARTER)
 
 
-def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: Any) -> bool:
-    """Return whether a disc surely cannot get from a place to a goal; False proves nothing.
+def disc_room(obstacles: Any, radius: float, bounds: Floats, start: XY) -> Any:
+    """Return where the centre of a disc can be at most when it comes from a place: shapely geometry; empty for unknown.
 
     Parameters
     ----------
@@ -41,11 +41,21 @@ def disc_cannot_pass(obstacles: Any, radius: float, bounds: Floats, start: XY, g
     radius : radius of the disc, squares.
     bounds : (4,) x0, y0, x1, y1 that its centre cannot leave.
     start : (x, y) of its centre.
-    goal : shapely geometry that its centre must reach, squares, table frame.
     """
     room = shapely.box(*bounds).difference(grow_obstacles(obstacles, radius - DISC_SHRINKAGE, outer=False))
-    own = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
-    return bool(own) and all(part.distance(goal) > DISC_SHRINKAGE for part in own)
+    parts = [part for part in shapely.get_parts(room) if part.distance(shapely.Point(start)) <= DISC_SHRINKAGE]
+    return shapely.MultiPolygon(parts)
+
+
+def is_cut_off(room: Any, goal: Any) -> bool:
+    """Return whether the centre of a disc surely cannot get to a goal; False proves nothing.
+
+    Parameters
+    ----------
+    room : where it can be at most, as `disc_room` says.
+    goal : shapely geometry that it must reach, squares, table frame.
+    """
+    return not room.is_empty and bool(room.distance(goal) > DISC_SHRINKAGE)
 
 
 def find_disc_path(obstacles: Any, radius: float, bounds: Floats, start: XY, goal: XY) -> list[XY] | None:

@@ -220,10 +220,10 @@ def plan_motion(
         if isinstance(pose, Pose) and not field.is_free_at(body, shape, points, pose):
             return MotionPlan("impossible", resolution=solver.min_cell, reason=name)
     status, motions = solver.solve()
-    if status == "limit" and cells > FIRST_CELLS:
+    if status == "limit" and cells > FIRST_CELLS and not solver.is_proved_by_disc:
         solver = MotionSolver(body, field, start, goal, RETRY_RESOLUTION * resolution, cells)
         status, motions = solver.solve()
-    if status == "limit" and solver.is_small:
+    if status == "limit" and (solver.is_proved_by_disc or solver.is_small):
         status, motions = solver.solve_by_discs()
     poses = [start] if status == "found" else []
     for motion in motions:

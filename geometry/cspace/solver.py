@@ -12,7 +12,7 @@ import shapely
 
 from geometry.cspace.cell_tree import CellTree, new_cell_tree
 from geometry.cspace.channel import NODE_SETTLED, ChannelSearch, new_channel_search
-from geometry.cspace.disc_bounds import disc_cannot_pass, find_disc_path
+from geometry.cspace.disc_bounds import disc_room, find_disc_path, is_cut_off
 from geometry.cspace.local_planner import BLOCKED, HopContext, hop, new_hop_context
 from geometry.cspace.refine import new_hop_sequence
 from geometry.cspace.rounds import SEARCH_FOUND, SEARCH_UNFINISHED, next_channel, run_rounds
@@ -95,6 +95,7 @@ class MotionSolver:
         self.min_cell = resolution * field.side
         self.rounds = 0
         self.track = np.empty((0, 3))
+        self._decided_by_disc = False
         if not 0.0 < self.min_cell < math.inf or cells < 1:
             raise ValueError("the resolution must be positive and finite, and there must be a cell at least")
         self.end, self.region, self.goals = self._goal(goal)
@@ -169,6 +170,32 @@ class MotionSolver:
         """
         return 2.0 * self.body.radius < SMALL_BODY_CELLS * self.min_cell
 
+    @cached_property
+    def is_proved_by_disc(self) -> bool:
+        """Whether the disc within the body surely cannot pass, and so the body cannot; False proves nothing.
+
+        A goal in which the body lies tightly leaves the cells undecided, however solid the wall before it is.
+        Computed at first use.
+        """
+        goal = shapely.Point(self._disc_centre_at(self.ends[1])) if len(self.end) else self.goal_region
+        return is_cut_off(self._disc_room, goal)
+
+    @cached_property
+    def _disc_room(self) -> Any:
+        """The floor for the centre of the disc within the body, at most: shapely geometry, squares, table frame."""
+        obstacles, radius = shapely.union_all(self.field.polygons), float(self.body.probes[0, 2])
+        bounds = self._bounds_grown_by(self._offset + math.hypot(*self.body.probes[0, :2].tolist()))
+        return disc_room(obstacles, radius, bounds, self._disc_centre_at(self.ends[0]))
+
+    @property
+    def _offset(self) -> float:
+        """The distance of the body's reference point from its centre, in squares."""
+        return float(np.hypot(*self.body.reference))
+
+    def _bounds_grown_by(self, squares: float) -> Floats:
+        """Return the bounds of the field with so many squares more on each side: (4,) x0, y0, x1, y1."""
+        return self.field.bounds + squares * np.array([-1.0, -1.0, 1.0, 1.0])
+
     def solve_by_discs(self) -> tuple[str, tuple[Motion, ...]]:
         """Decide, by the discs within and about the body, what the cells left undecided; return status and motions.
 
@@ -179,15 +206,11 @@ class MotionSolver:
         ------
         ValueError : the discs decide nothing either, and the body is smaller than a cell.
         """
-        offset, disc_offset = float(np.hypot(*self.body.reference)), math.hypot(*self.body.probes[0, :2].tolist())
-        outward = np.array([-1.0, -1.0, 1.0, 1.0])
-        goal = shapely.Point(self._disc_centre_at(self.ends[1])) if len(self.end) else self.goal_region
-        obstacles = shapely.union_all(self.field.polygons)
-        inscribed = float(self.body.probes[0, 2])
-        bounds = self.field.bounds + (offset + disc_offset) * outward
-        if disc_cannot_pass(obstacles, inscribed, bounds, self._disc_centre_at(self.ends[0]), goal):
+        if self.is_proved_by_disc:
+            self._decided_by_disc = True
             return "impossible", ()
-        poses = self._path_by_disc(obstacles, self.field.bounds - offset * outward) if len(self.end) else None
+        obstacles = shapely.union_all(self.field.polygons)
+        poses = self._path_by_disc(obstacles, self._bounds_grown_by(-self._offset)) if len(self.end) else None
         if poses is not None:
             self.track = poses
             return "found", motions_along(self._hop_context(), poses)
@@ -240,11 +263,16 @@ class MotionSolver:
         """Return where the centre of the body's largest inscribed disc got to: (n, 2) x, y in squares, the start first.
 
         Table frame. These are the middles of settled cells, in order of their numbers. A cell whose middle is not free
-        may be anywhere beside a wall and is left out.
+        may be anywhere beside a wall and is left out; so is one that the disc cannot get to, where that is the proof.
         """
         known = self.search.seen[0]
         leaf, free = self.tree.child[:known] < 0, self.tree.kind[:known] <= CELL_CENTRE_FREE
         settled = np.nonzero((self.search.state[:known] >= NODE_SETTLED) & leaf & free)[0]
         x, y, angle = np.vstack([self.start, self.tree.middle[settled]]).T
         c, s, (px, py) = np.cos(angle), np.sin(angle), self.search.disc_centre
-        return np.column_stack([x + c * px - s * py, y + s * px + c * py])
+        places = np.column_stack([x + c * px - s * py, y + s * px + c * py])
+        if not self._decided_by_disc:
+            return places
+        own = shapely.intersects_xy(self._disc_room.buffer(self.min_cell), *places.T)
+        own[0] = True
+        return np.ascontiguousarray(places[own])

@@ -7,7 +7,9 @@ for certain.
 import math
 from collections.abc import Iterator
 from itertools import product
+from typing import Any
 
+import numpy as np
 import shapely
 
 from geometry.cspace.fewest_motions import longest_edge_tilt
@@ -35,6 +37,8 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
     query : the body, the robot, the goal, and what is in the way.
     max_alignments : the number of first legs for which the rest is planned.
     """
+    if _is_aligned(query.shape):
+        return None
     best: list[Leg] | None = None
     for _, first in zip(range(max_alignments), _aligning_legs(query), strict=False):
         rest = plan_on_lattice(query_after(query, [first]))
@@ -42,6 +46,13 @@ def plan_aligned(query: ManipulationQuery, max_alignments: int = MAX_ALIGNMENTS)
             legs = join_legs([first], rest)
             best = min([legs, best] if best else [legs], key=commands)
     return best
+
+
+def _is_aligned(shape: Any) -> bool:
+    """Return whether the longest side of a shape lies along an axis, and its first corner on whole squares."""
+    tilt, corner = longest_edge_tilt(shape), shapely.get_coordinates(shape)[0]
+    off = float(np.abs(np.round(corner) - corner).max())
+    return max(off, min(abs(tilt), abs(90.0 - tilt))) <= MIN_ALIGNMENT
 
 
 def _aligning_legs(query: ManipulationQuery) -> Iterator[Leg]:

@@ -1,12 +1,13 @@
 """The motion of the body alone, as if it moved by itself: what it cannot do, the robot cannot do with it."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import shapely
 
 from geometry.cspace.plan_motion import MotionPlan, plan_motion
-from geometry.manipulation.goals import At, Between, InCorner, Inside
+from geometry.manipulation.goals import At, Between, InCorner, Inside, goal_key
 from geometry.manipulation.query import ManipulationQuery
 from geometry.motion.se2 import Pose
 
@@ -16,11 +17,18 @@ MAX_FREE_BODY_CELLS = 60_000  # cells of configuration space examined at most; a
 def plan_body_alone(query: ManipulationQuery) -> MotionPlan:
     """Return the motion plan of the body without the robot; "impossible" for it is a proof for the robot, too.
 
+    It is remembered with the workspace: wherever the robot stands, and whatever it holds, the answer is the same.
+
     `query` : the body, the goal and the floor; the robot is not looked at. The plan holds the motions (Translate,
         Rotate) in order, squares and degrees, table frame, and when impossible the passage that is too narrow. Its
         poses are those of the body's centroid, table frame; 0 degrees as the body lies now. Its status is "found",
         "impossible", or "limit" (undecided, or the goal is of another kind than At, InCorner, Between and Inside).
     """
+    return query.workspace.once(("alone", query.shape.wkb, goal_key(query.goal)), partial(_plan_alone, query))
+
+
+def _plan_alone(query: ManipulationQuery) -> MotionPlan:
+    """Return the motion plan of the body without the robot. `query` : as for `plan_body_alone`."""
     middle = query.shape.centroid
     centred = shapely.transform(query.shape, lambda p: p - np.array([middle.x, middle.y]))
     goal = query.goal

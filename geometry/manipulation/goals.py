@@ -1,6 +1,7 @@
 """Goals of carrying: at a pose, inside a region, in a corner, between walls; and the cost of each end pose."""
 
 import math
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -9,6 +10,7 @@ import numpy.typing as npt
 import shapely
 
 from geometry.cspace.solver import Inside
+from geometry.kernels.arrays import Bools
 from geometry.motion.se2 import Pose, turned
 from geometry.raster.rasterize import covered_areas
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
@@ -146,6 +148,11 @@ class Roomy:
 End = At | Inside | InCorner | Between | Roomy
 
 
+def goal_key(goal: End) -> Hashable:
+    """Return what a goal is, to know it again: the goal itself, and for a region its outline in bytes."""
+    return goal.polygon.wkb if isinstance(goal, Inside) else goal
+
+
 def is_goal_met(goal: End, shape: Any, now: Any) -> bool:
     """Return whether a shape meets the goal as it lies now, to GOAL_TOLERANCE squares.
 
@@ -213,7 +220,11 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
     if isinstance(goal, At):
         return _costs_at_pose(goal.pose, shape, footprints, grid)
     if isinstance(goal, Inside):
-        found = [_costs_inside(goal, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
+        parts = [
+            grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
+            for part in shapely.get_parts(goal.polygon)
+        ]
+        found = [_costs_inside(parts, quarter(footprints.lying, k), lattice, grid) for k in range(4)]
     elif isinstance(goal, Between):
         found = [_costs_between(goal, shape, footprints, k, grid) for k in range(4)]
     elif isinstance(goal, Roomy):
@@ -223,19 +234,25 @@ def end_costs(goal: End, shape: Any, footprints: Footprints, lattice: StateLatti
     return np.where(lattice.lies, np.array(found), -1).astype(np.int32)
 
 
-def _costs_inside(goal: Inside, offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
+def _costs_inside(parts: Sequence[Bools], offsets: npt.NDArray[np.int64], lattice: StateLattice, grid: Grid) -> Costs:
     """Return the costs of one quarter turn: higher where the body has less than a free square about it.
 
-    `goal` : the region. `lattice` : the state lattice, of which the solid squares are read. (squares,) int32 by number
-        in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares outside the region
-        count as blocked unless they are free. `offsets` : (n, 2) columns and rows from the square of the centroid to
-        those that the body covers.
+    (squares,) int32 by number in `grid`; 0 with room, TIGHT_END_COST without, -1 where the body is not inside. Squares
+    outside the region count as blocked unless they are free.
+
+    Parameters
+    ----------
+    parts : for each part of the region, (squares,) bool, which squares do not lie within it.
+    offsets : (n, 2) columns and rows from the square of the centroid to those that the body covers.
+    lattice, grid : the state lattice, of which the solid squares are read, and its numbering.
     """
     cost = np.full(len(lattice.solid), -1, np.int32)
     grown = np.unique(np.vstack([offsets, *(offsets + np.array(step) for step in PUSH_DIRECTIONS)]), axis=0)
-    for part in shapely.get_parts(goal.polygon):
-        outside = grid.padded(covered_areas(part, grid.columns, grid.rows) < 1 - GOAL_TOLERANCE, True)
-        inside, easy = grid.clear(outside, offsets), grid.clear(outside & ~lattice.solid, grown)
+    for outside in parts:
+        inside, easy = (
+            grid.clear(outside, grid.offsets(offsets)),
+            grid.clear(outside & ~lattice.solid, grid.offsets(grown)),
+        )
         cost[inside & (cost != 0)] = TIGHT_END_COST
         cost[inside & easy] = 0
     return cost
@@ -251,7 +268,7 @@ def _costs_roomy(goal: Roomy, offsets: npt.NDArray[np.int64], lattice: StateLatt
     """
     reach = range(-2, 3)
     grown = np.unique(np.vstack([offsets + np.array((dx, dy)) for dx in reach for dy in reach]), axis=0)
-    roomy = grid.clear(lattice.solid, grown)
+    roomy = grid.clear(lattice.solid, grid.offsets(grown))
     if goal.near is None:
         return np.where(roomy, 0, -1).astype(np.int32)
     row, column = np.divmod(np.arange(len(roomy)), grid.stride)

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -18,12 +19,15 @@ from geometry.manipulation.workspace import padded_shape
 from geometry.motion.se2 import Rotate, Translate
 from geometry.state_lattice.astar import ADMISSIBLE_WEIGHT, costs_to_first_grasp, find_carrying_path
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, new_footprints
-from geometry.state_lattice.heuristic import COST_UNREACHABLE, NO_DIRECTION, cost_to_go
+from geometry.state_lattice.heuristic import can_reach_end, cost_to_go
 from geometry.state_lattice.lattice import (
     COMMAND_COST,
     CORNER_GRASP_COST,
     REGRASP_COST,
     Costs,
+    LatticeBody,
+    new_lattice_body,
+    new_lattice_floor,
     new_lattice_grid,
     new_state_lattice,
 )
@@ -32,41 +36,57 @@ PLACE_DIGITS = 8  # decimal digits of places; rounding of motions moves a body b
 # Weight of the heuristic and greatest number of nodes of each stage; bounds on time, no measurement on record.
 SEARCH_STAGES = ((ADMISSIBLE_WEIGHT, 60_000), (2 * ADMISSIBLE_WEIGHT, 400_000))
 BEND_COSTS = (COMMAND_COST, COMMAND_COST // 2)  # of a bend within a push: as much as a push, or half of it
+MAX_KEPT_BODIES = 32  # bodies whose footprints are remembered; a bound on memory
 MAX_NUDGES = 2  # pushes to the centre of a square that are tried; convention, for time
 
 
-def _footprints_of(query: ManipulationQuery) -> tuple[Footprints, Footprints]:
-    """Return the footprints of the shape, and of the shape with its margin (the same object without a margin).
+class _BodyKey(NamedTuple):
+    """All that the footprints of a body depend on, wherever it lies.
 
-    They hold (columns, rows) offsets from the square of the centroid: squares covered, squares from which to grasp,
-    squares met by a push in each direction and by a turn about each grasp; `home` is that square in the table. `query`
-    : the body, its margin, and the robot when it holds the body.
+    Attributes
+    ----------
+    wkb : well-known binary of its outline, a shapely Polygon, moved so that the square of the centroid is (0, 0).
+    margin : squares of clearance that it should keep.
+    own : (column, row) of the robot relative to that square when it holds the body, else None.
     """
-    shape = query.shape
-    home = (math.floor(shape.centroid.x), math.floor(shape.centroid.y))
-    shape_near = shapely.transform(shape, lambda p: np.round(p - np.array(home), PLACE_DIGITS))
+
+    wkb: bytes
+    margin: float
+    own: tuple[int, int] | None
+
+
+def _key_of(query: ManipulationQuery) -> tuple[_BodyKey, tuple[int, int]]:
+    """Return what the footprints of the body depend on, and the square (column, row) of its centroid in the table.
+
+    `query` : the body, its margin, and the robot when it holds the body.
+    """
+    home = math.floor(query.middle[0]), math.floor(query.middle[1])
+    shape_near = shapely.transform(query.shape, lambda p: np.round(p - np.array(home), PLACE_DIGITS))
     own = (query.square[0] - home[0], query.square[1] - home[1]) if query.held else None
-    body, with_margin = _footprints_near(shapely.to_wkb(shape_near), query.margin, own)
-    return replace(body, home=home), body if with_margin is body else replace(with_margin, home=home)
+    return _BodyKey(shapely.to_wkb(shape_near), query.margin, own), home
 
 
-@lru_cache(maxsize=32)
-def _footprints_near(wkb: bytes, margin: float, own: tuple[int, int] | None) -> tuple[Footprints, Footprints]:
+@lru_cache(maxsize=MAX_KEPT_BODIES)
+def _footprints_near(key: _BodyKey) -> tuple[Footprints, Footprints]:
     """Return the footprints of a shape whose centroid lies in the square (0, 0), without and with its margin.
 
-    They hold (columns, rows) offsets from that square: squares covered, squares from which to grasp, squares met by
-    pushes and turns. Both have the same grasps.
+    They hold (columns, rows) offsets from that square: squares covered, squares from which to grasp, squares met by a
+    push in each direction and by a turn about each grasp. Both have the same grasps; without a margin both are the same
+    object.
 
-    Parameters
-    ----------
-    wkb : well-known binary of a shapely Polygon, squares, table frame moved so that the square of the centroid is (0,
-        0).
-    margin : squares; with 0 both footprints are the same object.
-    own : (column, row) of the robot relative to that square when it holds the shape, else None.
+    `key` : the outline, the margin, and the robot when it holds the body.
     """
-    shape = shapely.from_wkb(wkb)
-    body = new_footprints(shape, own)
-    return body, new_footprints(padded_shape(shape, margin), holds=body.holds) if margin > 0.0 else body
+    shape = shapely.from_wkb(key.wkb)
+    body = new_footprints(shape, key.own)
+    wide = new_footprints(padded_shape(shape, key.margin), holds=body.holds) if key.margin > 0.0 else body
+    return body, wide
+
+
+@lru_cache(maxsize=MAX_KEPT_BODIES)
+def _body_on_table(key: _BodyKey, columns: int, rows: int) -> LatticeBody:
+    """Return a body on the grid of a table of `columns` and `rows` squares. `key` : as for `_footprints_near`."""
+    body, wide = _footprints_near(key)
+    return new_lattice_body(new_lattice_grid(columns, rows, body, wide), body, wide)
 
 
 def plan_on_lattice(query: ManipulationQuery) -> list[Leg] | None:
@@ -190,17 +210,20 @@ class _LatticeSearch:
 
     def __init__(self, query: ManipulationQuery, before_nudge: ManipulationQuery) -> None:
         self.query, self.before_nudge = query, before_nudge
-        self.body, with_margin = _footprints_of(query)
+        key, home = _key_of(query)
+        self.body = replace(_footprints_near(key)[0], home=home)
         rows, columns = query.walk.shape
-        x, y = self.body.home
+        x, y = home
         self.on_grid = 0 <= x < columns and 0 <= y < rows
         if not self.on_grid:
             return
-        self.grid, free = new_lattice_grid(query.walk, self.body, with_margin), query.workspace.free
-        grips, allowed = _grasp_costs(query, self.body), _allowed_pushes(query, self.body)
-        self.lattice = new_state_lattice(
-            self.grid, free, query.walk, self.body, with_margin, grips, allowed, round(COMMAND_COST * query.turn)
+        body = _body_on_table(key, columns, rows)
+        self.grid = body.grid
+        floor = query.workspace.once(
+            ("floor", key.wkb, key.margin, body.grid), partial(new_lattice_floor, query.workspace.free, body)
         )
+        grips, allowed = _grasp_costs(query, self.body), _allowed_pushes(query, self.body)
+        self.lattice = new_state_lattice(floor, body, query.walk, grips, allowed, round(COMMAND_COST * query.turn))
         self.place = self.grid.number(x, y)
         self.ends = end_costs(query.goal, query.shape, self.body, self.lattice, self.grid)
         walk = costs_to_first_grasp(self.lattice, self.place, self.grid.number(*query.square))
@@ -215,9 +238,9 @@ class _LatticeSearch:
 
         `bend_cost` : in the costs of the lattice, COMMAND_COST for a command.
         """
-        to_go = cost_to_go(self.lattice, self.ends, bend_cost)
-        if not 0 <= to_go[0, NO_DIRECTION, self.place] < COST_UNREACHABLE:
+        if not can_reach_end(self.lattice, self.ends, self.place):
             return None
+        to_go = cost_to_go(self.lattice, self.ends, bend_cost)
         count = 36 * len(self.first_costs) * len(self.lattice.solid)
         for weight, max_nodes in SEARCH_STAGES:
             cost, parent = np.zeros(count, np.int32), np.empty(count, np.int32)

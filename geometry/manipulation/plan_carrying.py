@@ -12,7 +12,7 @@ it cannot pass), and then any place and angle.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ from geometry.manipulation.legs import Leg, commands, shifted, verified
 from geometry.manipulation.press import press_into_corner
 from geometry.manipulation.query import ManipulationQuery
 from geometry.manipulation.single_grasp import plan_by_freeing, plan_with_one_grasp
-from geometry.manipulation.workspace import Workspace
+from geometry.manipulation.workspace import workspace_of
 from geometry.motion.first_contact import boundary_edges
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.motion.validation import require_bounded, valid_polygons
@@ -179,7 +179,7 @@ def plan_carrying(
         return CarryingPlan("impossible", reason="start", held=held)
     margin = min(margin, float(max(free.shape)))
     walk = free if walk is None else np.ascontiguousarray(walk, dtype=bool)
-    query = ManipulationQuery(shape, Workspace(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
+    query = ManipulationQuery(shape, workspace_of(free, walls), utak, goal, margin, pull, tuple(avoid), walk, turn=turn)
     query = replace(query, held=held and not query.is_avoided(*query.grasp_offset(utak)))
     if is_goal_met(goal, shape, shape):
         return CarryingPlan("found", pose=Pose(0.0, 0.0), polygon=shape, held=held)
@@ -214,7 +214,7 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
     `query` : the body, the robot, the goal, and what is in the way. `off_lattice` : the planners asked after those by
     whole squares; None for none.
     """
-    plan = _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
+    plan = query.workspace.once(("on lattice", *query.key), partial(_pressed_plan_on_lattice, query))
     if plan is None and isinstance(query.goal, InCorner) and query.goal.press:
         query = replace(query, goal=replace(query.goal, press=0.0))
         plan = _plan_of(query, plan_on_lattice(query))
@@ -225,13 +225,18 @@ def first_plan(query: ManipulationQuery, off_lattice: OffLatticePlanners | None 
     body = plan_body_alone(query)
     if body.status == "impossible":
         return CarryingPlan("impossible", reason=body.reason or "body", body=body)
-    if body.status == "found":
+    if body.status == "found":  # else the body and the robot as one thing, which is larger, would not be found to pass
         plan = _plan_of(query, off_lattice.with_one_grasp(query, body.track))
-        plan = plan or _plan_of(query, off_lattice.by_freeing(query))
-    else:  # it lies too tightly for an answer: first bring it out
-        plan = _plan_of(query, off_lattice.by_freeing(query))
-        plan = plan or _plan_of(query, off_lattice.with_one_grasp(query, body.track))
+    plan = plan or _plan_of(query, off_lattice.by_freeing(query))
     return plan or CarryingPlan("limit", reason="hold" if body.status == "found" else "body", body=body)
+
+
+def _pressed_plan_on_lattice(query: ManipulationQuery) -> CarryingPlan | None:
+    """Return the plan by whole squares and quarter turns, pressed into a corner where that is wished; None for none.
+
+    It is asked for again where no plan on the lattice is found: then all ways are looked for.
+    """
+    return _plan_of(query, press_into_corner(query, plan_on_lattice(query)))
 
 
 def _check(free: Bools, utak: XY, margin: float, avoid: Sequence[XY], walk: Bools | None, turn: float) -> None:

@@ -1,14 +1,15 @@
 """A manipulation query: which body the robot shall bring where, and among what."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import At, End, shape_at_pose
+from geometry.manipulation.goals import At, End, goal_key, shape_at_pose
 from geometry.manipulation.legs import Leg
 from geometry.manipulation.workspace import Workspace
 from geometry.motion.se2 import Pose, Rotate, Translate, turned
@@ -55,12 +56,23 @@ class ManipulationQuery:
         column, row = math.floor(self.utak[0]), math.floor(self.utak[1])
         return min(max(column, 0), columns - 1), min(max(row, 0), rows - 1)
 
+    @cached_property
+    def middle(self) -> XY:
+        """Return the centroid (x, y) of the shape as it lies now, in squares, table frame. Computed on first access."""
+        return self.shape.centroid.x, self.shape.centroid.y
+
+    @property
+    def key(self) -> tuple[Hashable, ...]:
+        """Return all that the query is about beside its workspace, to know it again."""
+        rest = self.utak, self.margin, self.pull, self.avoid, self.walk.tobytes(), self.held, self.turn
+        return self.shape.wkb, goal_key(self.goal), *rest
+
     def grasp_offset(self, place: XY) -> XY:
         """Return a place (x, y), table frame, relative to the centroid of the shape as it lies now, in squares.
 
         It is an offset as in `Leg.hold`.
         """
-        return place[0] - self.shape.centroid.x, place[1] - self.shape.centroid.y
+        return place[0] - self.middle[0], place[1] - self.middle[1]
 
     def is_avoided(self, x: float, y: float) -> bool:
         """Return whether a grasp must be avoided: one at most GRASP_AVOID_DISTANCE squares from one of `avoid`.

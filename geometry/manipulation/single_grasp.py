@@ -98,7 +98,8 @@ def plan_by_freeing(query: ManipulationQuery) -> list[Leg] | None:
     if not first or not first[-1].motions or verified(query.workspace, query.shape, first) is None:
         return None
     freed = query_after(query, first, held=True)
-    rest = plan_with_one_grasp(freed, plan_body_alone(freed).track)
+    alone = plan_body_alone(freed)
+    rest = plan_with_one_grasp(freed, alone.track) if alone.status == "found" else None
     return None if rest is None else join_legs(first, rest)
 
 

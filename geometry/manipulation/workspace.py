@@ -1,7 +1,8 @@
 """Workspace: free squares and the walls around them as polygons, ready for exact first contact."""
 
-from functools import cached_property
-from typing import Any
+from collections.abc import Callable, Hashable
+from functools import cached_property, lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 import shapely
@@ -14,6 +15,9 @@ from geometry.motion.se2 import Motion
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
 FULL_MOTION = 1.0 - 1e-12  # fraction of a motion; rounding: free up to here counts as free to the end
+Remembered = TypeVar("Remembered")
+MAX_KEPT_WORKSPACES = 64  # of squares that were asked for last; a bound on memory, a megabyte or so each
+MAX_KEPT_RESULTS = 64  # of one workspace; a bound on memory, some kilobytes each
 
 
 class Workspace:
@@ -46,6 +50,21 @@ class Workspace:
         self.floor_polygon = whole if walls is None else shapely.box(0, 0, columns, rows).difference(walls)
         self.walls = list(shapely.get_parts(self.outer.difference(self.floor_polygon)))
         self.obstacles = Obstacles(self.walls)
+        self._known: dict[Hashable, Any] = {}
+
+    def once(self, key: Hashable, work: Callable[[], Remembered]) -> Remembered:
+        """Return what some work comes to; it is remembered, so that it is done once while it is asked for now and then.
+
+        Parameters
+        ----------
+        key : what the work is, with all that its result depends on beside the squares and walls.
+        work : returns the result, which nobody changes.
+        """
+        found: Remembered = self._known.pop(key) if key in self._known else work()
+        self._known[key] = found  # the last one: those that were not asked for longest come first
+        if len(self._known) > MAX_KEPT_RESULTS:
+            del self._known[next(iter(self._known))]
+        return found
 
     @cached_property
     def floor(self) -> ObstacleField:
@@ -82,6 +101,26 @@ class Workspace:
         """
         free: Bools = self.obstacles.pushes(body, vectors) >= FULL_MOTION
         return free
+
+
+def workspace_of(free: Bools, walls: Any = None) -> Workspace:
+    """Return the workspace of some free squares, the same one as before where it was asked for not long ago.
+
+    Squares are asked about again and again while a robot walks, for several goals.
+
+    Parameters
+    ----------
+    free, walls : as for `Workspace`; those with walls of their own are made anew.
+    """
+    if walls is not None:
+        return Workspace(free, walls)
+    return _workspace_of_squares(free.tobytes(), free.shape[0], free.shape[1])
+
+
+@lru_cache(maxsize=MAX_KEPT_WORKSPACES)
+def _workspace_of_squares(free: bytes, rows: int, columns: int) -> Workspace:
+    """Return the workspace of free squares, given as the bytes of a bool array, row by row."""
+    return Workspace(np.frombuffer(free, np.bool_).reshape(rows, columns).copy())
 
 
 def widened_body(shape: Any, utak: tuple[float, float], margin: float) -> ContactBody:
@@ -124,8 +163,7 @@ def _free_rectangles(free: Bools) -> Any:
     """
     rectangles = []
     growing: dict[tuple[int, int], int] = {}
-    for row in range(len(free) + 1):
-        runs = _row_runs(free[row]) if row < len(free) else set()
+    for row, runs in enumerate(_runs_by_row(np.pad(free, ((0, 1), (0, 0))))):
         for (x0, x1), since in sorted(growing.items()):
             if (x0, x1) not in runs:
                 rectangles.append(shapely.box(x0, since, x1, row))
@@ -133,7 +171,13 @@ def _free_rectangles(free: Bools) -> Any:
     return rectangles
 
 
-def _row_runs(line: Bools) -> set[tuple[int, int]]:
-    """Return the runs of True in a row `line`, (columns,) bool, as a set of (first column, column after the last)."""
-    change = np.flatnonzero(np.diff(np.concatenate([[False], line, [False]]).astype(np.int8)))
-    return {(int(a), int(b)) for a, b in change.reshape(-1, 2)}
+def _runs_by_row(free: Bools) -> list[set[tuple[int, int]]]:
+    """Return for each row the runs of True in it: sets of (first column, column after the last).
+
+    `free` : (rows, columns) bool.
+    """
+    found: list[set[tuple[int, int]]] = [set() for _ in free]
+    rows, columns = np.nonzero(np.diff(np.pad(free, ((0, 0), (1, 1))).astype(np.int8), axis=1))
+    for row, (first, after) in zip(rows[::2].tolist(), columns.reshape(-1, 2).tolist(), strict=True):
+        found[row].add((first, after))
+    return found

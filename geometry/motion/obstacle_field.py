@@ -18,7 +18,7 @@ from geometry.kernels.arrays import Floats, Longs
 from geometry.kernels.bucket_queue import Queue, new_queue, put, take
 from geometry.kernels.jit import bare, compiled
 from geometry.motion.body import centre_pose
-from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at, is_inside, squared_distance_to_edge
+from geometry.motion.cell_clearance import MovingBody, NearbyEdges, clearance_at, squared_distance_to_edge
 from geometry.motion.first_contact import Obstacles
 from geometry.motion.se2 import Pose
 from geometry.motion.validation import MAX_COORDINATE, valid_polygons
@@ -194,9 +194,11 @@ class ObstacleField:
         return goals
 
 
-@bare
+@compiled
 def _fill_signed_distances(edges: Floats, frame: Floats, raster: Floats) -> None:
     """Fill `raster` with the signed distance, in squares, from every pixel's centre to the obstacles, negative inside.
+
+    Method: for a block of pixels only those edges are looked at that may be the nearest of one of them.
 
     Parameters
     ----------
@@ -204,14 +206,58 @@ def _fill_signed_distances(edges: Floats, frame: Floats, raster: Floats) -> None
     frame : (3,) x, y of the raster's lower left corner, side of a pixel.
     raster : (rows, columns) float64, row 0 in the south; output.
     """
+    rows, columns = raster.shape
+    near, away = np.empty(len(edges), np.int64), np.empty(len(edges))
+    reach = 0.7072 * frame[2] * BLOCK_PIXELS  # no pixel's centre is further from the middle of its block
+    for first_row in range(0, rows, BLOCK_PIXELS):
+        for first_column in range(0, columns, BLOCK_PIXELS):
+            x = frame[0] + (first_column + 0.5 * BLOCK_PIXELS) * frame[2]
+            y = frame[1] + (first_row + 0.5 * BLOCK_PIXELS) * frame[2]
+            least = 1e12
+            for j in range(len(edges)):
+                away[j] = math.sqrt(squared_distance_to_edge(x, y, edges, j))
+                least = min(least, away[j])
+            count = 0
+            for j in range(len(edges)):
+                if away[j] <= least + 2.0 * reach:
+                    near[count] = j
+                    count += 1
+            for row in range(first_row, min(first_row + BLOCK_PIXELS, rows)):
+                y = frame[1] + (row + 0.5) * frame[2]
+                for column in range(first_column, min(first_column + BLOCK_PIXELS, columns)):
+                    x = frame[0] + (column + 0.5) * frame[2]
+                    best = 1e12
+                    for n in range(count):
+                        best = min(best, squared_distance_to_edge(x, y, edges, near[n]))
+                    raster[row, column] = math.sqrt(best)
+    _negate_inside(edges, frame, raster)
+
+
+@compiled
+def _negate_inside(edges: Floats, frame: Floats, raster: Floats) -> None:
+    """Make the distances of pixels inside obstacles negative, by the even-odd rule as in `is_inside`.
+
+    Parameters
+    ----------
+    edges, frame, raster : as for `_fill_signed_distances`; all distances are positive before.
+    """
+    crossing = np.empty(len(edges))
     for row in range(raster.shape[0]):
         y = frame[1] + (row + 0.5) * frame[2]
+        count = 0
+        for j in range(len(edges)):
+            y0, y1 = edges[j, 1], edges[j, 3]
+            if (y0 > y) != (y1 > y):
+                crossing[count] = edges[j, 0] + (y - y0) / (y1 - y0) * (edges[j, 2] - edges[j, 0])
+                count += 1
         for column in range(raster.shape[1]):
             x = frame[0] + (column + 0.5) * frame[2]
-            best = 1e12
-            for j in range(len(edges)):
-                best = min(best, squared_distance_to_edge(x, y, edges, j))
-            raster[row, column] = -math.sqrt(best) if is_inside(x, y, edges) else math.sqrt(best)
+            odd = False
+            for n in range(count):
+                if x < crossing[n]:
+                    odd = not odd
+            if odd:
+                raster[row, column] = -raster[row, column]
 
 
 @compiled

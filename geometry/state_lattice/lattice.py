@@ -14,6 +14,7 @@ from geometry.kernels.jit import compiled
 from geometry.state_lattice.footprints import PUSH_DIRECTIONS, Footprints, quarter
 
 Costs = npt.NDArray[np.int32]
+PushCosts = npt.NDArray[np.int8]  # of single squares, which are small
 # Costs are whole numbers. COMMAND_COST is a convention, the others are tuned on random worlds (benchmarks.campaign).
 COMMAND_COST = 500  # one command: a push or a turn
 PUSH_SIDE_COST, PUSH_DIAGONAL_COST = 5, 7  # a push by one square; 7 / 5 approximates sqrt(2)
@@ -66,7 +67,7 @@ class StateLattice(NamedTuple):
     walkable: Bools
     holds: Longs
     grasp_cost: Costs
-    push_cost: Costs
+    push_cost: PushCosts
     robot_can_step: Bools
     lies: Bools
     covered: OffsetLists
@@ -132,34 +133,112 @@ class Grid(NamedTuple):
         return (row + self.pad) * self.stride + column + self.pad
 
     def clear(self, solid: Bools, offsets: Longs) -> Bools:
-        """Return at which squares of the table none of the offsets (n, 2) is solid: (squares,), False off the table.
+        """Return at which squares of the table none of the offsets (n,) is solid: (squares,) bool, False off the table.
 
         Parameters
         ----------
         solid : (squares,) bool by number of square.
-        offsets : (n, 2) columns and rows from the square that is asked for.
+        offsets : (n,) differences of square numbers, from the square that is asked for.
         """
-        return _mark_clear(solid, self.table_squares(), self.offsets(offsets))
+        found, clear, size = self.padded(np.ones((self.rows, self.columns), np.bool_), False), ~solid, len(solid)
+        for offset in offsets.tolist():  # what lies off the ends of the array is further off the table
+            here, there = slice(max(0, -offset), size - max(0, offset)), slice(max(0, offset), size + min(0, offset))
+            found[here] &= clear[there]
+        return found
 
 
-def new_lattice_grid(free: Bools, body: Footprints, wide: Footprints) -> Grid:
-    """Return a grid for a table of free squares (rows, columns), padded enough for every step and turn of a body.
+def new_lattice_grid(columns: int, rows: int, body: Footprints, wide: Footprints) -> Grid:
+    """Return a grid for a table, padded enough for every step and turn of a body.
 
     A Grid holds the columns and rows of the table and the width of the padding, in squares; a square's number is (row +
-    pad) * (columns + 2 pad) + column + pad, row 0 in the south. `free` : only its shape is read.
+    pad) * (columns + 2 pad) + column + pad, row 0 in the south.
 
-    `body`, `wide` : footprints of the body without and with its margin.
+    Parameters
+    ----------
+    columns, rows : size of the table in squares.
+    body, wide : footprints of the body without and with its margin.
     """
     reach = max(int(np.abs(part).max()) for part in (*body.turns, *wide.turns, *wide.steps))
-    return Grid(free.shape[1], free.shape[0], max(reach, 2 * int(np.abs(body.holds).max())) + 2)
+    return Grid(columns, rows, max(reach, 2 * int(np.abs(body.holds).max())) + 2)
+
+
+class LatticeBody(NamedTuple):
+    """A body on a grid, wherever it lies among whatever squares: its footprints as differences of square numbers.
+
+    Attributes
+    ----------
+    grid : the numbering of squares.
+    holds, covered, turns, wide : as in StateLattice.
+    lying : by quarter turn, the squares that the body covers, from its place: four (m,) arrays.
+    pushes, wide_pushes : the squares met by a push of one square, without and with the margin, list number quarter turn
+        * 8 + direction.
+    has_margin : whether there is a margin.
+    """
+
+    grid: Grid
+    holds: Longs
+    covered: OffsetLists
+    turns: OffsetLists
+    wide: OffsetLists
+    lying: tuple[Longs, ...]
+    pushes: OffsetLists
+    wide_pushes: OffsetLists
+    has_margin: bool
+
+
+def new_lattice_body(grid: Grid, body: Footprints, wide: Footprints) -> LatticeBody:
+    """Return a body on a grid: its footprints by quarter turn, hold and direction, as differences of square numbers.
+
+    Parameters
+    ----------
+    grid : the numbering of squares.
+    body : footprints of the body.
+    wide : those of the body with its margin, or the same object without a margin.
+    """
+    lying = tuple(grid.offsets(quarter(body.lying, k)) for k in range(4))
+    holds = np.array([grid.offsets(quarter(body.holds, k)) for k in range(4)])
+    turns, pushes = _turn_footprints(grid, body), _push_footprints(grid, body)
+    if wide is body:
+        return LatticeBody(grid, holds, _joined([*lying]), turns, turns, lying, pushes, pushes, False)
+    wide_turns, wide_pushes = _turn_footprints(grid, wide), _push_footprints(grid, wide)
+    return LatticeBody(grid, holds, _joined([*lying]), turns, wide_turns, lying, pushes, wide_pushes, True)
+
+
+class LatticeFloor(NamedTuple):
+    """The poses and pushes of a body among some squares, and the steps of the robot: as in StateLattice.
+
+    Attributes
+    ----------
+    solid, lies, push_cost, robot_can_step : as in StateLattice.
+    """
+
+    solid: Bools
+    lies: Bools
+    push_cost: PushCosts
+    robot_can_step: Bools
+
+
+def new_lattice_floor(free: Bools, body: LatticeBody) -> LatticeFloor:
+    """Return where a body can lie and be pushed among some squares, and where the robot can step.
+
+    Parameters
+    ----------
+    free : (rows, columns) bool, row 0 in the south: squares that do not stop the body.
+    body : the body on the grid of these squares.
+    """
+    grid = body.grid
+    solid, table_squares = grid.padded(~free, True), grid.table_squares()
+    lies = np.array([grid.clear(solid, lying) for lying in body.lying])
+    steps = grid.offsets(np.array(PUSH_DIRECTIONS))
+    push_cost = _push_costs(solid, table_squares, lies, steps, body.pushes, body.wide_pushes, body.has_margin)
+    can_step = [grid.clear(solid, grid.offsets(_squares_of_robot_step(*way))) for way in PUSH_DIRECTIONS]
+    return LatticeFloor(solid, lies, push_cost, np.array(can_step))
 
 
 def new_state_lattice(
-    grid: Grid,
-    free: Bools,
+    floor: LatticeFloor,
+    body: LatticeBody,
     walkable: Bools,
-    body: Footprints,
-    wide: Footprints,
     grasp_cost: Costs,
     push_allowed: Bools,
     turn_price: int,
@@ -171,37 +250,25 @@ def new_state_lattice(
 
     Parameters
     ----------
-    grid : the numbering of squares.
-    free : (rows, columns) bool, row 0 in the south: squares that do not stop the body.
-    walkable : (rows, columns) bool: where the robot may walk.
-    body : footprints of the body.
-    wide : those of the body with its margin, or the same object without a margin.
+    floor : where the body can lie and be pushed.
+    body : the body on its grid.
+    walkable : (rows, columns) bool, row 0 in the south: where the robot may walk.
     grasp_cost : (holds,) cost of a grasp at each of body.holds; -1 where the hold is not to be used.
     push_allowed : (4, holds, 8) bool by quarter turn, hold and direction: whether the robot may push.
     turn_price : cost of a turn where there is room for it; COMMAND_COST stands for a command.
     """
-    solid = grid.padded(~free, True)
-    table_squares, quarters = grid.table_squares(), [quarter(body.lying, k) for k in range(4)]
-    push_cost = _push_costs(
-        solid, table_squares, _push_footprints(grid, body), _push_footprints(grid, wide), wide is not body
-    )
-    covered, turns = _joined([grid.offsets(lying) for lying in quarters]), _turn_footprints(grid, body)
+    grid = body.grid
     return StateLattice(
-        solid,
+        floor.solid,
         grid.padded(walkable, False),
-        np.array([grid.offsets(quarter(body.holds, k)) for k in range(4)]),
+        body.holds,
         grasp_cost,
-        push_cost,
-        np.array(
-            [
-                _mark_clear(solid, table_squares, grid.offsets(_squares_of_robot_step(dx, dy)))
-                for dx, dy in PUSH_DIRECTIONS
-            ]
-        ),
-        np.array([_mark_clear(solid, table_squares, grid.offsets(lying)) for lying in quarters]),
-        covered,
-        turns,
-        turns if wide is body else _turn_footprints(grid, wide),
+        floor.push_cost,
+        floor.robot_can_step,
+        floor.lies,
+        body.covered,
+        body.turns,
+        body.wide,
         push_allowed,
         grid.offsets(np.array(PUSH_DIRECTIONS)),
         turn_price,
@@ -242,41 +309,37 @@ def _joined(lists: list[Longs]) -> OffsetLists:
 
 
 @compiled
-def _mark_clear(solid: Bools, table_squares: Longs, offsets: Longs) -> Bools:
-    """Return at which of the places none of the offsets is solid: (squares,) bool, False elsewhere.
+def _push_costs(
+    solid: Bools,
+    table_squares: Longs,
+    lies: Bools,
+    steps: Longs,
+    body: OffsetLists,
+    wide: OffsetLists,
+    with_margin: bool,
+) -> PushCosts:
+    """Return StateLattice.push_cost: (4, 8, squares) int8, the cost of a push by one square; 0 where it is blocked.
 
-    Parameters
-    ----------
-    solid : (squares,) bool by number of square.
-    table_squares : numbers of the places that are looked at.
-    offsets : (n,) differences of square numbers.
-    """
-    clear = np.zeros(len(solid), np.bool_)
-    for place in table_squares:
-        clear[place] = True
-        for offset in offsets:
-            if solid[place + offset]:
-                clear[place] = False
-                break
-    return clear
-
-
-@compiled
-def _push_costs(solid: Bools, table_squares: Longs, body: OffsetLists, wide: OffsetLists, with_margin: bool) -> Costs:
-    """Return StateLattice.push_cost: (4, 8, squares) int32, the cost of a push by one square; 0 where it is blocked.
+    A push along an axis meets the squares of its two ends alone; a diagonal one meets more.
 
     Parameters
     ----------
     solid : (squares,) bool by number of square.
     table_squares : numbers of the squares of the table; off it pushes are blocked.
+    lies : (4, squares) bool, whether the body can lie at a place.
+    steps : (8,) the offset of each direction.
     body, wide : squares met by a push, without and with the margin, list number quarter turn * 8 + direction.
     with_margin : whether there is a margin; pushes for which it is too tight cost TIGHT_PUSH_COST more.
     """
-    push_cost = np.zeros((4, 8, len(solid)), np.int32)
+    push_cost = np.zeros((4, 8, len(solid)), np.int8)
     for k in range(4):
-        for d in range(8):
-            for place in table_squares:
-                if _is_clear(solid, body, k * 8 + d, place):
+        for place in table_squares:
+            if not lies[k, place]:
+                continue
+            for d in range(8):
+                if not lies[k, place + steps[d]]:
+                    continue
+                if d % 2 == 0 or _is_clear(solid, body, k * 8 + d, place):
                     tight = with_margin and not _is_clear(solid, wide, k * 8 + d, place)
                     push_cost[k, d, place] = (PUSH_SIDE_COST if d % 2 == 0 else PUSH_DIAGONAL_COST) + (
                         TIGHT_PUSH_COST if tight else 0

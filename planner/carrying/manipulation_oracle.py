@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, moved
+from geometry.manipulation.goals import End, goal_key, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
@@ -50,7 +50,7 @@ WALL_CLEARANCE = 0.15  # squares that such a plan keeps from walls; tuned on ran
 INEXACT_MARGIN = 0.3  # squares kept free about an object off the grid, and for each contact; tuned likewise
 MAX_MARGIN = 0.6  # squares: the most that is kept free, so that doors stay passable; tuned likewise
 TURN_ARM = 0.4  # squares that a point of an object moves for each degree that it is turned, about; a convention
-MAX_REMEMBERED = 64  # answers of geometry that are remembered; a bound on memory
+MAX_REMEMBERED = 512  # answers of geometry that are remembered; a bound on memory
 
 
 class OtherObjects(StrEnum):
@@ -278,11 +278,10 @@ class ManipulationOracle:
         shape, utak, free, walk = floor
         held, turn, contacts = request.held, request.turn_cost, request.contacts
         avoid = request.avoid if held else (*request.avoid, *sorted(_ambiguous_grasps(request.node, model)))
-        where = end.polygon.wkb if isinstance(end, Inside) else end
-        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), where, utak, avoid, contacts, held, turn)
+        key = (shape.wkb, free.tobytes(), free.shape, walk.tobytes(), goal_key(end), utak, avoid, contacts, held, turn)
         if key not in self._answers:
-            if len(self._answers) > MAX_REMEMBERED:
-                self._answers.clear()
+            if len(self._answers) >= MAX_REMEMBERED:
+                del self._answers[next(iter(self._answers))]  # the oldest
             margin = min(INEXACT_MARGIN * (contacts + (not is_grid_aligned(shape))), MAX_MARGIN)
 
             def ask(free: Bools, walls: Any = None) -> CarryingPlan:

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.manipulation.goals import End, Inside, moved
+from geometry.manipulation.goals import End, goal_key, moved
 from geometry.manipulation.plan_carrying import CarryingPlan, plan_carrying
 from geometry.motion.se2 import Pose, Rotate, Translate
 from geometry.raster.components import components
@@ -165,6 +165,17 @@ class CarryOracle:
         """Return whether an object cannot be brought to an end in a state wherever the robot stands; see `bring`."""
         return self._plan(state, name, end, FloorKind.POSSIBLE, shut, anywhere=True).status != "found"
 
+    def is_refuted(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> bool:
+        """Return whether an object cannot be brought to an end in a state, as `bring` would say; this asks for less.
+
+        Parameters
+        ----------
+        state, name, end, place, shut : as for `bring`.
+        """
+        if self._plan(state, name, end, FloorKind.POSSIBLE, shut).status == "found":
+            return False
+        return self.bring(state, name, end, place, shut).after is None
+
     def bring(
         self, state: TableState, name: str, end: End, place: str, shut: frozenset[str] = frozenset()
     ) -> OracleAnswer:
@@ -290,9 +301,8 @@ class CarryOracle:
         free = self._free(state, name, kind, shut)
         free |= squares(outline, free.shape[1], free.shape[0])
         goal, held = moved(lying.reach(end), margin, margin), state.held == name
-        where = goal.polygon.wkb if isinstance(goal, Inside) else goal
         walk = np.ones_like(free) if anywhere else self._free(state, name, kind, shut, alone=True)
-        key = (outline.wkb, free.tobytes(), walk.tobytes(), where, state.robot, held, inner)
+        key = (outline.wkb, free.tobytes(), walk.tobytes(), goal_key(goal), state.robot, held, inner)
         if key not in self._plans:
             self.asked += 1
             utak = state.robot[0] + margin, state.robot[1] + margin

@@ -43,6 +43,22 @@ class KeptWay(NamedTuple):
     end: tuple[int, int]
     floor: Bools
 
+    @property
+    def is_open(self) -> bool:
+        """Whether it is possible when nothing else lies there."""
+        return is_way_left(_fits(self.floor, self.offsets), self.start, self.end)
+
+
+def is_way_left(fits: Bools, start: tuple[int, int], end: tuple[int, int]) -> bool:
+    """Return whether an object can be pushed from one place to another one.
+
+    Parameters
+    ----------
+    fits : (rows, columns) bool, where its lowest row and column may be.
+    start, end : (row, column).
+    """
+    return bool(fits[start] and fits[end] and reach(fits, start[1], start[0])[end] != GEODESIC_UNREACHED)
+
 
 def kept_way_of(start: Any, end: Any, floor: Bools) -> KeptWay | None:
     """Return the way of an object from an outline to another one; None when it covers other squares there.
@@ -180,8 +196,7 @@ def _leaving_ways(candidates: Bools, far: Ints, offsets: Ints, kept: Sequence[Ke
             there = there[(there >= 0).all(1) & (there[:, 0] < rows) & (there[:, 1] < columns)]
             left = fits.copy()
             left[there[:, 0], there[:, 1]] = False
-            start, end = way.start, way.end
-            leaves = bool(left[start] and left[end] and reach(left, start[1], start[0])[end] != GEODESIC_UNREACHED)
+            leaves = is_way_left(left, way.start, way.end)
             if not leaves:
                 break
         found[row, column] = leaves

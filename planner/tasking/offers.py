@@ -89,9 +89,10 @@ class Offers:
     def keep_way(self, name: str, start: Any, end: Any) -> None:
         """Note that a thing must find a way from an outline to another one, shapely Polygons, frame of the floors.
 
-        Nothing is noted where it is turned on the way.
+        The surest floor counts on which it finds one. Nothing is noted where it is turned on the way.
         """
-        found = kept_way_of(start, end, self._floors.by_kind[FloorKind.SURE])
+        ways = (kept_way_of(start, end, self._floors.by_kind[kind]) for kind in FloorKind)
+        found = next((way for way in ways if way is not None and way.is_open), None)
         noted = self._kept.setdefault(name, [])
         if found is not None and not any(one.start == found.start and one.end == found.end for one in noted):
             noted.append(found)

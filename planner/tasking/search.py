@@ -234,10 +234,17 @@ class PlanSearch:
         end = self._problem.places[errand.subject, errand.place]
         return self._oracle.bring(state, errand.subject, end, errand.place, shut)
 
+    def _is_refuted(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:
+        """Return whether geometry refuses an errand in a state, with some doors shut."""
+        if errand.subject == ROBOT:
+            return self._ask(state, errand, shut).after is None
+        end = self._problem.places[errand.subject, errand.place]
+        return self._oracle.is_refuted(state, errand.subject, end, errand.place, shut)
+
     def _least_refutation(self, state: TableState, errand: Errand, origin: str) -> RefutedStep:
         """Return the refutation of an errand: each circumstance is left out while geometry still refuses."""
         shut = self._shut(errand)
-        if shut and self._ask(state, errand, frozenset()).after is None:
+        if shut and self._is_refuted(state, errand, frozenset()):
             shut = frozenset()
         known = self._known_circumstances(state, errand, shut)
         if known is not None:
@@ -252,7 +259,7 @@ class PlanSearch:
             self._offers.keep_clear(swept_squares(alone.plan, outline, self._offers.shape))
             self._offers.keep_way(errand.subject, outline, alone.plan.polygon)
         for name in sorted(others - gone):
-            if self._ask(state.without(gone | {name}), errand, shut).after is None:
+            if self._is_refuted(state.without(gone | {name}), errand, shut):
                 gone |= {name}
         given = tuple((name, state.things[name].place) for name in sorted(others - gone))
         self._offers.note_in_way([name for name, _ in given])
@@ -275,7 +282,7 @@ class PlanSearch:
                 continue
             given = {name for name, _ in earlier.given}
             rest = frozenset(state.things) - given - {errand.subject}
-            if self._ask(state.without(rest), errand, shut).after is None:
+            if self._is_refuted(state.without(rest), errand, shut):
                 return earlier
         return None
 

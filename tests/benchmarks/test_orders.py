@@ -18,7 +18,7 @@ from benchmarks.orders.asked import AskedRun, is_touching, puzzles, random_tasks
 from benchmarks.orders.carried_out import commands_of, does_task
 from benchmarks.orders.relaxed import is_in_reach, may_pass, swept
 from benchmarks.orders.row import OrderRow, RunBounds, row_of_entry
-from benchmarks.orders.run import place_of, row_of_outcome, run_order
+from benchmarks.orders.run import RunTooLongError, place_of, row_of_outcome, run_order
 from benchmarks.orders.search import EXHAUSTED, FOUND, SEARCH_LIMIT, Carry, search
 from benchmarks.orders.table import failures, table
 from benchmarks.worlds.floorplans import FloorPlan
@@ -169,6 +169,14 @@ def test_a_run_is_also_cut_off_when_the_first_alarm_rings_where_python_drops_exc
         return Scripted(body, Endless(), Verdict(False, "limit", "no"))
 
     assert run_order(PLUG, replace(BOUNDS, seconds=1), tmp_path, make).verdict == "time"
+
+
+def test_an_error_that_python_makes_of_the_alarm_is_a_run_that_takes_too_long(tmp_path: Path) -> None:
+    def make(body: Body, told: Task, settings: Settings) -> Scripted:
+        raise SystemError("a result with an exception set") from RunTooLongError("too long")
+
+    row = run_order(PLUG, BOUNDS, tmp_path, make)
+    assert (row.verdict, row.faulty) == ("time", False)
 
 
 def test_a_robot_that_breaks_is_a_row_with_what_was_known(tmp_path: Path) -> None:

@@ -252,3 +252,34 @@ def test_a_body_too_small_for_cells_in_a_tight_passage_is_refused() -> None:
     body = shapely.box(-5e-5, -5e-5, 5e-5, 5e-5)
     with pytest.raises(ValueError, match="smallest cells"):
         plan_motion(body, slotted(1.1e-4), Pose(3, 3, 0), Pose(17, 3, 90), cells=4000)
+
+
+@pytest.mark.parametrize("goal", [Pose(19, 6, 0), Inside(box(16, 5, 22, 7))])
+@pytest.mark.parametrize("cells", [12, 4000])
+def test_a_goal_behind_a_solid_wall_is_proved_to_be_out_of_reach_however_few_cells_there_are(
+    goal: Pose | Inside, cells: int
+) -> None:
+    """What the cells leave undecided is decided by the disc within the brick: it cannot pass the wall."""
+    walls = box(0, 0, 26, 12).difference(box(1, 1, 11, 11)).difference(box(14, 5, 25, 7))
+    plan = plan_motion(BRICK, walls, Pose(5, 5, 0), goal, cells=cells)
+    assert plan.status == "impossible"
+    assert plan.question is not None and (plan.question.reached[:, 0] < 12).all()
+
+
+def test_what_lies_behind_a_door_as_wide_as_the_disc_is_not_proved_to_be_out_of_reach() -> None:
+    walls = box(0, 0, 26, 12).difference(box(1, 1, 11, 11)).difference(box(11, 5, 25, 7))
+    assert plan_motion(BRICK, walls, Pose(5, 6, 90), Pose(19, 6, 0), cells=4000).status != "impossible"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_raster_of_a_field_holds_the_distance_to_the_nearest_wall(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(0, 20, (6, 2))
+    walls = shapely.union_all([box(*corner, *(corner + rng.uniform(0.2, 6, 2))) for corner in corners])
+    field = ObstacleField(walls, (0.0, 0.0, 22.0, 18.0))
+    rows, columns = np.indices(field.raster.shape)
+    x, y = (field.frame[k] + (index + 0.5) * field.frame[2] for k, index in enumerate((columns, rows)))
+    places = shapely.points(x, y)
+    distances = shapely.distance(walls.boundary, places)
+    signed = np.where(shapely.contains(walls, places), -distances, distances)
+    assert np.abs(field.raster - signed).max() < 1e-9

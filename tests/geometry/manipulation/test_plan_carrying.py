@@ -427,3 +427,18 @@ def test_a_body_is_brought_between_walls_at_any_angle(degrees: float) -> None:
     plan = plan_carrying(square, free, utak, goal)
     assert plan.status == "found"
     assert max(goal.gaps(replay(plan, square, free, utak))) <= 2.0 + 1e-6
+
+
+def test_a_question_asked_again_from_elsewhere_is_answered_as_if_it_were_the_first() -> None:
+    """What is remembered of the same squares does not depend on where the robot stands, or on what else was asked."""
+    free, shape = two_rooms(5), affinity.translate(ELL, 8, 8)
+    narrow = two_rooms(1)
+    goals = [Inside([ROOM]), At(Pose(25.0, 2.0, 90.0))]
+    first = [plan_carrying(shape, free, (3.5, 18.5), goal) for goal in goals]
+    for utak in ((20.5, 3.5), (3.5, 18.5)):
+        for goal in goals:
+            plan_carrying(shape, narrow, utak, goal, held=False)
+            assert plan_carrying(shape, narrow, utak, goal, on_lattice=True).status == "limit"
+            assert plan_carrying(shape, narrow, utak, goal).status == "impossible"
+            replay(plan_carrying(shape, free, utak, goal), shape, free, utak)
+    assert [plan_carrying(shape, free, (3.5, 18.5), goal) for goal in goals] == first

@@ -60,6 +60,15 @@ WALLED_IN = [  # the robot cannot come to h
 ]
 
 
+BOLT = [  # h lets g pass below it when it is pushed up as far as it goes; the end of the corridor was not seen yet
+    "b" * 34,
+    *["b" * 16 + ".." + "b" * 16] * 2,
+    *["b" * 16 + "hh" + "b" * 16] * 5,
+    *["b...gg.........." + "hh" + "." * 10 + "?" * 6] * 2,
+    *["bU" + "." * 14 + "hh" + "." * 10 + "?" * 6] * 1,
+    *["b" + "." * 15 + "hh" + "." * 10 + "?" * 6] * 2,
+    "b" * 34,
+]
 EXCHANGED = [  # g must go to where h lies, which leaves the dead end only once g is out of it
     "b" * 26,
     *["b..........bbbbbbbbbbbbbbb"] * 4,
@@ -132,6 +141,15 @@ def test_two_things_change_places_by_way_of_a_third_place() -> None:
     subjects = [errand.subject for errand in made.plan.errands]
     assert len(subjects) == 3 and subjects[0] == subjects[2] != subjects[1]
     assert made.plan.errands[0].action == "clear"
+
+
+def test_a_thing_in_the_way_is_moved_where_another_one_can_pass_to_where_nothing_was_seen_yet() -> None:
+    situation = known_situation(BOLT)
+    problem = drawn_problem(situation, {"g": moved(26, -3)})
+    made = make_plan(problem, situation, CarryOracle(problem, situation, on_lattice=True))
+    assert [(errand.action, errand.subject) for errand in made.plan.errands] == [("clear", "h"), ("carry", "g")]
+    before, after = (state.things["h"].outline.bounds for state in made.states)
+    assert after[1] - before[1] == pytest.approx(2.0)
 
 
 def test_two_things_in_a_dead_end_are_exchanged_though_one_can_leave_only_after_the_other() -> None:
