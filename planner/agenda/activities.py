@@ -39,10 +39,7 @@ class Activities:
     def __init__(self, task: Task, pull: bool) -> None:
         """Make activities of which none was begun.
 
-        Parameters
-        ----------
-        task : its constraints are looked at.
-        pull : whether a held object may be pulled.
+        task : its constraints are looked at. pull : whether a held object may be pulled.
         """
         where = PerModel(destination)
         self._transporter, self._clearer, self._trials = Transporter(), ObstacleClearer(), Trials()

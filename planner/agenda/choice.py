@@ -46,8 +46,6 @@ class Agenda:
     def __init__(self, given: Iterable[str], rules: Sequence[Path], about: Sequence[str]) -> None:
         """Make an agenda on which nothing was done.
 
-        Parameters
-        ----------
         given : the facts of the present stage, without full stops, as planner/asp/agenda.lp wants them.
         rules : the user's own encodings.
         about : what the names of goals mean, in words; for the record of decisions alone.

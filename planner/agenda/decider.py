@@ -34,7 +34,7 @@ PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that some
 class Decider:
     """Decides, and owns everything that remembers earlier decisions.
 
-    The executor, the pursuer and the verifier belong to it alone: it lends them, as Tools, for the time of a call.
+    The executor, the pursuer and the verifier belong to it alone: it lends them for the time of a decision.
 
     Attributes
     ----------
@@ -103,7 +103,6 @@ class Decider:
 
         Parameters
         ----------
-        model : what is believed.
         track : the places where the robot has been, the present one last: (x, y) in squares, map frame.
 
         Returns
@@ -125,8 +124,6 @@ class Decider:
     def _decided(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression, whatever constraints have to do with a verdict.
 
-        Parameters
-        ----------
         model, track : as for `decide`.
         """
         kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
@@ -186,10 +183,7 @@ class Decider:
         A verdict that stands without the constraints stands with them. Else it is proved only when it stands for
         regions that are taken as small as they surely are, too; if it does not, it is `limit`.
 
-        Parameters
-        ----------
-        decision : a verdict, but for `done`.
-        model, track : as for `decide`.
+        decision : a verdict, but for `done`. model, track : as for `decide`.
         """
         ways = [goal for goal in self.task.goals if goal.name in ("avoid", "carry_nothing_through")]
         if not ways or any(str(goal) in decision.why for goal in ways):
@@ -209,8 +203,6 @@ class Decider:
     ) -> Decision:
         """Return what would be decided without some constraints, or with regions as small as they surely are.
 
-        Parameters
-        ----------
         model, track : as for `decide`.
         without : the constraints that are left out.
         lenient : whether regions count only where whole squares lie in them.
@@ -225,11 +217,6 @@ class Decider:
         """Note that a stage cannot be attained with what one parameter means, where it may mean something else as well.
 
         Returns False when there is nothing else to try.
-
-        Parameters
-        ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         for parameter in (str(goal.args[0]) for goal in stage.carried):
             others = {(parameter, name) for name in situation.as_well.get(parameter, ())}
@@ -252,10 +239,6 @@ class Decider:
 
         A Reconciliation holds the binding (parameter -> name of a node), and the pairs that are doubtful or
         contradicted.
-
-        Parameters
-        ----------
-        cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
         """
         wished = [goal for stage in self.stages for goal, _ in stage.wishes]
         goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]

@@ -59,8 +59,6 @@ class OwnGoals:
 
         Never a verdict: a wish that cannot be attained is dropped.
 
-        Parameters
-        ----------
         turn, intention : as for `go`; the goals of the stage hold.
         """
         found = intention.own_wish()
@@ -156,8 +154,6 @@ class OwnGoals:
         The verdict `impossible` when no way leads round it. The sense of rotation, once begun, is kept while a route
         leads that way.
 
-        Parameters
-        ----------
         name : of the object; the model knows it: else AssertionError.
         turn : the stage, and what is believed; the first point of the track is where the round began.
         """

@@ -15,9 +15,6 @@ from planner.subgoal_kind import SubgoalKind
 def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str = "") -> Decision | None:
     """Return the next command to bring an object to an end, or to find out what it is; None when there is none.
 
-    Parameters
-    ----------
-    node : the object.
     name : the name of the end.
     end : where it shall lie, in squares, view frame.
     turn : the stage, what is believed, and the tools.

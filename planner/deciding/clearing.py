@@ -35,10 +35,7 @@ class ObstacleClearer:
         self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
     def begun(self, situation: Situation) -> tuple[str, ...]:
-        """Return what was begun in an earlier decision and is gone on with: feel, make_way, both, or nothing.
-
-        situation : what is believed (world model, rooms, doors, corners, track).
-        """
+        """Return what was begun in an earlier decision and is gone on with: feel, make_way, both, or nothing."""
         feeling = ("feel",) if self._feeling and situation.model.held is None else ()
         return (*feeling, "make_way") if self._moving else feeling
 
@@ -125,10 +122,7 @@ class ObstacleClearer:
         return instead or nothing_to_do("nothing that stands before walls can be moved away")
 
     def blame(self, situation: Situation) -> Decision:
-        """Return the verdict `limit` with an object that blocks the robot's way still; nothing when there is none.
-
-        situation : what is believed (world model, rooms, doors, corners, track).
-        """
+        """Return the verdict `limit` with an object that blocks the robot's way still; nothing when there is none."""
         things = [node for node in situation.model.objects if node.confidence >= POSSIBLE_OBJECT]
         blocking = next((one.node.name for one in obstacles(things, situation)), "")
         if not blocking:
@@ -148,8 +142,6 @@ class ObstacleClearer:
         """Return the objects that may be moved aside, in the order of the model; [] for none.
 
         Only those that are objects with at least POSSIBLE_OBJECT percent, not known to be immovable, and need not stay.
-
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         things = (node for node in situation.model.objects if node.movable > 0 and node.confidence >= POSSIBLE_OBJECT)
         return [node for node in things if node.name not in self._stays]
@@ -157,8 +149,6 @@ class ObstacleClearer:
     def _move_first(self, things: Sequence[Node], turn: StageTurn, name: str = "") -> Decision | None:
         """Return the next command to move aside the first object that blocks, and remember which it is; None for none.
 
-        Parameters
-        ----------
         things : the objects in question.
         turn : the stage, what is believed, and the tools.
         name : only the object of that name is moved; "" for any of `things`.
@@ -170,10 +160,7 @@ class ObstacleClearer:
     def _move_first_of(self, found: Iterable[Obstacle], turn: StageTurn) -> Decision | None:
         """Return the next command to move aside the first obstacle that can be, and remember it; None for none.
 
-        Parameters
-        ----------
-        found : the obstacles, in the order in which they are tried.
-        turn : the stage, what is believed, and the tools.
+        found : the obstacles, in the order in which they are tried. turn : the stage, what is believed, and the tools.
         """
         for one in found:
             instead = _move_aside(one.node, one.aside, turn.within(one.situation))
@@ -186,11 +173,7 @@ class ObstacleClearer:
 def _move_aside(node: Node, aside: End, turn: StageTurn) -> Decision | None:
     """Return the next command to move an object aside, or to find out what it is; None when there is none.
 
-    Parameters
-    ----------
-    node : the object.
-    aside : where it shall lie, in squares, view frame.
-    turn : the stage, what is believed, and the tools.
+    aside : where it shall lie, in squares, view frame. turn : the stage, what is believed, and the tools.
     """
     rim = feel_rim(node, turn)
     if rim is not None:

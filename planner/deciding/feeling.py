@@ -34,11 +34,6 @@ def feeling_scope(stage: Stage, situation: Situation) -> FeelingScope:
     Walls between two parts of the floor that is reached matter where an object must find its way, where the robot must
     go round something, and where a door is forbidden. Where the robot shall be at an object to which no way leads, only
     walls matter that may lead there.
-
-    Parameters
-    ----------
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     forbidden = situation.forbidden(ROBOT)
     track = any(goal.name in TRACK_GOALS for goal in stage.own)
@@ -74,11 +69,6 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
     """Return the walls that were never felt and may be things that could help a stage, reachable to be felt or not.
 
     (rows, columns) bool on the arrays of the view.
-
-    Parameters
-    ----------
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     walls = walls_in_question(situation.model, situation.cost_maps.floor, feeling_scope(stage, situation))
     mask: Bools = np.any(list(walls.values()), axis=0)
@@ -88,8 +78,6 @@ def walls_to_feel(stage: Stage, situation: Situation) -> Bools:
 def feel_walls(turn: StageTurn) -> Decision | None:
     """Return the next command to feel walls that may be things; None when none is left that can be reached.
 
-    Parameters
-    ----------
     turn : the stage, what is believed, and the tools.
     """
     cost_maps = turn.situation.cost_maps
@@ -101,10 +89,7 @@ def feel_walls(turn: StageTurn) -> Decision | None:
 def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
     """Return the next command to feel things all round; None when none can be reached to be felt.
 
-    Parameters
-    ----------
-    rims : for each the floor from which it is felt.
-    turn : the stage, what is believed, and the tools.
+    rims : for each the floor from which it is felt. turn : the stage, what is believed, and the tools.
     """
     felt = turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]) if rims else None
     return None if felt is None or felt.command is None else felt
@@ -113,9 +98,6 @@ def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
 def feel_rim(node: Node, turn: StageTurn) -> Decision | None:
     """Return the next command to feel how far an object goes on along the wall in which it stands; None when known.
 
-    Parameters
-    ----------
-    node : the object.
     turn : the stage, what is believed, and the tools.
     """
     if node.moved or node.colour is None:
@@ -135,10 +117,7 @@ def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | No
     The facts for the encoding, each a string without a full stop, for each place, numbered from 0: `halt(number, walk,
     moves)` with the way in tenths of squares, and `tells(number, kind, doorway or square, count)`.
 
-    Parameters
-    ----------
     places : the squares to choose from; only the nearest of each kind of wall are offered to the encoding.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     if not places:
         return None

@@ -61,12 +61,7 @@ class ConstraintKeeper:
     _tracks: dict[str, ThingTrack] = field(default_factory=dict)
 
     def note(self, model: WorldModel) -> None:
-        """Remember where all things are believed to be now; nothing when no constraint is about things.
-
-        Parameters
-        ----------
-        model : what is believed.
-        """
+        """Remember where all things are believed to be now; nothing when no constraint is about things."""
         about_things = [name for name, _ in avoidances(self.task) if name != ROBOT]
         if not about_things and not self._nothing_through:
             return
@@ -75,12 +70,7 @@ class ConstraintKeeper:
                 self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
 
     def broken_at_start(self, situation: Situation) -> Decision:
-        """Return the verdict that a region was touched from the beginning; nothing when no such thing is known.
-
-        Parameters
-        ----------
-        situation : what is believed (world model, rooms, doors, corners, track).
-        """
+        """Return the verdict that a region was touched from the beginning; nothing when no such thing is known."""
         model = situation.model
         for name, fact in avoidances(self.task):
             region = region_of(fact)
@@ -101,7 +91,6 @@ class ConstraintKeeper:
         Parameters
         ----------
         decision : what was decided.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         for name, fact in avoidances(self.task):
             way = _way_of(decision.command, name, situation)
@@ -111,12 +100,7 @@ class ConstraintKeeper:
         return decision
 
     def doubt_of_done(self, situation: Situation) -> str:
-        """Return why the constraints may not have been kept, in words; "" when they surely were, as is believed.
-
-        Parameters
-        ----------
-        situation : what is believed (world model, rooms, doors, corners, track), when all goals hold.
-        """
+        """Return why the constraints may not have been kept, in words; "" when they surely were, as is believed."""
         return next(self._doubts(situation), "")
 
     def _doubts(self, situation: Situation) -> Iterator[str]:

@@ -61,7 +61,6 @@ def obstacles(
     Parameters
     ----------
     things : the objects in question.
-    situation : what is believed (world model, rooms, doors, corners, track).
     walls : (rows, columns) bool on the arrays of the view, walls that are to be felt: a nook beside one is worth the
         way, too. None for none.
     parting : whether an object that may fill a gap in a wall blocks, too, where the floor behind it is reached already.
@@ -88,15 +87,10 @@ def _routes_opened(
 ) -> list[PlannedRoute]:
     """Return the route, if any, to floor that is reached only if some squares are free; [] into a mere nook.
 
-    At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level).
-
-    A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-    level, 0 the surest.
-
-    It leads to the nearest such floor, or `further` squares on, over the shortest way by the grid of squares.
+    At most one route, on the arrays of the view, over squares that are not excluded (the most permissive level). It
+    leads to the nearest such floor, or `further` squares on, over the shortest way by the grid of squares.
 
     under : (rows, columns) bool on the arrays of the view, the squares that are assumed to be free.
-    situation : what is believed: world model, rooms, doors, corners and track.
     walls : (rows, columns) bool on the arrays of the view: a nook beside one of these squares counts; None for none.
     further : how many squares further than the nearest such floor the route leads, if there is floor so far.
     """
@@ -129,10 +123,7 @@ def before_walls(things: Sequence[Node], situation: Situation, walls: Bools) -> 
     An Obstacle holds the object, and an end: where it shall lie so that these walls can be felt, in squares, view
     frame: on its own squares and surely free ones that touch none of these walls.
 
-    Parameters
-    ----------
     things : the objects in question.
-    situation : what is believed (world model, rooms, doors, corners, track).
     walls : (rows, columns) bool on the arrays of the view, the walls that are to be felt.
     """
     for thing in things:
@@ -148,11 +139,7 @@ def _first_on(way: PlannedRoute, things: Sequence[Node], model: WorldModel) -> N
 
     Raises StopIteration when the route crosses none of them.
 
-    Parameters
-    ----------
-    way : the route, from the robot on, on the arrays of the view.
-    things : the objects.
-    model : what is believed.
+    way : the route, from the robot on, on the arrays of the view. things : the objects.
     """
     masks = [(thing, model.mask(thing.patch)) for thing in things]
     return next(thing for column, row in way.squares for thing, mask in masks if mask[row, column])
@@ -168,11 +155,7 @@ def hidden_in_walls(things: Sequence[Node], situation: Situation, parting: bool)
 
     An Obstacle holds the object, and an end: where it shall lie so that the way is free, in squares, view frame.
 
-    Parameters
-    ----------
-    things : the objects in question.
-    situation : what is believed (world model, rooms, doors, corners, track).
-    parting : whether a way counts, too, that opens to floor that is reached already.
+    things : the objects in question. parting : whether a way counts, too, that opens to floor that is reached already.
     """
 
     def opens(under: Bools) -> bool:

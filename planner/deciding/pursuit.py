@@ -53,10 +53,7 @@ class Pursuer:
 
         The state is the robot's place, what it holds, and what is known (planner.navigation.loop_guard).
 
-        Parameters
-        ----------
         command : in the robot's own frame.
-        model : what is believed, with its frame and its map view.
         """
         return self._circles.noticed(model, command)
 
@@ -76,11 +73,7 @@ class Pursuer:
 
         A Decision with a command may be the release, or what `along` returns.
 
-        Parameters
-        ----------
         subgoals : what is worth doing, with squares on the arrays of the view.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
         missing : returns what is missing, in words. It is called only for a verdict, for it may take time.
         verdict : the verdict when none can be reached. It is `limit` when one was dropped for leading in circles.
         along : returns how an object is taken along to a subgoal, or None when it had better stay; None when no object
@@ -109,8 +102,6 @@ class Pursuer:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
 
         look : the squares to look from, on the arrays of the view; None when nothing is to be looked at.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         if look is None:
             return None
@@ -124,8 +115,6 @@ class Pursuer:
         Parameters
         ----------
         go : the square, the place in it at which to halt, (x, y) in squares, map frame, and the reason in words.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         subgoal = Subgoal(SubgoalKind.ATTAIN, go.square, go.why)
         walk = self.pursue([subgoal], stage, situation, lambda: "no way leads there")
@@ -142,8 +131,6 @@ class Pursuer:
         Parameters
         ----------
         advice : what the executor advises; an Act or Infeasibility gives None.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         walk: Decision | None = None
         if isinstance(advice, Go):
@@ -161,8 +148,6 @@ class Pursuer:
         ----------
         ask : returns what is decided otherwise, a command or a verdict. It is called only while nothing is on the way
             to be felt, or when nothing is left to feel.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         decision = None if self._feeling else ask()
         if decision is None or decision.verdict:
@@ -177,11 +162,7 @@ class Pursuer:
 
         The verdict `impossible` when every route leads through a forbidden door.
 
-        Parameters
-        ----------
         subgoal : one of its squares can be reached at some certainty level: else AssertionError.
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
         fewest : finds routes of few moves; None for short routes.
         """
         model, cost_maps = situation.model, situation.cost_maps
@@ -206,14 +187,7 @@ class Pursuer:
 
         On the arrays of the view.
 
-        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-        level, 0 the surest.
-
-        Parameters
-        ----------
         level : the certainty level at which the subgoal is reached, 0 the surest.
-        subgoal : with squares as flat indices (row * columns + column) on the arrays of the view.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         rest = self._kept.rest(subgoal, level, situation.model, situation.cost_maps)
         return self.choose_route([rest], situation) if rest is not None and situation.shut(ROBOT) else rest
@@ -235,13 +209,9 @@ class Pursuer:
 
         None, too, when no route is offered.
 
-        A PlannedRoute holds squares (column, row) from the robot on, length and clearance in squares, and the certainty
-        level, 0 the surest.
-
         Parameters
         ----------
         offered : the routes that there are, on the arrays of the view, possibly none.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         if not offered:
             return None
@@ -253,9 +223,6 @@ class Pursuer:
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:
     """Return the verdict when no subgoal can be reached.
 
-    Parameters
-    ----------
-    stage : of the task: the goals that shall hold now.
     missing : what is missing, in words.
     verdict : the verdict, unless some subgoals led in circles: then it is `limit`.
     in_circles : some were dropped for leading in circles.

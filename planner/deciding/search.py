@@ -50,18 +50,12 @@ def subgoals_towards(
 
     When all destinations are known, the only subgoal is to go there: to the squares where all goals hold, possibly
     none. Else they are looks, first those where just the missing thing may be; and these alone, with objects that may
-    be it, while one of them can surely be reached.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Destinations that name what is missing come first, in their order; then objects that may be the missing one, then
-    likely places, then looks at the unseen. Each keeps its own chance.
+    be it, while one of them can surely be reached. Destinations that name what is missing come first, in their order;
+    then objects that may be the missing one, then likely places, then looks at the unseen. Each keeps its own chance.
 
     Parameters
     ----------
     where : the destination of each goal, at least one.
-    situation : what is believed (world model, rooms, doors, corners, track).
     reconciled : what the parameters of the task mean, each the name of an object, and which may be the others.
     to : what the robot goes up to a missing object for; to take it by default.
     """
@@ -86,13 +80,6 @@ def contact_subgoals(situation: Situation) -> list[Subgoal]:
     """Return where to feel what may be an object against a wall; if there is no such, what may be part of a wall.
 
     Subgoals of kind INSPECT; [] when nothing is left to feel.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Parameters
-    ----------
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     return wall_contacts(situation) or island_contacts(situation)
 
@@ -100,16 +87,8 @@ def contact_subgoals(situation: Situation) -> list[Subgoal]:
 def wall_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each part of a wall that may be an object standing against it, where it can be felt.
 
-    Subgoals of kind INSPECT; parts that were felt, or have no floor beside them, are left out.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    In the order in which the model lists the parts, each with the chance 100.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
+    Subgoals of kind INSPECT; parts that were felt, or have no floor beside them, are left out. In the order in which
+    the model lists the parts, each with the chance 100.
     """
     looks = [frontiers.wall_touch_viewpoint(situation.cost_maps, mask) for mask in situation.model.protruding]
     return [Subgoal(SubgoalKind.INSPECT, *look) for look in looks if len(look.squares)]
@@ -118,17 +97,9 @@ def wall_contacts(situation: Situation) -> list[Subgoal]:
 def island_contacts(situation: Situation) -> list[Subgoal]:
     """Return, for each free-standing object that would make more doors if it were wall, where it can be felt.
 
-    Subgoals of kind INSPECT; objects that were touched or moved, or have no floor beside them, are left out.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    In the order of the model's objects, each with the chance 100. Wall would join what bounds the floor, and so make
-    necks of the floor beside it.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
+    Subgoals of kind INSPECT; objects that were touched or moved, or have no floor beside them, are left out. In the
+    order of the model's objects, each with the chance 100. Wall would join what bounds the floor, and so make necks of
+    the floor beside it.
     """
     model = situation.model
     subgoals = []
@@ -146,8 +117,6 @@ def chance_of_none(candidates: Sequence[Candidate]) -> float:
 
     Of candidates that share squares, only the first counts.
 
-    Parameters
-    ----------
     candidates : in order; each with the squares where it lies and its chance in percent.
     """
     none, counted = 1.0, np.zeros(0, np.int64)
@@ -169,9 +138,6 @@ def _doubtful_objects(
     In the order of the doubtful pairs; only for parameters that match nothing seen so far; without objects that have no
     such squares.
 
-    Parameters
-    ----------
-    situation : what is believed (world model, rooms, doors, corners, track).
     reconciled : what the parameters of the task mean; its doubtful pairs name the objects.
     likely : the probability (rows, columns) that a square belongs to the shape looked for; None when no shape is told.
     to : what the robot goes up to an object for: to take it (and towards which corner) or only to be beside it.
@@ -196,11 +162,7 @@ def _chance(node: Node, likely: Floats, model: WorldModel) -> float:
 
     Where the object may go on unseen, the chance by the number of its seen squares counts if that is greater.
 
-    Parameters
-    ----------
-    node : the object.
     likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
-    model : what is believed.
     """
     mask = model.mask(node.patch)
     shown = float(likely[mask].max())
@@ -214,9 +176,6 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Ca
     A Candidate holds the squares where something lies (flat indices (row * columns + column) on the arrays of the
     view), and a Subgoal: a look at it, with its chance in percent.
 
-    Parameters
-    ----------
-    cost_maps : of the present world model.
     likely : (rows, columns) on the arrays of the view, the probability that a square belongs to the shape looked for.
     to : what the robot goes there for: to take something (and towards which corner) or only to be beside it.
     """
@@ -227,15 +186,9 @@ def _likely_places(cost_maps: CostMaps, likely: Floats, to: Approach) -> list[Ca
 def _looks_at_the_unseen(cost_maps: CostMaps, unseen: float, to: Approach) -> list[Subgoal]:
     """Return looks at what was never seen, and at what bounds the floor.
 
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
     Frontiers (EXPLORE) come first, then unsettled boundaries of the floor (SETTLE), then passages to floor that is seen
     and not reached (PASS), each with a chance in percent.
 
-    Parameters
-    ----------
-    cost_maps : of the present world model.
     unseen : the probability, 0 to 1, that what is missing was not seen yet.
     to : what the robot goes up to it for. A robot that is to carry it counts moves: it looks from where most comes into
         sight, and must set out once more to what it sees from there.
@@ -271,9 +224,6 @@ def _object_heat(situation: Situation, reconciled: Reconciliation) -> Floats | N
     (rows, columns) on the arrays of the view, 0 to 1, by map completions (sampled maps that agree with all counts). Of
     the shapes that the task tells of parameters that match nothing seen so far, it is the first by name.
 
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     reconciled : names the parameters that match nothing seen so far.
     """
     wanted = sorted(
@@ -291,10 +241,7 @@ def _is_surely_reached(subgoal: Subgoal, cost_maps: CostMaps) -> bool:
 
     False for a subgoal without squares.
 
-    Parameters
-    ----------
     subgoal : its squares are flat indices (row * columns + column) on the arrays of the view.
-    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     """
     reached = cost_maps.nearest(subgoal.squares)
     return reached is not None and reached.level == 0

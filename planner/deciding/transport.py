@@ -80,7 +80,6 @@ class Transporter:
         ----------
         parameter : of the task.
         node : the object that it means; its outline is known.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         return self._origins.at(parameter, node, situation)
 
@@ -175,11 +174,6 @@ class Transporter:
         """Return the verdict `impossible` when two goals of a stage cannot hold for one object at once; else nothing.
 
         Nothing, too, while it is not known where the goals hold.
-
-        Parameters
-        ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
@@ -239,8 +233,6 @@ class Transporter:
 
         In a loop the object is released instead.
 
-        Parameters
-        ----------
         advice : the command that the executor advises, and its reason.
         node : the object that is carried.
         turn : the stage, what is believed, and the tools.
@@ -270,10 +262,7 @@ class Transporter:
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
         these cases it is not fetched. An object that shuts the robot in is taken along.
 
-        Parameters
-        ----------
         refused : why the object cannot be carried there now; the verdict is `impossible` only if this is proved.
-        node : the object.
         land : where the goal holds: ends by name (squares, view frame), and what must be known first.
         subgoals : what is worth a look.
         turn : the stage, what is believed, and the tools.
@@ -305,11 +294,8 @@ class Transporter:
         In its place comes a look at the passage that is too narrow, or a push to measure the object. A proof that the
         object cannot come to where it must be in any case makes any verdict `impossible`.
 
-        Parameters
-        ----------
         refused : why the object cannot be carried there.
         decision : what was decided; one with a command is returned unchanged.
-        node : the object.
         land : where the goal holds: ends by name (squares, view frame), and what must be known first.
         turn : the stage, what is believed, and the tools.
         """
@@ -333,9 +319,6 @@ class Transporter:
 
         After plans that missed their end, and once the object is near, the end is looked at first: then it is an
         Infeasibility that names what is missing.
-
-        An Act holds a command (robot frame), a Go the square and the place (x, y) to walk to, a See the squares to look
-        from, an Infeasibility a reason why nothing can be done; each with words.
         """
         executor, situation = turn.executor, turn.situation
         looked = len(situation.model.looked_from)
@@ -361,9 +344,6 @@ class Transporter:
 
         It is led out, so that it does not shut the robot in, only when the robot has more to do afterwards.
 
-        Parameters
-        ----------
-        node : the object, a node of the world model.
         turn : the stage, what is believed, and the tools.
         """
         act = self._presser.next(node, turn.situation.model)
@@ -376,7 +356,6 @@ class Transporter:
         """Return the push after which the held object no longer shuts the robot in; None when it does not, or cannot.
 
         shut_in : it is known that the object shuts the robot in; by default that is tested, and None returned if not.
-        node : the object, a node of the world model.
         turn : the stage, what is believed, and the tools.
         """
         if not shut_in and robot_can_leave(node, turn.situation):
@@ -393,11 +372,7 @@ class Transporter:
 
         Returns the verdict `limit` when its size cannot be told.
 
-        Parameters
-        ----------
-        node : the object.
-        ends : where it should lie, by name, in squares, view frame.
-        turn : the stage, what is believed, and the tools.
+        ends : where it should lie, by name, in squares, view frame. turn : the stage, what is believed, and the tools.
         """
         if (push := self._measure(node, turn)) is not None:
             return push
@@ -414,9 +389,6 @@ class Transporter:
         None, too, when no such push can be made. It may be a walk to where the object is grasped, or a look before
         that.
 
-        Parameters
-        ----------
-        node : the object, a node of the world model.
         turn : the stage, what is believed, and the tools.
         """
         for pose in self._size_estimator.poses(node):
@@ -434,9 +406,6 @@ def _look_at(node: Node, turn: StageTurn) -> Decision | None:
 
     What may not be clear are its outline, its squares, and whether it goes on in what seems to be wall.
 
-    Parameters
-    ----------
-    node : the object, a node of the world model.
     turn : the stage, what is believed, and the tools.
     """
     if node.polygon is None or node.vague or turn.verifier.is_unsettled(node):
@@ -454,11 +423,7 @@ def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision |
 
     Viewpoints are tried in the order of `land.by_the_way`; the first that such a push leads to.
 
-    Parameters
-    ----------
-    land : where the goal holds; it names what to see on the way.
-    node : the object, a node of the world model.
-    turn : the stage, what is believed, and the tools.
+    land : where the goal holds; it names what to see on the way. turn : the stage, what is believed, and the tools.
     """
     for look in land.by_the_way.viewpoints():
         act = turn.executor.detour(node, look.squares, turn.situation)
@@ -471,9 +436,6 @@ def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision |
 def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = False) -> Decision | None:
     """Return the next command to take an object along to a subgoal; None when the robot had better walk there alone.
 
-    Parameters
-    ----------
-    node : the object.
     turn : the stage, what is believed, and the tools.
     subgoal : where the robot wants to look from.
     fetch : whether an object that is not held is fetched for that; if not, only a held object is taken along, by one
@@ -490,8 +452,6 @@ def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = Fal
 def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None:
     """Return the decision to push a held object in order to see something; None when that would close a loop.
 
-    Parameters
-    ----------
     act : the push; None when there is none: then None is returned.
     what : what is to be seen, in words.
     turn : the stage, what is believed, and the tools.

@@ -37,30 +37,15 @@ class Verifier:
         self._rechecked: list[XY] = []  # passages that were looked at again, map frame
 
     def is_unsettled(self, node: Node) -> bool:
-        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
-        """
+        """Return whether the robot has begun to look at an object, and it was not settled when that was asked last."""
         return node.name in self._unsettled
 
     def next_look(self, node: Node, situation: Situation) -> Subgoal | None:
         """Return a look at an object that is not settled; None when no look is left that may tell more.
 
         A look that was begun is gone on with (see `is_unsettled`). An object is settled when its outline is known and
-        no square of it or beside it is open.
-
-        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
-        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-        Its kind is INSPECT, its chance 100. A change of what is remembered: the object counts as unsettled while a look
-        is returned.
-
-        Parameters
-        ----------
-        node : the object, a node of the world model.
-        situation : what is believed: world model, rooms, doors, corners and track.
+        no square of it or beside it is open. Its kind is INSPECT, its chance 100. A change of what is remembered: the
+        object counts as unsettled while a look is returned.
         """
         self._unsettled.discard(node.name)
         if node.polygon is not None and not node.open:
@@ -76,17 +61,10 @@ class Verifier:
 
         The robot may misjudge where impressions were received, but knows how the squares of one impression lie to each
         other. Returns None when the map is sure, no passage is named, or it was looked at again already, within
-        FOVEA_RANGE squares.
+        FOVEA_RANGE squares. The squares of the Subgoal are all floor from which the passage lies within the fovea;
+        possibly none.
 
-        A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view;
-        any of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-        The squares of the Subgoal are all floor from which the passage lies within the fovea; possibly none.
-
-        Parameters
-        ----------
         refusal : the infeasibility that names the passage.
-        situation : what is believed (world model, rooms, doors, corners, track).
         """
         model = situation.model
         neck = None if model.view.sure else refusal.neck()
@@ -106,18 +84,10 @@ def look_before_grasp(node: Node, turns: bool, situation: Situation) -> Subgoal 
 
     It is needed after few looks, when the plan turns the object: an object that was turned askew, and the map with it,
     are hard to set right again. A push leaves it as it lies. But when a push did not move it, the robot may have
-    misjudged where it is, or what stands about it. None, too, when there is no floor left from which to look.
+    misjudged where it is, or what stands about it. None, too, when there is no floor left from which to look. Its kind
+    is INSPECT: to see the object from floor where the robot did not look yet.
 
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Its kind is INSPECT: to see the object from floor where the robot did not look yet.
-
-    Parameters
-    ----------
-    node : the object.
     turns : whether the plan turns it; if not, a look is needed only after a push that did not move it.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     if not (
@@ -133,16 +103,8 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
     """Return a look from elsewhere when the last impression contradicts what is believed; None when it does not.
 
     What contradicts was withdrawn, so the new impression agrees with the rest if that is right. The look may have no
-    squares, when the robot looked from everywhere near.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Its kind is INSPECT: to see the robot's own square from floor nearby.
-
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
+    squares, when the robot looked from everywhere near. Its kind is INSPECT: to see the robot's own square from floor
+    nearby.
     """
     model = situation.model
     if not model.contradicted:
@@ -153,12 +115,7 @@ def look_at_contradiction(situation: Situation) -> Subgoal | None:
 
 
 def robot_square(model: WorldModel) -> Bools:
-    """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view.
-
-    Parameters
-    ----------
-    model : what is believed, with its frame and its map view.
-    """
+    """Return the mask of the square in which the robot stands, (rows, columns) bool on the arrays of the view."""
     return model.squares([(math.floor(model.place[0]), math.floor(model.place[1]))])
 
 
@@ -167,14 +124,6 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 
     Returns None when it was moved or is held, when it touches no wall and no other object, or when nothing about it is
     to be felt (planner.sights.frontiers.rim_viewpoint).
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Parameters
-    ----------
-    node : the object.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     look = frontiers.rim_viewpoint(situation.cost_maps, node)
     return None if look is None else Subgoal(SubgoalKind.INSPECT, *look)
@@ -182,9 +131,6 @@ def look_for_more(node: Node, situation: Situation) -> Subgoal | None:
 
 def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return what to see or feel before something is said to be elsewhere than it began; None when that is sure.
-
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
 
     First the frontier behind the door that shows whether the thing is in another room (not for the goal around), else a
     part of the verge (what bounds the floor) that may be an object and on which the goal depends.
@@ -195,7 +141,6 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
         verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where it began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
 
@@ -203,20 +148,13 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
 def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
     """Return where to feel whether something is part of a wall on which the goal depends; None for no such.
 
-    If it were an object that stands against the wall, the goal would no longer hold.
+    If it were an object that stands against the wall, the goal would no longer hold. Of several parts of the verge, the
+    first in the order of the model. One that cannot be felt is looked at instead.
 
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Of several parts of the verge, the first in the order of the model. One that cannot be felt is looked at instead.
-
-    Parameters
-    ----------
     goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
         verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     depends_on = _dependence(goal, began, covered, situation)
     for mask in situation.model.protruding:
@@ -237,16 +175,10 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     only a narrow arm of the same room. Of all frontiers it is the one nearest to the thing; None, too, when none is
     left, and for the goal around.
 
-    A Subgoal holds its kind, the squares to go to (flat indices (row * columns + column) on the arrays of the view; any
-    of them will do), the reason in words, its chance in percent, and a price in squares of way.
-
-    Parameters
-    ----------
     goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
         verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model, view = situation.model, situation.model.view
     if goal == "around":
@@ -260,8 +192,6 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
     def distance(look: frontiers.Viewpoint) -> float:
         """Return how far the nearest square of a viewpoint is from the mean of the covered squares, in squares.
 
-        Parameters
-        ----------
         look : its squares are flat indices (row * columns + column) on the arrays of the view, at least one.
         """
         there = np.unravel_index(look.squares, covered.shape)
@@ -274,11 +204,7 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
 def _are_jambs_in_line(mask: Bools, door: Door, model: WorldModel) -> bool:
     """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall.
 
-    Parameters
-    ----------
-    mask : (rows, columns) bool on the arrays of the view, the squares.
-    door : in squares, view frame.
-    model : what is believed.
+    mask : (rows, columns) bool on the arrays of the view, the squares. door : in squares, view frame.
     """
     for end, other in ((door.a, door.b), (door.b, door.a)):
         if len(jamb(mask, end)[0]):
@@ -292,7 +218,6 @@ def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
     """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction.
 
     place : (x, y) in squares, view frame. way : a unit vector (x, y) along the axes of the map.
-    model : what is believed, with its frame and its map view.
     """
     steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
     columns, rows = np.floor(steps).astype(int).T
@@ -306,13 +231,10 @@ def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> C
 
     The function takes a mask, (rows, columns) bool on the arrays of the view, and returns a bool.
 
-    Parameters
-    ----------
     goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
         verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
     began : where the thing of the goal began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    situation : what is believed (world model, rooms, doors, corners, track).
     """
     model = situation.model
     if goal == "around":

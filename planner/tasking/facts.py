@@ -69,11 +69,8 @@ def problem_facts(
 ) -> tuple[str, ...]:
     """Return the facts of a problem that stay the same while answers come in, without full stops.
 
-    Parameters
-    ----------
     problem : things, places and goals.
     aside : by object and place: the places where an object is out of the way.
-    situation : what is believed: world model, rooms, doors, corners and track.
     spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     overlaps : the places of two things that overlap.
     """
@@ -136,8 +133,6 @@ def _room_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
 def overlaps_of(problem: TaskProblem, spots: AbstractSet[tuple[str, str]] = frozenset()) -> Iterator[Overlap]:
     """Yield the exact places of two things that overlap: where they lie now, poses and spots; regions do not count.
 
-    Parameters
-    ----------
     problem : things, places and goals.
     spots : by object and place: the places that are one spot each, with SPOT_SLACK about it.
     """
@@ -184,8 +179,6 @@ def _part_facts(problem: TaskProblem, spots: AbstractSet[tuple[str, str]]) -> It
 def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
     """Return the things that lie now where another thing may have to lie, each once.
 
-    Parameters
-    ----------
     overlaps : the places of two things that overlap.
     """
     found = [one.thing if one.place == HERE else one.other for one in overlaps if HERE in (one.place, one.other_place)]

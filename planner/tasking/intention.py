@@ -137,8 +137,6 @@ class Intention:
 
         Parameters
         ----------
-        stage : of the task: the goals that shall hold now.
-        situation : what is believed: world model, rooms, doors, corners and track.
         avoid : by the names of objects, the grasps that failed.
         turn : how many commands a turn counts for.
         """
@@ -228,7 +226,6 @@ class Intention:
         Parameters
         ----------
         errand : the present errand.
-        situation : what is believed: world model, rooms, doors, corners and track.
         """
         wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
         self._dropped |= set() if wish is None else {wish}
@@ -243,12 +240,7 @@ class Intention:
         return self._problem is None or self._problem.open or bool(self._problem.waiting)
 
     def along_plan(self, situation: Situation) -> Situation:
-        """Return the situation with the doors closed that the present errand does not pass, where users' rules count.
-
-        Parameters
-        ----------
-        situation : what is believed: world model, rooms, doors, corners and track.
-        """
+        """Return the situation without the doors that the present errand does not pass, where users' rules count."""
         kept = self._kept
         if kept is None or kept.number >= len(kept.led_round):
             return situation
@@ -357,9 +349,6 @@ class Intention:
 def with_meanings(situation: Situation, meanings: Mapping[str, str]) -> Situation:
     """Return a situation whose parameters mean what a plan means by them; what they meant before may be meant, too.
 
-    Parameters
-    ----------
-    situation : what is believed: world model, rooms, doors, corners and track.
     meanings : the object that each parameter of the task means.
     """
     binding = {**situation.binding, **meanings}

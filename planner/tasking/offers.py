@@ -29,8 +29,6 @@ from planner.oracles.spots import (
 def with_returns(problem: TaskProblem) -> TaskProblem:
     """Return the problem with ends for things that are where they shall be, so that they can be brought back there.
 
-    Parameters
-    ----------
     problem : things, places and goals.
     """
     there = [goal.subject for goal in problem.goals if goal.holds and goal.subject in problem.nodes]
@@ -42,8 +40,6 @@ def with_returns(problem: TaskProblem) -> TaskProblem:
 def end_about(outline: Any) -> Inside:
     """Return the end of a thing at one spot: the squares that its outline there covers, with SPOT_SLACK about them.
 
-    Parameters
-    ----------
     outline : shapely Polygon, in squares; the end is in the same frame.
     """
     west, south, east, north = outline.bounds
@@ -131,8 +127,6 @@ class Offers:
         Those aside that they reach only once others are moved, and the corners of the regions of their goals, turned by
         quarters.
 
-        Parameters
-        ----------
         problem : things, places and goals, with the places that `places` has offered.
         """
         new: dict[tuple[str, str], End] = {}

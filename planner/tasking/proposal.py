@@ -40,8 +40,6 @@ class Proposal(NamedTuple):
 def propose(facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] = ()) -> Proposal:
     """Return the plan that the encoding finds cheapest; the same answer for the same facts.
 
-    Parameters
-    ----------
     facts : as planner/asp/task wants them, without full stops.
     rules : the user's own encodings.
     about : what the names of goals mean, in words; for the record of decisions alone.

@@ -29,22 +29,14 @@ class RuleEffects:
     blamed: tuple[str, ...] = ()
 
     def names_of_closed(self, situation: Situation) -> frozenset[str]:
-        """Return the names that the closed doors bear now.
-
-        Parameters
-        ----------
-        situation : what is believed: world model, rooms, doors, corners and track.
-        """
+        """Return the names that the closed doors bear now."""
         return doors_at(self.closed, situation)
 
 
 def doors_at(middles: Sequence[XY], situation: Situation) -> frozenset[str]:
     """Return the names that doors at some places bear now.
 
-    Parameters
-    ----------
     middles : the middles (x, y) of the doors as they were, in squares, map frame.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     view = situation.model.view
     places = [(x - view.west, y - view.south) for x, y in middles]
@@ -57,15 +49,9 @@ def doors_led_round(made: MadePlan, situation: Situation) -> tuple[tuple[XY, ...
 
     Rules may give doors a price, or forbid them for some errands. Then the way of an errand is that of the plan.
 
-    Parameters
-    ----------
-    made : the plan, with the facts from which it was made.
-    situation : what is believed: world model, rooms, doors, corners and track.
+    For each errand the middles (x, y) of such doors, in squares, map frame.
 
-    Returns
-    -------
-    tuple of tuples
-        For each errand the middles (x, y) of such doors, in squares, map frame.
+    made : the plan, with the facts from which it was made.
     """
     if not rules_reach(TASK_ENCODING.stem, situation.rules):
         return ()
@@ -88,10 +74,7 @@ def _doors_of(made: MadePlan, situation: Situation) -> dict[str, XY]:
 def effects_of_rules(made: MadePlan, situation: Situation) -> RuleEffects:
     """Return what users' rules did to a plan; nothing when none of them is about task plans.
 
-    Parameters
-    ----------
     made : the plan, with the facts from which it was made.
-    situation : what is believed: world model, rooms, doors, corners and track.
     """
     rules = situation.rules
     if not made.facts or not rules_reach(TASK_ENCODING.stem, rules):

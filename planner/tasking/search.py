@@ -72,10 +72,7 @@ class PlanSearch:
     ) -> None:
         """Make a search that knows nothing but what was tried.
 
-        Parameters
-        ----------
         problem : things, places and goals.
-        situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
         oracle : verifies the steps.
         tried : steps that failed when they were carried out, as refutations.
         meant : the object that the plan before meant by each parameter of the task.
@@ -321,7 +318,6 @@ def make_plan(
     Parameters
     ----------
     problem : things, places and goals.
-    situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
     oracle : verifies the steps.
     tried : steps that failed when they were carried out, as refutations.
     meant : the object that the plan before meant by each parameter of the task.

@@ -53,10 +53,6 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
     Goals are waiting while it is open what they mean or where they hold.
     Where users' rules are about task plans, places where a goal may hold will do: no thing is taken against a rule.
 
-    Parameters
-    ----------
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track.
     where : tells where goals hold.
     """
     model = situation.model
@@ -171,10 +167,7 @@ def _numbered_wishes(stage: Stage) -> Iterator[tuple[str, Fact, int]]:
 def goal_of_place(place: str, stage: Stage) -> tuple[str, Fact] | None:
     """Return the goal or wish for an object that a place belongs to, with its name; None for a spot aside.
 
-    Parameters
-    ----------
     place : the name of the place, as `place_name` makes it.
-    stage : of the task: the goals that shall hold now.
     """
     return next(((name, goal) for name, goal, _ in _numbered(stage) if place.startswith(f"{name}_")), None)
 
@@ -182,10 +175,7 @@ def goal_of_place(place: str, stage: Stage) -> tuple[str, Fact] | None:
 def wish_of_place(place: str, stage: Stage) -> Fact | None:
     """Return the wish that a place belongs to; None when it is the place of a goal, or a spot.
 
-    Parameters
-    ----------
     place : the name of the place, as `place_name` makes it.
-    stage : of the task: the goals that shall hold now.
     """
     return next((goal for name, goal, _ in _numbered_wishes(stage) if place.startswith(f"{name}_")), None)
 

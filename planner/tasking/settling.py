@@ -22,11 +22,7 @@ def plan_that_settles(
     Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
     unmet in it. The steps returned are all that may settle something, where users have rules; () where they have none.
 
-    Parameters
-    ----------
     problem : things, places and goals; None while they are not known.
-    stage : of the task: the goals that shall hold now.
-    situation : what is believed: world model, rooms, doors, corners and track; with the user's encodings.
     given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
     refuted : the steps that geometry refuted.
     """
@@ -51,10 +47,7 @@ def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:
 
     Where an object is brought to where a goal holds before that, it is to pursue that goal.
 
-    Parameters
-    ----------
-    plan : from `plan_that_settles`.
-    stuck : whether the robot is stuck: then nothing is brought anywhere.
+    plan : from `plan_that_settles`. stuck : whether the robot is stuck: then nothing is brought anywhere.
     """
     for errand in plan.errands:
         if errand.settles:
