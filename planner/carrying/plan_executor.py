@@ -113,6 +113,8 @@ class PlanExecutor:
         """
         before, self._plan = self._plan, None
         plan = None
+        if before is not None and before.name != node.name and before.target in ends:
+            before = None  # it brought another object to an end that is meant for this one now
         if before is not None:
             plan = self._operations.revalidate(before, ends if before.name == node.name else None, situation)
         if plan is None:

@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+from geometry.manipulation.goals import At
+from geometry.motion.se2 import Pose
 from kb.body import Move
 from kb.tracing.decisions import SolverCall, record_decisions
 from kb.world.model import WorldModel
+from planner.advice import Act, Go
 from planner.agenda.decider import Decider
+from planner.carrying.plan_executor import PlanExecutor
 from planner.decision import Decision, TaskVerdict
 from simulator.explaining.fixing.recorded import task_from_texts
 from tests.planner.situations import all_felt, known_situation
@@ -57,3 +61,11 @@ def test_all_that_may_be_meant_is_tried_before_a_verdict() -> None:
     bound = decider.bound["x"]
     assert len(given_up) == 1 and bound not in given_up[0]
     assert f"x may be {'h' if bound == 'g' else 'g'} as well, and that was no better" in decision.why
+
+
+def test_a_plan_under_way_for_another_thing_is_dropped_when_the_same_end_is_meant_for_this_one() -> None:
+    situation, executor = known_situation(ACROSS), PlanExecutor()
+    one, other = situation.model.objects
+    for node in (one, other):
+        advice = executor.advise(node, {"there": At(Pose(0.0, -1.0, 0.0))}, situation)
+        assert isinstance(advice, Act | Go) and advice.why.startswith(node.name)
