@@ -7,6 +7,7 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Floats
 from geometry.passages.necks import Passage
+from geometry.raster.runs import runs_along_rows
 from geometry.routes.route import Route
 from geometry.screen import Screen
 
@@ -295,6 +296,4 @@ def rectangles_of(mask: Bools) -> str:
 
     In squares, with x along columns and y along rows (row 0 at y = 0 to 1). Empty text for an empty mask.
     """
-    edges = np.diff(np.pad(mask.astype(np.int8), ((0, 0), (1, 1))), axis=1)
-    starts, ends = np.argwhere(edges == 1).tolist(), np.argwhere(edges == -1).tolist()
-    return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for (row, a), (_, b) in zip(starts, ends, strict=True))
+    return "".join(f"M{a} {row}h{b - a}v1h{a - b}z" for row, a, b in runs_along_rows(mask).each())

@@ -11,6 +11,7 @@ from geometry.kernels.arrays import Bools, Floats
 from geometry.motion.first_contact import ContactBody, Obstacles
 from geometry.motion.obstacle_field import ObstacleField
 from geometry.motion.se2 import Motion
+from geometry.raster.runs import runs_along_rows
 
 OUTER_WALL_THICKNESS = 4.0  # squares; convention: the thickness of the wall that surrounds the array
 ROBOT_CLEARANCE = 0.45  # squares; convention: the robot keeps so far from walls where it can, less than half a square
@@ -177,7 +178,6 @@ def _runs_by_row(free: Bools) -> list[set[tuple[int, int]]]:
     `free` : (rows, columns) bool.
     """
     found: list[set[tuple[int, int]]] = [set() for _ in free]
-    rows, columns = np.nonzero(np.diff(np.pad(free, ((0, 0), (1, 1))).astype(np.int8), axis=1))
-    for row, (first, after) in zip(rows[::2].tolist(), columns.reshape(-1, 2).tolist(), strict=True):
+    for row, first, after in runs_along_rows(free).each():
         found[row].add((first, after))
     return found

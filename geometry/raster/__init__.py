@@ -7,6 +7,7 @@ Modules in reading order:
 
     rasterize             the squares that a shape covers
     components            connected components, and the rectangles that contain them
+    runs                  runs of squares along rows, and the polygon that a mask covers
     contours              boundary rings of a region of squares
     distance_transform    exact distance of every square from the nearest blocked one
     distance_rows         the same, faster, row by row where walls are near

@@ -12,6 +12,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools
 from geometry.raster.components import bounding_boxes, components, with_edge_neighbours
+from geometry.raster.runs import runs_along_rows
 
 RowColumn = tuple[int, int]  # a square as (row, column)
 VERGE_TOUCH_COLOUR = "b"  # the colour of the verge; convention (the simulated world)
@@ -274,14 +275,10 @@ def _short_runs(floor: Bools, bounds: Bools) -> Bools:
     end at the edge of the array do not count. Both arguments are masks of one shape.
     """
     short = np.zeros_like(bounds)
-    for row in range(len(bounds)):
-        line = bounds[row].astype(np.int8)
-        change = np.diff(np.concatenate([[0], line, [0]]))
-        starts, stops = np.flatnonzero(change == 1), np.flatnonzero(change == -1)
-        for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
-            inside = start > 0 and stop < len(line)
-            if inside and stop - start <= MAX_THING_LENGTH and floor[row, start - 1] and floor[row, stop]:
-                short[row, start:stop] = True
+    for row, start, stop in runs_along_rows(bounds).each():
+        inside = start > 0 and stop < bounds.shape[1]
+        if inside and stop - start <= MAX_THING_LENGTH and floor[row, start - 1] and floor[row, stop]:
+            short[row, start:stop] = True
     return short
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from geometry.kernels.arrays import Bools, Labels
 from geometry.raster.components import components
+from geometry.raster.runs import runs_along_rows
 from kb.perception.protrusions import MAX_THING_LENGTH, RowColumn
 from kb.perception.regions import Percept, Region, label_of
 
@@ -179,13 +180,9 @@ def _loose_ends(line: SeamLine, region: Bools) -> int:
 def _lines(region: Bools, longest: int = MAX_THING_LENGTH) -> Iterator[SeamLine]:
     """Yield the lines from rim to rim that are at most `longest` squares long, upright ones first."""
     for upright, mask in ((True, region), (False, region.T)):
-        joined = mask[:, 1:] & mask[:, :-1]
-        for at in range(joined.shape[1]):
-            change = np.diff(np.concatenate([[0], joined[:, at].astype(np.int8), [0]]))
-            starts, stops = np.flatnonzero(change == 1).tolist(), np.flatnonzero(change == -1).tolist()
-            for start, stop in zip(starts, stops, strict=True):
-                if stop - start <= longest:
-                    yield SeamLine(upright, at + 1, start, stop - 1)
+        for at, start, stop in runs_along_rows((mask[:, 1:] & mask[:, :-1]).T).each():
+            if stop - start <= longest:
+                yield SeamLine(upright, at + 1, start, stop - 1)
 
 
 def _labels(region: Bools, cuts: list[SeamLine]) -> Labels:

@@ -19,6 +19,7 @@ from geometry.manipulation.goals import End, goal_key, moved
 from geometry.manipulation.plan_carrying import At, Between, CarryingPlan, InCorner, Inside, plan_carrying
 from geometry.motion.se2 import Rotate, Translate
 from geometry.raster.rasterize import squares, squares_after
+from geometry.raster.runs import mask_to_polygon
 from kb.language.vocabulary import ROBOT
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.objects.held_object import is_grid_aligned
@@ -31,7 +32,6 @@ from planner.goals.placement import (
     CERTAIN_OBJECT,
     POSSIBLE_OBJECT,
     forbidden_squares,
-    mask_to_polygon,
     possible_extension,
     to_view_frame,
 )

@@ -12,6 +12,7 @@ from geometry.kernels.arrays import XY
 from geometry.manipulation.goals import End
 from geometry.manipulation.plan_carrying import Inside
 from geometry.motion.se2 import Rotate, Translate
+from geometry.raster.runs import mask_to_polygon
 from kb.body import Grasp, Move, Release
 from kb.objects.held_object import is_grid_aligned
 from kb.perception.frame import CENTRE
@@ -32,7 +33,7 @@ from planner.carrying.remaining_plan import (
     grasp_direction,
     is_at,
 )
-from planner.goals.placement import mask_to_polygon, pull_out_end
+from planner.goals.placement import pull_out_end
 from planner.screen.projection import SquareIndices, square_index
 from planner.situation import Situation
 from planner.skills.failed_grasps import FailedGrasps, rotated_grasps

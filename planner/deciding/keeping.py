@@ -13,6 +13,7 @@ import numpy as np
 import shapely
 
 from geometry.kernels.arrays import XY
+from geometry.raster.runs import mask_to_polygon
 from kb.body import Command, Move, Push
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
@@ -21,7 +22,6 @@ from kb.world.model import Node, WorldModel
 from kb.world.rooms import went_through
 from planner.constraints import CARRY_NOTHING_THROUGH, SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
 from planner.decision import Decision, TaskVerdict, nothing_to_do
-from planner.goals.placement import mask_to_polygon
 from planner.situation import Situation
 
 OUTLINE_DOUBT = 0.25  # squares by which a measured outline may lie elsewhere, as for poses (planner.goals.near_goal)

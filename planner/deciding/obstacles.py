@@ -14,9 +14,10 @@ from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
 from geometry.raster.components import components, with_edge_neighbours
 from geometry.raster.geodesic import FIFTHS_PER_SQUARE, GEODESIC_UNREACHED
+from geometry.raster.runs import mask_to_polygon
 from kb.world.model import Node, WorldModel
 from planner.goals.embedded import Supposition, supposed_in_walls
-from planner.goals.placement import NOOK_RANGE, floor_leads_away, mask_to_polygon, pull_out_pose
+from planner.goals.placement import NOOK_RANGE, floor_leads_away, pull_out_pose
 from planner.navigation.routes import PlannedRoute, find_routes
 from planner.screen.projection import UNSEEN_LEVEL, CostMaps, dilate
 from planner.situation import Situation

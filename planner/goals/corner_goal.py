@@ -18,6 +18,7 @@ from geometry.manipulation.plan_carrying import Between, InCorner, Inside
 from geometry.motion.se2 import Pose, Translate
 from geometry.raster.components import components
 from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
+from geometry.raster.runs import mask_to_polygon
 from kb.language.terms import Fact
 from kb.world.model import MAX_CLEAR_PROBABILITY, Node
 from planner.goals.placement import (
@@ -27,7 +28,6 @@ from planner.goals.placement import (
     Placement,
     RegionEnds,
     is_off_quarter_turn,
-    mask_to_polygon,
     meets_end,
     robot_can_leave,
     to_view_frame,

@@ -12,10 +12,11 @@ import shapely
 from geometry.manipulation.goals import shape_at_pose
 from geometry.manipulation.plan_carrying import At, Inside
 from geometry.motion.se2 import Pose
+from geometry.raster.runs import mask_to_polygon
 from kb.language.terms import Fact, Number, Text
 from kb.language.wkt import parse_wkt
 from kb.world.model import Node
-from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, mask_to_polygon, to_view_frame
+from planner.goals.placement import ANGLE_TOLERANCE, KnownEnds, Placement, to_view_frame
 from planner.situation import Situation
 
 BESIDE_DISTANCE = 1.0  # squares between two things that are beside each other, at most (the meaning of the goal)

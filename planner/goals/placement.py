@@ -14,6 +14,7 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.manipulation.goals import At, End, Inside, is_goal_met
 from geometry.motion.se2 import Pose, Translate
+from geometry.raster.runs import mask_to_polygon
 from kb.language.vocabulary import ROBOT
 from kb.localisation.propose.larger_object import MAX_HIDDEN_DEPTH, SIDE_DIRECTIONS
 from kb.world.model import Node, WorldModel
@@ -154,18 +155,6 @@ def to_view_frame(shape: Any, situation: Situation) -> Any:
     """
     west, south = situation.model.view.west, situation.model.view.south
     return shapely.transform(shape, lambda points: points - np.array([west, south]))
-
-
-def mask_to_polygon(mask: Bools) -> Any:
-    """Convert a mask (rows, columns) of bool to one shapely geometry, in squares, in the frame of the array.
-
-    x is the column and y the row; (0, 0) is the outer corner of square [0, 0]. A Polygon or MultiPolygon; an empty
-    geometry for an empty mask.
-    """
-    runs = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    rows, starts = np.nonzero(runs == 1)
-    stops = np.nonzero(runs == -1)[1]
-    return shapely.union_all(shapely.box(starts, rows, stops, rows + 1))
 
 
 def forbidden_squares(node: Node, situation: Situation, margin: int = 0) -> Bools:

@@ -16,6 +16,7 @@ import numpy as np
 
 from geometry.kernels.arrays import Bools, Square
 from geometry.raster.components import components, with_edge_neighbours
+from geometry.raster.runs import runs_along_rows
 from kb.perception.interpretation import LONGEST_OBJECT
 from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import WorldModel
@@ -261,11 +262,8 @@ def _niches(space: Bools) -> dict[Square, Bools]:
 
 def _run_lengths(mask: Bools) -> "np.ndarray[tuple[int, ...], np.dtype[np.int32]]":
     """Return for each True square the number of True squares in a row with it along its row; 0 for others."""
-    change = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    rows, starts = np.nonzero(change == 1)
-    stops = np.nonzero(change == -1)[1]
     lengths = np.zeros(mask.shape, np.int32)
-    for row, start, stop in zip(rows.tolist(), starts.tolist(), stops.tolist(), strict=True):
+    for row, start, stop in runs_along_rows(mask).each():
         lengths[row, start:stop] = stop - start
     return lengths
 

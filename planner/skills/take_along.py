@@ -14,8 +14,9 @@ from geometry.manipulation.workspace import Workspace
 from geometry.motion.first_contact import ContactBody
 from geometry.motion.se2 import Translate
 from geometry.raster.components import components
+from geometry.raster.runs import mask_to_polygon
 from kb.world.model import Node
-from planner.goals.placement import floor_leads_away, forbidden_squares, mask_to_polygon, to_view_frame
+from planner.goals.placement import floor_leads_away, forbidden_squares, to_view_frame
 from planner.screen.moves import CARRYING_PACE
 from planner.screen.projection import SquareIndices, dilate, indices_to_mask
 from planner.situation import Situation

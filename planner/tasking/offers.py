@@ -11,8 +11,8 @@ from geometry.kernels.arrays import Bools, Ints
 from geometry.manipulation.goals import End, Inside
 from geometry.motion.se2 import Translate
 from geometry.raster.rasterize import squares
+from geometry.raster.runs import mask_to_polygon
 from kb.world.rooms import NO_ROOM
-from planner.goals.placement import mask_to_polygon
 from planner.oracles.carry import FloorKind, Floors
 from planner.oracles.problem import HERE, TaskProblem
 from planner.oracles.spots import (

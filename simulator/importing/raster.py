@@ -14,6 +14,7 @@ import shapely
 
 from geometry.kernels.arrays import Bools
 from geometry.raster.components import components
+from geometry.raster.runs import mask_to_polygon
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.importing.imported import COLOUR_LETTERS, region_text
 from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
@@ -260,7 +261,4 @@ def outline_of_mask(mask: Bools) -> Any:
 
     mask : (rows, columns) bool, row 0 in the south; not all False.
     """
-    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    rows, west = (edges == 1).nonzero()
-    east = (edges == -1).nonzero()[1]
-    return shapely.normalize(shapely.union_all(shapely.box(west, rows, east, rows + 1)).simplify(0))
+    return shapely.normalize(mask_to_polygon(mask).simplify(0))

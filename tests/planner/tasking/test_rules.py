@@ -8,10 +8,10 @@ import pytest
 
 from benchmarks.worlds.drawn import drawn_problem
 from geometry.manipulation.goals import End, Inside
+from geometry.raster.runs import mask_to_polygon
 from kb.body import Grasp
 from kb.language.reader import facts_from_text
 from planner.goals.object_goals import goal_placement
-from planner.goals.placement import mask_to_polygon
 from planner.goals.robot_goals import destination
 from planner.oracles.carry import CarryOracle
 from planner.situation import Situation
