@@ -35,7 +35,7 @@ from kb.localisation.score import Judgement
 from kb.localisation.state import TrackerState
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, OCCUPIED, OccupancyMap
-from kb.mapping.patch import patch_of_squares
+from kb.mapping.patch import Patch, patch_of_squares
 from kb.objects.held_object import COMMAND_ROUNDING, HeldObject, held_or_moved, subtract_held_objects
 from kb.perception.retina import count_ranges
 
@@ -124,7 +124,7 @@ class Tracker:
         """
         held_objects = self.state.held_objects
         if held.name not in held_objects:
-            self._declare_floor(held)
+            self._declare(held.possible, FREE)
             held_objects = {**held_objects, held.name: replace(held, since=len(self.state.observations))}
         self.state = replace(self.state, held_objects=held_objects, in_hand=held.name)
 
@@ -261,12 +261,10 @@ class Tracker:
         ranges : (160, 2) int16, least and greatest count of occupied squares under each field.
         """
         if chosen.instead is not None:
-            self._declare_floor(chosen.instead)
+            self._declare(chosen.instead.possible, FREE)
             self.update_object(chosen.instead)
         if chosen.left:
-            occupancy, rest = self.state.occupancy, patch_of_squares(chosen.left)
-            squares = occupancy.squares(rest.west, rest.south, rest.mask)
-            occupancy.declare(squares, OCCUPIED, len(self.state.observations) - 1)
+            self._declare(patch_of_squares(chosen.left), OCCUPIED)
         self.state = replace(self.state, slipped=self.state.slipped or chosen.how == "slipped")
         held, motion = self.state.held_objects[name], command_motion(command, self.state.frame, self.state.place)
         suspected = contact_suspects(self.state, held, chosen, motion)
@@ -344,14 +342,12 @@ class Tracker:
         )
         self.state = replace(state, motions=(*state.motions[1 - MAX_MOTIONS :], motion))
 
-    def _declare_floor(self, held: HeldObject) -> None:
-        """Settle all squares on which an object lies, or may lie, as free in the occupancy map.
+    def _declare(self, patch: Patch, value: int) -> None:
+        """Settle the squares of a patch, map frame, as FREE or OCCUPIED; they are credited to the newest observation.
 
-        They are credited to the newest observation. held : the object where it lies, map frame.
+        All squares on which an object in hand lies, or may lie, are FREE: the map holds what stays.
         """
-        occupancy, patch = self.state.occupancy, held.possible
-        squares = occupancy.squares(patch.west, patch.south, patch.mask)
-        occupancy.declare(squares, FREE, len(self.state.observations) - 1)
+        self.state.occupancy.declare_patch(patch, value, len(self.state.observations) - 1)
 
     def _integrate(self, explanation: Explanation, ranges: FieldRanges) -> Accommodation:
         """Integrate an explained observation into the map, without what the held objects show of themselves.

@@ -359,6 +359,13 @@ class OccupancyMap:
         self.state[mask] = value
         self.settled_by[mask] = number
 
+    def declare_patch(self, patch: tuple[int, int, Bools], value: int, number: int) -> None:
+        """Settle the squares of a patch by other knowledge than counts; see `declare`.
+
+        patch : west, south, the square of the map frame at [0, 0] of the mask, and the mask; it lies within the map.
+        """
+        self.declare(self.squares(*patch), value, number)
+
     # -- solving ---------------------------------------------------------------------------------
 
     def window(self, west: int, south: int, shape: tuple[int, ...]) -> NDArray[np.int8]:

@@ -159,8 +159,7 @@ class MapReplay:
             lay = self._taken[held.name] = _first_held(held, self.new, self.old, self._occupancy)
             patch = lay.possible
             self._occupancy.make_room(patch.west, patch.south)
-            squares = self._occupancy.squares(patch.west, patch.south, patch.mask)
-            self._occupancy.declare(squares, FREE, number - 1)
+            self._occupancy.declare_patch(patch, FREE, number - 1)
 
 
 def remap(

@@ -353,6 +353,10 @@ class Surprise:
 
     # -- after it ---------------------------------------------------------------------------------
 
+    def others(self, held: HeldObject) -> list[HeldObject]:
+        """Return all objects that were ever held except the one of the name of `held`, where they lie, map frame."""
+        return [other for other in self.held_objects.values() if other.name != held.name]
+
     def objects_after(self, outcome: CarryOutcome) -> list[HeldObject]:
         """Return all held objects after an outcome of the motion of the one in hand, believed frame.
 

@@ -82,7 +82,7 @@ def shortened_turn(surprise: Surprise, held: HeldObject, motion: Rotate) -> Carr
     surprise : the observation after the turn. held : the object before the turn. motion : as commanded, map frame.
     """
     place, polygon = surprise.place, held.polygon
-    others = [other for other in surprise.held_objects.values() if other.name != held.name]
+    others = surprise.others(held)
     whole = _turned(held, motion.carry(polygon), held.slack, motion.degrees)
     crowded = _count_crowded(surprise, whole, others, place)
     if crowded < MIN_CROWDED_SQUARES:

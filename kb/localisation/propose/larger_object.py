@@ -92,7 +92,7 @@ def _clashes_beside(length: _Length, squares: set[Square], surprise: Surprise) -
     open_ = {square for square in squares if floor.state[floor.index(*square)] == OPEN}
     if open_:
         patch = patch_of_squares(open_)
-        floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
+        floor.declare_patch(patch, FREE, len(surprise.observations) - 1)
     place = length.explanation.place
     return count_clashes(surprise.frame, floor, length.held_objects, place, surprise.ranges, only_whether=True) > 0
 
@@ -106,7 +106,7 @@ def _agreeing_lengths(
     side : one of SIDE_DIRECTIONS.
     """
     occupancy, seen = surprise.occupancy, patch_of_polygon(held.polygon).squares()
-    others = [other for other in surprise.held_objects.values() if other.name != held.name]
+    others = surprise.others(held)
     for depth in range(1, MAX_HIDDEN_DEPTH + 1):
         whole = _extended(held, side, depth)
         hidden = patch_of_polygon(whole.polygon).squares() - seen
@@ -115,7 +115,7 @@ def _agreeing_lengths(
             return
         outcome = predicted_outcome(surprise.place, whole.polygon, motion)._replace(how="larger")
         patch, floor = patch_of_squares(hidden), occupancy.copy()
-        floor.declare(floor.squares(patch.west, patch.south, patch.mask), FREE, len(surprise.observations) - 1)
+        floor.declare_patch(patch, FREE, len(surprise.observations) - 1)
         held_objects = [*others, whole.moved(outcome.polygon, whole.slack, commanded=True)]
         if not count_clashes(surprise.frame, floor, held_objects, outcome.place, surprise.ranges):
             found = Explanation("larger", outcome.place, surprise.frame, 0, float(depth), outcome, instead=whole)

@@ -12,6 +12,7 @@ import shapely
 from geometry.kernels.arrays import Bools
 from geometry.motion.se2 import Motion, Translate
 from kb.localisation.hypotheses.carry_outcomes import predicted_outcome
+from kb.localisation.hypotheses.contacts import square_polygon
 from kb.localisation.hypotheses.explanation import Explanation
 from kb.localisation.hypotheses.what_if import Surprise, count_clashes
 from kb.mapping.occupancy import OCCUPIED
@@ -43,7 +44,7 @@ def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
     if held.proven or not isinstance(motion, Translate):
         return
     patch = held.seen_on or patch_of_polygon(held.polygon)
-    others = [other for other in surprise.held_objects.values() if other.name != held.name]
+    others = surprise.others(held)
     for mask in halves(patch.mask):
         part, rest = _parted(held, patch, mask), Patch(patch.west, patch.south, patch.mask & ~mask)
         if part is None or not _is_beside(part, surprise):
@@ -52,8 +53,7 @@ def parted_objects(surprise: Surprise, held: HeldObject, motion: Motion) -> Iter
         if patch_of_polygon(outcome.polygon).squares() & rest.squares():
             continue
         occupancy = surprise.occupancy.copy()
-        squares = occupancy.squares(rest.west, rest.south, rest.mask)
-        occupancy.declare(squares, OCCUPIED, len(surprise.observations) - 1)
+        occupancy.declare_patch(rest, OCCUPIED, len(surprise.observations) - 1)
         held_objects = [*others, part.moved(outcome.polygon, part.slack, commanded=True)]
         if not count_clashes(surprise.frame, occupancy, held_objects, outcome.place, surprise.ranges):
             left = frozenset(rest.squares())
@@ -68,7 +68,7 @@ def _parted(held: HeldObject, patch: Patch, mask: Bools) -> HeldObject | None:
     sub-cell extent are unknown. patch : the squares of the object. mask : those of the part, bool.
     """
     squares = Patch(patch.west, patch.south, mask).squares()
-    cells = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for x, y in squares])
+    cells = shapely.union_all(list(map(square_polygon, squares)))
     polygon = held.polygon.intersection(cells) if is_grid_aligned(held.polygon) else cells
     if polygon.geom_type != "Polygon" or polygon.is_empty:
         return None
