@@ -15,7 +15,7 @@ from kb.language.vocabulary import ROBOT
 from kb.world.facts import appearance_facts
 from kb.world.model import hundredths
 from kb.world.rooms import NO_ROOM
-from planner.oracles.problem import HERE, TaskProblem
+from planner.oracles.problem import HERE, PlacedGoal, TaskProblem
 from planner.oracles.spots import SPOT_SLACK
 from planner.situation import Situation
 from planner.tasking.task_plan import RefutedStep
@@ -79,25 +79,34 @@ def problem_facts(
     facts += [f"place({name},{place})" for name, place in problem.places if place != HERE]
     facts += [f"place({ROBOT},{place})" for place in problem.stands]
     facts += [f"aside({name},{place})" for name, place in aside]
-    ranks: dict[str, int] = {}
-    orders: dict[str, int] = {}
-    for number, goal in enumerate(problem.goals):
-        if goal.parameter:
-            orders.setdefault(goal.parameter, number)
-            facts.append(f"about({goal.name},{goal.parameter})")
-        else:
-            ranks.setdefault(goal.subject, number)
-        facts.append(f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})")
-        if goal.name in problem.waiting:
-            facts.append(f"waits({goal.name})")
-        if goal.holds:
-            facts.append(f"fulfils({goal.subject},{HERE},{goal.name})")
-    facts += [f"rank({name},{number})" for name, number in ranks.items()]
-    facts += [f"order({parameter},{number})" for parameter, number in orders.items()]
+    facts += goal_facts(problem.goals, problem.waiting)
     facts += [f"fulfils({name},{place},{goal})" for (name, place), goals in problem.fulfils.items() for goal in goals]
     facts += map(str, overlaps)
     facts += _part_facts(problem, spots)
     return (*facts, *_room_facts(problem, situation), *_world_facts(problem, situation))
+
+
+def goal_facts(goals: Sequence[PlacedGoal], waiting: Sequence[str]) -> Iterator[str]:
+    """Yield goals and wishes with what they are about, whether they hold, and their order, as facts without full stops.
+
+    goals : in the order of the task. waiting : the names of those of which it is open what they are about, or where
+    they hold.
+    """
+    ranks: dict[str, int] = {}
+    orders: dict[str, int] = {}
+    for number, goal in enumerate(goals):
+        if goal.parameter:
+            orders.setdefault(goal.parameter, number)
+            yield f"about({goal.name},{goal.parameter})"
+        else:
+            ranks.setdefault(goal.subject, number)
+        yield f"goal({goal.name})" if goal.weight is None else f"wish({goal.name},{goal.weight})"
+        if goal.name in waiting:
+            yield f"waits({goal.name})"
+        if goal.holds:
+            yield f"fulfils({goal.subject},{HERE},{goal.name})"
+    yield from (f"rank({name},{number})" for name, number in ranks.items())
+    yield from (f"order({parameter},{number})" for parameter, number in orders.items())
 
 
 def answer_facts(answers: Answers) -> Iterator[str]:

@@ -82,7 +82,7 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
         if node is None or not (holds or ends) or (weight is None and is_open and not ruled):
             if weight is None:  # else it is a wish of which nothing is known yet
                 subject = "" if node is None else node.name
-                goals.append(PlacedGoal(name, str(goal), subject, False, None, str(goal.args[0])))
+                goals.append(waiting_goal(name, goal, subject))
                 waiting.append(name)
             continue
         open_goals += [name] * (is_open and weight is None)
@@ -118,6 +118,14 @@ def problem_of(stage: Stage, situation: Situation, where: WhereGoalsHold) -> Tas
     meanings = _meanings(things, unlike, situation)
     is_open, placed = bool(open_goals), _goals_before_wishes(goals)
     return TaskProblem(things, placed, places, fulfils, stands, state, is_open, meanings, tuple(waiting))
+
+
+def waiting_goal(name: str, goal: Fact, subject: str = "") -> PlacedGoal:
+    """Return a goal of which it is open what it is about or where it holds.
+
+    subject : the object that its parameter is bound to; "" for none.
+    """
+    return PlacedGoal(name, str(goal), subject, False, None, str(goal.args[0]))
 
 
 def _also_meant(goal: Fact, things: Mapping[str, Node], situation: Situation) -> list[Node]:

@@ -1,12 +1,13 @@
 """The task plan where something is open: steps that find, see, feel or move away what is not settled."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from planner.oracles.problem import TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.facts import Answers, answer_facts, overlaps_of, problem_facts
+from planner.tasking.facts import Answers, answer_facts, goal_facts, overlaps_of, problem_facts
 from planner.tasking.proposal import propose
+from planner.tasking.setting import waiting_goal
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
 
@@ -26,19 +27,22 @@ def plan_that_settles(
     given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
     refuted : the steps that geometry refuted.
     """
-    facts = [*given, *_goals(stage, problem)]
+    facts = list(given)
     if situation.model.held is not None:
         facts.append(f"holds({situation.model.held})")
-    if problem is not None:
+    if problem is None:
+        goals = [waiting_goal(f"g{number}", goal) for number, goal in enumerate(stage.carried, 1)]
+        facts += goal_facts(goals, [goal.name for goal in goals])
+    else:
         facts += problem_facts(problem, (), situation, frozenset(), overlaps_of(problem))
         facts += answer_facts(Answers(refutations=refuted))
     horizon = max(1, len(stage.goals) + sum(fact.startswith("stuck(") for fact in given))
-    goals = () if problem is None else problem.goals
-    about = [f"{goal.name}: {goal.words}" for goal in goals]
+    placed = () if problem is None else problem.goals
+    about = [f"{goal.name}: {goal.words}" for goal in placed]
     found = propose((f"horizon({horizon})", *facts), situation.rules, about)
     hoped = [errand.goal for errand in found.errands if errand.settles and errand.goal]
     unmet = tuple(dict.fromkeys([*hoped, *found.unmet]))
-    plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=goals, refutations=refuted)
+    plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=placed, refutations=refuted)
     return plan, found.left if situation.rules else ()
 
 
@@ -55,13 +59,3 @@ def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:
         if errand.goal and errand.action == "carry" and not stuck:
             return Errand("pursue", errand.goal)
     return None
-
-
-def _goals(stage: Stage, problem: TaskProblem | None) -> Iterator[str]:
-    """Yield the goals for objects as facts where there is no problem that names them."""
-    if problem is None:
-        for number, goal in enumerate(stage.carried, 1):
-            yield f"goal(g{number})"
-            yield f"waits(g{number})"
-            yield f"about(g{number},{goal.args[0]})"
-            yield f"order({goal.args[0]},{number - 1})"
