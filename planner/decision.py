@@ -63,3 +63,8 @@ def nothing_to_do(why: str) -> Decision:
 def done(why: str) -> Decision:
     """Return the decision that what was asked for holds."""
     return Decision(None, why, TaskVerdict.DONE)
+
+
+def with_command(decision: Decision | None) -> Decision | None:
+    """Return a decision that has a command; None for a verdict, for nothing to do, and for None."""
+    return None if decision is None or decision.command is None else decision

@@ -10,6 +10,7 @@ import shapely
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.raster.rasterize import squares
+from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
 from kb.mapping.patch import Patch
 from kb.task.task import Task
@@ -93,6 +94,10 @@ class Situation:
     def object_of(self, parameter: str) -> Node | None:
         """Return the object that a parameter of the task means; None while none is known, and for any other word."""
         return self.model.object(self.binding.get(parameter, ""))
+
+    def named_by(self, goals: Iterable[Fact]) -> frozenset[str]:
+        """Return the names of the objects of which some goals speak, and "" where a term means none that is known."""
+        return frozenset(self.binding.get(str(term), "") for goal in goals for term in goal.args)
 
     def along_with(self, patch: Patch) -> "Situation":
         """Return the situation with cost maps for a robot that carries an object along, so that it blocks no way."""

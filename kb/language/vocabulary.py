@@ -216,12 +216,14 @@ TASK_GOAL_ARGUMENT = fact_argument("a goal of the task", GOAL_CONDITIONS)
 PLANNED_PLACE_ARGUMENT = ArgumentType("place of a plan", NAME_ARGUMENT.check)
 # What a step of the task plan may settle: the name of a goal, or all, robot, plan.
 PLAN_SUBJECT_ARGUMENT = ArgumentType("what a step settles", NAME_ARGUMENT.check)
+# The steps of the task plan that settle what is open (planner/asp/task/settling.lp).
+SETTLING_STEPS = ("find", "pursue", "pull", "make_way", "try", "feel", "bare")
 # The steps of the task plan (planner/asp/task).
 STATED_STEPS: Vocabulary = {
     "carry": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "clear": (OBJECT_ARGUMENT, PLANNED_PLACE_ARGUMENT),
     "arrive": (PLANNED_PLACE_ARGUMENT,),
-    **dict.fromkeys(("find", "pursue", "pull", "make_way", "try", "feel", "bare"), (PLAN_SUBJECT_ARGUMENT,)),
+    **dict.fromkeys(SETTLING_STEPS, (PLAN_SUBJECT_ARGUMENT,)),
 }
 PLAN_STEP_ARGUMENT = fact_argument("a step of a plan", STATED_STEPS)
 # The circumstances on which a refutation rests.

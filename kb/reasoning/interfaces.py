@@ -22,6 +22,7 @@ from kb.language.vocabulary import (
     CORNER_NAMES,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
+    SETTLING_STEPS,
     SHAPE_CLASSES,
     Signature,
 )
@@ -61,7 +62,6 @@ PLACE_ARGUMENT, GOAL_ARGUMENT = _name_argument("place"), _name_argument("goal")
 PLAN_ROOM_ARGUMENT, PLAN_DOOR_ARGUMENT = _name_argument("room"), _name_argument("door")
 REFUTATION_ARGUMENT, TIME_ARGUMENT = _number_argument("refutation"), _number_argument("time")
 # The steps of a task plan, with their numbers of arguments.
-SETTLING_STEPS = ("find", "pursue", "pull", "make_way", "try", "feel", "bare")  # those that settle what is open
 PLAN_STEPS: Mapping[str, int] = {"carry": 2, "clear": 2, "arrive": 1, "go": 1} | dict.fromkeys(SETTLING_STEPS, 1)
 
 

@@ -57,11 +57,9 @@ class Activities:
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
-            if found.kind == "settle":
-                step = self.errands.settle(turn, [*_unknown(turn), *agenda.results])
-                if step:
-                    agenda.plan(step)
-                    continue
+            if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
+                agenda.plan(step)
+                continue
             decision = self._allowed(self._do(found, turn, last), turn)
             if decision.command is not None:
                 agenda.record()
@@ -105,7 +103,7 @@ class Activities:
             "resume": lambda: self._resume(activity.subject, turn),
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(turn),
-            "settle": lambda: self._nothing_settles(),
+            "settle": self._nothing_settles,
             "find": lambda: self._transporter.towards(goals[0], ruled),
             "pursue": lambda: self._transporter.towards(goals[0], ruled),
             "go": lambda: self._own.go(ruled, self.errands.intention),

@@ -69,7 +69,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
-    several = things_in_question(model, situation.cost_maps, scope)
+    several = things_in_question(situation.cost_maps, scope)
     if not several:
         return ""
     seen = "was not seen to move as one thing" if several[0].moved else "was never moved"

@@ -9,6 +9,7 @@ from planner.decision import Decision
 from planner.goals.placement import CERTAIN_OBJECT
 from planner.navigation.subgoals import Subgoal
 from planner.sights.frontiers import touch_viewpoint
+from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
 
@@ -36,6 +37,21 @@ def bring_to_end(node: Node, name: str, end: End, turn: StageTurn, purpose: str 
     advice = turn.executor.advise(node, {name: end}, turn.situation)
     if not isinstance(advice, Act):
         return turn.prepare(advice)
-    if turn.pursuer.closes_loop(turn.situation.model, advice.command):
+    if turn.closes_loop(advice.command):
         return None
     return Decision(advice.command, f"{purpose}{advice.why}; {turn.stage}")
+
+
+def carry_on(node: Node, turn: StageTurn, supposed: Situation) -> Decision | None:
+    """Return the next command of the plan under way for an object in hand; None when there is none, or it would loop.
+
+    Parameters
+    ----------
+    node : the object.
+    turn : the stage, what is believed, and the tools.
+    supposed : the situation for which the plan was made: as believed, or with what is supposed of the object besides.
+    """
+    act = turn.executor.continue_plan(node, supposed)
+    if act is None or turn.closes_loop(act.command):
+        return None
+    return Decision(act.command, f"{act.why}; {turn.stage}")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.world.model import Node
-from planner.deciding.bringing import bring_to_end
+from planner.deciding.bringing import bring_to_end, carry_on
 from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
 from planner.deciding.stage_turn import StageTurn
@@ -53,15 +53,15 @@ class ObstacleClearer:
             instead = self._move_first(self._movable(turn.situation), turn, node.name)
             if instead is not None:
                 return instead
-        act = None
+        carried = None
         if node is not None and held == node.name:
             last = self._supposed
             again = None if last is None else suppose(node, last.side, last.depth, turn.situation)
-            act = turn.executor.continue_plan(node, turn.situation if again is None else again.situation)
-        if act is None or turn.pursuer.closes_loop(turn.situation.model, act.command):
+            carried = carry_on(node, turn, turn.situation if again is None else again.situation)
+        if carried is None:
             gone, self._moving = self._moving, ""
             return nothing_to_do(f"{gone} is no longer moved aside")
-        return Decision(act.command, f"{act.why}; {turn.stage}")
+        return carried
 
     def feel_on(self, turn: StageTurn) -> Decision:
         """Return the next command to clear what was found in a wall, or to feel on; nothing when nothing is left.
@@ -131,7 +131,7 @@ class ObstacleClearer:
 
     def _let_stay(self, goals: Sequence[Fact], situation: Situation) -> None:
         """Remember that what some goals speak of stays where it is."""
-        self._stays = frozenset(situation.binding.get(str(term), "") for goal in goals for term in goal.args)
+        self._stays = situation.named_by(goals)
 
     def _pull(self, turn: StageTurn) -> Decision | None:
         """Return the next command to move what may go on in a wall; None for no such thing."""

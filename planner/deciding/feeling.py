@@ -14,7 +14,7 @@ from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
 from planner.deciding.stage_turn import StageTurn
-from planner.decision import Decision
+from planner.decision import Decision, with_command
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
 from planner.screen.moves import one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
@@ -91,8 +91,7 @@ def feel_rims(rims: Sequence[Viewpoint], turn: StageTurn) -> Decision | None:
 
     rims : for each the floor from which it is felt. turn : the stage, what is believed, and the tools.
     """
-    felt = turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims]) if rims else None
-    return None if felt is None or felt.command is None else felt
+    return with_command(turn.seek([Subgoal(SubgoalKind.INSPECT, *rim) for rim in rims])) if rims else None
 
 
 def feel_rim(node: Node, turn: StageTurn) -> Decision | None:

@@ -12,7 +12,7 @@ from kb.world.model import WorldModel
 from planner.advice import Go, See
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import contact_subgoals
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, with_command
 from planner.navigation.fewest_moves import FewestMoves
 from planner.navigation.loop_guard import LoopGuard
 from planner.navigation.routes import PlannedRoute, choose_route, find_routes
@@ -137,7 +137,7 @@ class Pursuer:
             walk = self.go(advice, stage, situation)
         elif isinstance(advice, See):
             walk = self.pursue_look(Subgoal(SubgoalKind.INSPECT, *advice.viewpoint), stage, situation)
-        return None if walk is None or walk.command is None else walk
+        return with_command(walk)
 
     def feel_before_verdict(self, ask: Callable[[], Decision], stage: Stage, situation: Situation) -> Decision:
         """Return what is decided; before a verdict, feel what may be an object against a wall, or part of a wall.

@@ -5,13 +5,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from geometry.kernels.arrays import XY
+from kb.body import Command
 from kb.language.terms import Fact
 from kb.task.binding import Reconciliation
 from planner.advice import Go
 from planner.carrying.plan_executor import Advice, PlanExecutor
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
-from planner.decision import Decision, TaskVerdict
+from planner.decision import Decision, TaskVerdict, with_command
 from planner.navigation.subgoals import Subgoal
 from planner.situation import Situation
 from planner.stages import Stage
@@ -67,8 +68,15 @@ class StageTurn:
         verdict: TaskVerdict = TaskVerdict.IMPOSSIBLE,
         along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
-        """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue."""
+        """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue.
+
+        missing : returns what is missing, in words; "" by default.
+        """
         return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, verdict, along)
+
+    def closes_loop(self, command: Command) -> bool:
+        """Return whether a command that is about to be given leads in a loop: see Pursuer.closes_loop."""
+        return self.pursuer.closes_loop(self.situation.model, command)
 
     def look(self, look: Subgoal | None) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look."""
@@ -76,8 +84,7 @@ class StageTurn:
 
     def look_if_reached(self, look: Subgoal | None) -> Decision | None:
         """Return the next command towards a look; None for no look, or when no way leads there."""
-        found = self.look(look)
-        return None if found is None or found.command is None else found
+        return with_command(self.look(look))
 
     def go(self, go: Go) -> Decision:
         """Return the next command to where an object is grasped, or the verdict: see Pursuer.go."""

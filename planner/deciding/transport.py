@@ -20,7 +20,7 @@ from planner.carrying.plan_executor import Advice
 from planner.deciding.search import subgoals_towards
 from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import look_before_grasp, look_for_more
-from planner.decision import Decision, TaskVerdict, done, nothing_to_do
+from planner.decision import Decision, TaskVerdict, done, nothing_to_do, with_command
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
 from planner.goals.joint import OPPOSITE_CORNERS, conflicting_goals
 from planner.goals.object_goals import goal_placement
@@ -237,7 +237,7 @@ class Transporter:
         node : the object that is carried.
         turn : the stage, what is believed, and the tools.
         """
-        if isinstance(advice.command, Push | Turn) and turn.pursuer.closes_loop(turn.situation.model, advice.command):
+        if isinstance(advice.command, Push | Turn) and turn.closes_loop(advice.command):
             advice = turn.executor.release_looping(turn.situation.model)
         if isinstance(advice.command, Move | Grasp):
             subgoal = look_before_grasp(node, turn.executor.turns, turn.situation)
@@ -412,8 +412,7 @@ def _look_at(node: Node, turn: StageTurn) -> Decision | None:
         look = turn.look(turn.verifier.next_look(node, turn.situation))
         if look is not None:
             return look
-    look = turn.look(look_for_more(node, turn.situation))
-    return None if look is None or look.command is None else look
+    return turn.look_if_reached(look_for_more(node, turn.situation))
 
 
 def _look_by_the_way(node: Node, land: Placement, turn: StageTurn) -> Decision | None:
@@ -444,8 +443,7 @@ def _take_along(node: Node, turn: StageTurn, subgoal: Subgoal, fetch: bool = Fal
     advice = turn.executor.take_along(node, subgoal.squares, fetch, turn.situation)
     if isinstance(advice, Go):
         go = replace(advice, why=f"{node.name} is taken along: {subgoal.what}")
-        walk = turn.go(go)
-        return None if walk.command is None else walk
+        return with_command(turn.go(go))
     return _push_to_see(advice, subgoal.what, turn)
 
 
@@ -456,7 +454,7 @@ def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None
     what : what is to be seen, in words.
     turn : the stage, what is believed, and the tools.
     """
-    if act is None or turn.pursuer.closes_loop(turn.situation.model, act.command):
+    if act is None or turn.closes_loop(act.command):
         return None
     turn.executor.depart(act)
     return Decision(act.command, f"{act.why}: {what}; {turn.stage}")

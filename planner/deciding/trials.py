@@ -8,7 +8,7 @@ from geometry.motion.se2 import Pose
 from kb.body import Push
 from kb.language.terms import Fact
 from kb.world.model import Node
-from planner.deciding.bringing import bring_to_end
+from planner.deciding.bringing import bring_to_end, carry_on
 from planner.deciding.feeling import feel_rims, feeling_scope
 from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, nothing_to_do
@@ -41,13 +41,13 @@ class Trials:
         turn : the stage, what is believed, and the tools.
         """
         assert self._begun is not None
-        name, model = self._begun[0], turn.situation.model
-        node = model.object(name)
-        act = None if node is None or self._begun in self._made else turn.executor.continue_plan(node, turn.situation)
-        if act is None or turn.pursuer.closes_loop(model, act.command):
+        name = self._begun[0]
+        node = turn.situation.model.object(name)
+        carried = None if node is None or self._begun in self._made else carry_on(node, turn, turn.situation)
+        if carried is None:
             self._begun = None
             return nothing_to_do(f"{name} is no longer tried")
-        return self._noted(self._begun, Decision(act.command, f"{act.why}; {turn.stage}"))
+        return self._noted(self._begun, carried)
 
     def next(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to find out whether what seems one thing is several; nothing when nothing is left.
@@ -65,8 +65,8 @@ class Trials:
         felt = feel_rims(unfelt_rims(situation.cost_maps, scope), turn)
         if felt is not None:
             return felt
-        meant = {situation.binding.get(str(term), "") for goal in goals for term in goal.args}
-        asked = things_in_question(situation.model, situation.cost_maps, scope)
+        meant = situation.named_by(goals)
+        asked = things_in_question(situation.cost_maps, scope)
         moved = self._move_by_a_square([node for node in asked if node.stuck and node.name not in meant], turn)
         return moved or nothing_to_do("no thing is left to try")
 

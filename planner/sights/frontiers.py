@@ -119,6 +119,15 @@ def wall_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
     return Viewpoint(beside, "whether something stands against the wall was not felt")
 
 
+def elsewhere_touch_viewpoint(cost_maps: CostMaps, mask: Bools) -> Viewpoint:
+    """Return the same without the robot's own square: what is beside it is felt already.
+
+    mask : (rows, columns) bool on the arrays of the view, the squares of the thing.
+    """
+    look, model = wall_touch_viewpoint(cost_maps, mask), cost_maps.model
+    return look._replace(squares=look.squares[look.squares != square_index(model.place, model)])
+
+
 def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
     """Return the floor from which the robot feels how far an object goes; None when nothing about it is to be felt.
 
@@ -131,16 +140,15 @@ def rim_viewpoint(cost_maps: CostMaps, node: Node) -> Viewpoint | None:
     if node.moved or model.held == node.name:
         return None
     own = model.mask(node.patch)
-    rim, here = with_edge_neighbours(own), square_index(model.place, model)
+    rim = with_edge_neighbours(own)
     standing = [model.verge, *(model.mask(other.patch) for other in model.objects if other.name != node.name)]
     touches = any((rim & mask).any() for mask in standing)
     unfelt = own & ~model.squares(model.felt)
     resisting = [unfelt] if node.stuck and model.held is None else []
     for mask in (*((*model.unsettled_seams, *model.protruding) if touches else ()), *resisting):
-        look = wall_touch_viewpoint(cost_maps, mask)
-        squares = look.squares[look.squares != here]  # what is beside the robot is felt already
-        if (mask & rim).any() and len(squares):
-            return look._replace(squares=squares)
+        look = elsewhere_touch_viewpoint(cost_maps, mask)
+        if (mask & rim).any() and len(look.squares):
+            return look
     return None
 
 

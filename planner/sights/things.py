@@ -1,12 +1,12 @@
 """Things that may be several that touch, and the floor from which their rims are felt all round."""
 
-from kb.world.model import Node, WorldModel
+from kb.world.model import Node
 from planner.screen.projection import CostMaps, dilate
-from planner.sights.frontiers import Viewpoint, wall_touch_viewpoint
+from planner.sights.frontiers import Viewpoint, elsewhere_touch_viewpoint
 from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
 
-def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
+def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
     """Return the objects that were never seen to move as one thing, and so may be several, in the order of the model.
 
     Where neither a wall between two parts of the floor matters nor the task speaks of objects, those all around which
@@ -14,10 +14,10 @@ def things_in_question(model: WorldModel, cost_maps: CostMaps, scope: FeelingSco
 
     Parameters
     ----------
-    model : what is believed.
-    cost_maps : of that model.
+    cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     scope : what matters for the task.
     """
+    model = cost_maps.model
     several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.parting or scope.things:
         return several
@@ -35,12 +35,12 @@ def unfelt_rims(cost_maps: CostMaps, scope: FeelingScope) -> list[Viewpoint]:
     cost_maps : the present world model on arrays of squares, with the ways from where the robot stands.
     scope : what matters for the task.
     """
-    model, (column, row) = cost_maps.model, cost_maps.here
-    felt, here = model.squares(model.felt), row * cost_maps.floor.shape[1] + column
-    looks = []
-    for node in things_in_question(model, cost_maps, scope):
-        beside = wall_touch_viewpoint(cost_maps, model.mask(node.patch) & ~felt).squares
-        looks.append(
-            Viewpoint(beside[beside != here], f"{node.name} may be more than one thing, so it is felt all round")
+    model = cost_maps.model
+    felt = model.squares(model.felt)
+    looks = [
+        elsewhere_touch_viewpoint(cost_maps, model.mask(node.patch) & ~felt)._replace(
+            what=f"{node.name} may be more than one thing, so it is felt all round"
         )
+        for node in things_in_question(cost_maps, scope)
+    ]
     return [look for look in looks if len(look.squares)]
