@@ -244,6 +244,7 @@ PLAN_FACTS = frozenset(
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
+        "acts", "waits", "holds", "left", "settling", "settled",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

@@ -64,3 +64,9 @@ def test_a_rule_about_what_the_robot_is_stuck_with_counts_only_there(tmp_path: P
 def test_rules_cannot_say_what_came_of_an_activity(tmp_path: Path) -> None:
     with pytest.raises(BadInputError, match="came_to/2 says what there is, and rules add nothing to it"):
         decided(tmp_path, "came_to(feel(robot), idle).")
+
+
+@pytest.mark.parametrize("fact", ["waits(g1)", "settled(robot, 0)", "settling(0)", "left(feel(robot))", "holds(o1)"])
+def test_rules_cannot_say_what_is_settled_in_the_task_plan(tmp_path: Path, fact: str) -> None:
+    with pytest.raises(BadInputError, match="says what there is, and rules add nothing to it"):
+        decided(tmp_path, f"{fact}.")
