@@ -9,9 +9,11 @@ from benchmarks.worlds.makers import WORLD_MAKERS, scenario
 from benchmarks.worlds.odd.kinds import ODD_KINDS, odd_world
 from benchmarks.worlds.odd.tasks import EMPTY_REGION
 from benchmarks.worlds.scenes import write
+from benchmarks.worlds.seams.kinds import SEAM_KINDS
 
 OWN_PREFIX = "own_"  # before the names of the kinds of benchmarks.worlds.makers
 OWN_ASKED = ("plain", "wide")  # those that --own runs
+ASKED_KINDS = ODD_KINDS | SEAM_KINDS
 
 
 @dataclass(frozen=True, order=True)
@@ -58,8 +60,8 @@ def named(text: str) -> Asked:
 
 
 def all_kinds() -> list[str]:
-    """Return the names of all kinds: the odd ones, then those of benchmarks.worlds.makers."""
-    return [*ODD_KINDS, *(OWN_PREFIX + kind for kind in WORLD_MAKERS)]
+    """Return the names of all kinds: those of odd worlds and of seams, then those of benchmarks.worlds.makers."""
+    return [*ASKED_KINDS, *(OWN_PREFIX + kind for kind in WORLD_MAKERS)]
 
 
 def worlds_of(kinds: list[str], seed: int, count: int) -> list[Asked]:
@@ -78,6 +80,6 @@ def written(asked: Asked, folder: Path) -> Known:
         own = scenario(asked.task, asked.seed, asked.kind.removeprefix(OWN_PREFIX))
         write(own, folder)
         return Known(f"task {asked.task}", "", "yes" if own.possible else "no", own.texts.unable)
-    odd = odd_world(asked.kind, asked.seed)
+    odd = odd_world(asked.kind, asked.seed, ASKED_KINDS)
     write(odd, folder)
     return Known(odd.task, odd.variant, odd.possible, odd.texts.unable, odd.avoid)

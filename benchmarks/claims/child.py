@@ -43,6 +43,7 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "Robo
     pull : whether a held object may be pulled.
     """
     from benchmarks.harness.stopwatch import TimedBody, TimedRobot
+    from benchmarks.worlds.scenes import RULES_FILE
     from kb.body import Body
     from kb.task.task import Task
     from simulator.episode.episode import EpisodeLog
@@ -57,7 +58,9 @@ def run(folder: Path, noise: float, noise_seed: int, max_steps: int, make: "Robo
         robots.append(TimedRobot(make(timed, told, settings), timed))
         return robots[0]
 
-    settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps, pull=pull)
+    rules = folder / RULES_FILE
+    kb_files = (str(rules),) if rules.exists() else ()
+    settings = Settings(seed=noise_seed, noise=noise, max_steps=max_steps, pull=pull, kb_files=kb_files)
     with EpisodeLog(folder / EPISODE_FILE) as log, (folder / CYCLES_FILE).open("w") as cycles:
 
         def noted(session: Session) -> None:

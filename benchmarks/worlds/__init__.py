@@ -14,4 +14,5 @@ makers      all of these by kind, task and seed
 six_rooms   worlds of six rooms
 odd         odd worlds (a package)
 filled      worlds whose doorways are filled (a package)
+seams       worlds for what lies between parts of the program (a package)
 """

@@ -12,6 +12,8 @@ from shapely.geometry.base import BaseGeometry
 
 from benchmarks.worlds.floorplans import FloorPlan
 
+RULES_FILE = "rules.lp"  # beside the four files of a scenario: rules for `--kb`
+
 
 @dataclass(frozen=True)
 class PlacedThing:
@@ -26,12 +28,16 @@ class PlacedThing:
 
 @dataclass(frozen=True)
 class TaskTexts:
-    """The texts of start.lp, goal.lp and expect.lp; `unable` says why the task cannot be done, empty when it can."""
+    """The texts of start.lp, goal.lp and expect.lp.
+
+    `unable` says why the task cannot be done, empty when it can. `rules` are a user's rules for the run, mostly none.
+    """
 
     start: str
     goal: str
     expect: str
     unable: str = ""
+    rules: str = ""
 
 
 @dataclass(frozen=True)
@@ -139,12 +145,14 @@ def world_text(plan: LaidFloor, utak: Point, heading: int, things: Iterable[Plac
 
 
 def write(scenario: WorldWithTask, folder: Path) -> Path:
-    """Write the four files of a scenario into a folder, which is made when it is not there; return the folder."""
+    """Write a scenario's four files, and RULES_FILE, into a folder, made when it is not there; return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     texts = scenario.texts
     files = {"world": scenario.world, "start": texts.start, "goal": texts.goal, "expect": texts.expect}
     for name, text in files.items():
         (folder / f"{name}.lp").write_text(text)
+    if texts.rules:
+        (folder / RULES_FILE).write_text(texts.rules)
     return folder
 
 

@@ -5,7 +5,7 @@ python -m benchmarks.worlds.odd.kinds --kind plugged,round --seed 0 --count 10 -
 
 import argparse
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -28,13 +28,13 @@ ODD_KINDS: dict[str, OddWorldMaker] = {
 MAX_ODD_TRIES = 2_000
 
 
-def odd_world(kind: str, seed: int) -> OddWorld:
+def odd_world(kind: str, seed: int, kinds: Mapping[str, OddWorldMaker] = ODD_KINDS) -> OddWorld:
     """Return the world of a kind and a seed from 0 on. Raises ValueError when there is no such kind or seed."""
-    if kind not in ODD_KINDS or seed < 0:
-        raise ValueError(f"no kind {kind} with seed {seed}: kinds are {', '.join(ODD_KINDS)}, seeds from 0")
+    if kind not in kinds or seed < 0:
+        raise ValueError(f"no kind {kind} with seed {seed}: kinds are {', '.join(kinds)}, seeds from 0")
     rng = np.random.default_rng([zlib.crc32(kind.encode()), seed])
     for _ in range(MAX_ODD_TRIES):
-        made = ODD_KINDS[kind](rng, seed)
+        made = kinds[kind](rng, seed)
         if made is not None:
             return made
     raise RuntimeError(f"no world found of kind {kind}, seed {seed}")
