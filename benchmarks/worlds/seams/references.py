@@ -12,7 +12,7 @@ from benchmarks.worlds.placing import colour
 from benchmarks.worlds.scenes import PlacedThing, wkt
 
 REFERENCE_KIND = "reference"
-START = "object(x). shape(x, square).\nobject(y). shape(y, brick).\n"
+TWO_THINGS_FACTS = "object(x). shape(x, square).\nobject(y). shape(y, brick).\n"
 NEAR_OTHER = 1.6  # squares between two things of which one is within a square of the other's squares, off the grid
 REFERENCE_GOALS = {
     "beside_xy_fixed": "beside(x, y).\n",
@@ -55,7 +55,7 @@ def world(rng: np.random.Generator, seed: int) -> OddWorld | None:
         PlacedThing("t2", colour(rng), "brick", y, variant.endswith("fixed")),
     )
     made = tasks.given(REFERENCE_KIND, seed, "at_x", variant, OddScene(plan, home, things, utak, facing))
-    start = START if "beside" in variant else "object(x). shape(x, square).\n"
+    start = TWO_THINGS_FACTS if "beside" in variant else "object(x). shape(x, square).\n"
     return tasks.asked(
         made, start, REFERENCE_GOALS[variant].format(compass=compass), _expected(made, home, compass), tasks.YES
     )

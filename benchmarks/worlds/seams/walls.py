@@ -21,7 +21,7 @@ THING_WALL_KIND, PART_GAP_KIND = "thing_wall", "part_gap"
 THING_WALL_VARIANTS = ("two", "one", "screen", "beyond")
 THING_WALL_TASKS = ("next", "next", "carry_next")
 PART_GAP_WIDTHS = (0.5, 1.95)  # squares
-NO_ROOM = "there is no next room: what seems to part it are things"
+PARTED_BY_THINGS = "there is no next room: what seems to part it are things"
 
 
 def thing_wall(rng: np.random.Generator, seed: int) -> OddWorld | None:
@@ -64,9 +64,9 @@ def thing_wall(rng: np.random.Generator, seed: int) -> OddWorld | None:
     possible = tasks.YES if variant == "beyond" else tasks.NO
     if task != "around":
         return tasks.given(
-            THING_WALL_KIND, seed, task, variant, scene, possible, "" if possible == tasks.YES else NO_ROOM
+            THING_WALL_KIND, seed, task, variant, scene, possible, "" if possible == tasks.YES else PARTED_BY_THINGS
         )
-    made = tasks.given(THING_WALL_KIND, seed, "next", variant, scene, tasks.NO, NO_ROOM)
+    made = tasks.given(THING_WALL_KIND, seed, "next", variant, scene, tasks.NO, PARTED_BY_THINGS)
     return tasks.asked(made, "", "around(utak, corner).\n", "", tasks.NO, "a thing has no corner of the verge")
 
 
