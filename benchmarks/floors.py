@@ -1,6 +1,6 @@
 """Routes on random small floors, compared with exact answers.
 
-    python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,sets,bodies,avoid,images,chains]
+    python -m benchmarks.floors --count 10000 [--seed 1] [--only words,shortest,bodies,avoid,images,chains]
 
 Every floor goes through every check once, with a random start and goal. What differs from brute force
 (benchmarks/engine/exact.py) is printed with the floor's number. The exit code is 1 when anything differs.
@@ -179,30 +179,6 @@ def faults(case: Case, route: Route, start: XY, goal: XY) -> Iterator[str]:
         yield f"a route's clearance is {route.clearance}"
 
 
-def sets(case: Case) -> Iterator[str]:
-    """Yield faults of routes to sets of squares: the first must end at the nearest, blocked squares do not count."""
-    goal = case.rng.random(case.free.shape) < case.rng.choice([0.05, 0.2, 0.5, 0.9])
-    if case.rng.random() < 0.3:
-        i, j = (int(v) for v in case.rng.integers(0, case.free.shape))
-        goal[i : i + 4, j : j + 4] = True
-    centres = [(j + 0.5, i + 0.5) for i, j in np.argwhere(goal & case.free).tolist()]
-    least = float(case.exact.distances(case.start, centres).min(initial=np.inf)) if centres else np.inf
-    for k in (1, 3):
-        routes = case.screen.routes(case.start, goal, k=k)
-        if bool(routes) != (least < np.inf) or (routes and abs(routes[0].length - least) > PATH_TOLERANCE):
-            yield f"k = {k}: the nearest of a set is {routes and routes[0].length} away, not {least}"
-        for route in routes:
-            end = (float(route.points[-1][0]), float(route.points[-1][1]))
-            if end not in centres:
-                yield "a route does not end in the set"
-            yield from faults(case, route, case.start, end)
-    without = case.screen.routes(case.start, goal & case.free, k=3)
-    squares = {(int(j), int(i)) for i, j in np.argwhere(goal)}
-    for other in (without, case.screen.routes(case.start, squares, k=3)):
-        if [r.points.tolist() for r in other] != [r.points.tolist() for r in routes]:
-            yield "blocked squares in a set make a difference"
-
-
 def bodies(case: Case) -> Iterator[str]:
     """Yield faults of routes of a body: it must keep its radius from walls, and have the topology of its free space.
 
@@ -280,7 +256,6 @@ def images(case: Case) -> Iterator[str]:
     squares = np.argwhere(case.free)
     (i, j), (m, n) = (squares[int(k)].tolist() for k in case.rng.integers(0, len(squares), 2))
     radius = float(case.rng.choice([0.0, 0.6, 1.2]))
-    goal = case.rng.random(case.free.shape) < 0.2
 
     def mirrored(x: float, y: float) -> XY:
         return columns - x, y
@@ -289,22 +264,20 @@ def images(case: Case) -> Iterator[str]:
         return rows - y, x
 
     start, end = (j + 0.5, i + 0.5), (n + 0.5, m + 0.5)
-    expected = answers(case.screen, start, end, goal, radius)
+    expected = answers(case.screen, start, end, radius)
     for image, place in ((np.fliplr, mirrored), (lambda a: np.fliplr(a.T), turned)):
-        again = answers(Screen(image(case.free)), place(*start), place(*end), image(goal), radius)
+        again = answers(Screen(image(case.free)), place(*start), place(*end), radius)
         if not np.allclose(expected, again, rtol=0, atol=PATH_TOLERANCE):
             yield f"{expected} on the floor and {again} on its image"
 
 
-def answers(screen: Screen, start: XY, end: XY, goal: Bools, radius: float) -> list[float]:
-    """Return what no symmetry changes: shortest lengths to a point and to a set, number of routes, cycles."""
+def answers(screen: Screen, start: XY, end: XY, radius: float) -> list[float]:
+    """Return what no symmetry changes: the shortest length, number of routes, cycles."""
     first = screen.routes(start, end, k=3)
-    nearest = screen.routes(start, goal, k=2)
     body = screen.routes(start, end, k=1, radius=radius)
     graph = screen.pathgraph_for(radius)
     return [
         first[0].length if first else -1.0,
-        nearest[0].length if nearest else -1.0,
         float(len(body)),
         float(graph.number_of_edges() - graph.number_of_nodes()),
     ]
@@ -329,7 +302,7 @@ def chains(case: Case) -> Iterator[str]:
 
 
 CHECKS: dict[str, Callable[[Case], Iterator[str]]] = {
-    check.__name__: check for check in (words, shortest, sets, bodies, avoid, images, chains)
+    check.__name__: check for check in (words, shortest, bodies, avoid, images, chains)
 }
 
 

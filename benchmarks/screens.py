@@ -25,7 +25,7 @@ MAX_CALLS, TURN_SECONDS = 20, 0.02  # a turn ends after so many calls, or so man
 LARGE_MAP = 512 * 512  # squares: maps of so many and more count for the median ratios (a convention)
 RATIO_GOALS = (("built", 15, 7), ("as arrays", 30, 15), ("as networkx", 15, 1))
 """Ratios wanted of a screen built, its arrays and its networkx graph: median over large maps, least of all maps."""
-SECTIONS = ("build", "growth", "change", "query", "quality", "exact", "classes")
+SECTIONS = ("build", "growth", "query", "quality", "exact", "classes")
 
 
 def least(call: Callable[[], object], times: int = 5, seconds: float = 2.0) -> float:
@@ -170,26 +170,6 @@ def growth(maps: dict[Path, np.ndarray], _: int) -> None:
         print(f"{len(big):>6}^2 {took:10.2f} {1e6 * took / big.size:8.2f}")
     slope = np.polyfit(np.log(sizes[1:]), np.log(times[1:]), 1)[0]
     print(f"exponent from 512^2 to 4096^2: {slope:.3f} (at most 1.05 wanted)")
-
-
-def change(maps: dict[Path, np.ndarray], _: int) -> None:
-    """Print times of changes: blocks of 8 x 8 squares with floor in them are blocked, and set free again."""
-    print(f"{'change of 8 x 8 squares, 1024^2':32} {'build':>8} {'least':>8} {'median':>8} {'median/build':>13}")
-    for path, free in maps.items():
-        if free.size < 512 * 512:
-            continue
-        free = np.tile(free, (-(-1024 // free.shape[0]), -(-1024 // free.shape[1])))[:1024, :1024].copy()
-        screen, rng, took = Screen(free), np.random.default_rng(2), []
-        whole = least(lambda free=free: Screen(free), 10)
-        while len(took) < 60:
-            i, j = (int(rng.integers(0, n - 8)) for n in free.shape)
-            rows, columns = np.mgrid[i : i + 8, j : j + 8]
-            before = free[i : i + 8, j : j + 8]
-            if before.any():
-                for values in (np.zeros((8, 8), bool), before):
-                    took.append(least(lambda a=rows, b=columns, c=values, s=screen: s.changed(a, b, c), 1))
-        print(f"{path.stem:32} {whole:8.2f} {min(took):8.3f} {np.median(took):8.3f} {np.median(took) / whole:13.3f}")
-    print("a tenth of a build wanted; smaller maps are tiled")
 
 
 def query(maps: dict[Path, np.ndarray], count: int) -> None:

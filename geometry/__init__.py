@@ -13,7 +13,6 @@ Rooms in reading order:
     routes           topologically distinct routes, shortest first
     pathfinders      other path-finders for comparison: any-angle search, visibility graph, grid A*
     passages         necks between walls, and the partition of free space into rooms
-    incremental      updates of all this after a change of a few squares
     motion           poses, rigid motions, exact first contact
     cspace           motion planning of a polygon among polygons: ``plan_motion``
     state_lattice    carrying by whole squares and quarter turns

@@ -13,15 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geometry.homotopy.portals import word_of_line
-from geometry.incremental.update import MAX_AFFECTED_SHARE, change_squares
-from geometry.kernels.arrays import Bools, Ints, Labels
+from geometry.kernels.arrays import Bools, Labels
 from geometry.passages.narrow_stretches import narrow_squares
 from geometry.passages.necks import DOOR_RATIO, Passage, find_passages
 from geometry.passages.partition import find_parts
 from geometry.passages.walls import Walls, find_walls
 from geometry.raster.distance_transform import smallest_distance_type
-from geometry.routes.goal_routes import routes_to_area
-from geometry.routes.goal_sets import checked_goal
 from geometry.routes.layer import Layer, build_layer, find_pathgraph, least_squared_clearance, new_state
 from geometry.routes.queries import LayerQueries
 from geometry.routes.route import Route
@@ -78,57 +75,11 @@ class Screen:
         grid = checked_grid(free)
         rows, columns = grid.shape
         self.shape = (rows, columns)
-        self._max_affected_share = MAX_AFFECTED_SHARE  # a change that may alter more is computed anew
         self._rent(smallest_distance_type(grid))
         self._skeletons: dict[int, tuple[States, Words, SkeletonGraph]] = {1: self._survey(grid)}
         self._chains: dict[int, Chains] = {}
         self._layers: dict[tuple[int, bool], Layer] = {}
         self._questions: dict[float, LayerQueries] = {}
-
-    def changed(self, rows: ArrayLike, columns: ArrayLike, values: ArrayLike) -> "Screen":
-        """Set some squares free or blocked, in place, and return the screen itself.
-
-        Everything asked afterwards is as of a new screen of the changed squares, bit for bit. A change of few squares
-        takes a small part of the time of a new screen. Passages, crossing numbers (signatures) and chain numbers given
-        out before no longer hold; arrays and graphs given out before keep their values.
-
-        Parameters
-        ----------
-        rows, columns : (n,) array of int
-            Row (0 in the south) and column of each square, whole numbers. Of a square named more than once the last
-            value counts.
-        values : (n,) array of bool, or bool
-            True where the square becomes free, False where it becomes blocked; one value for all squares or one for
-            each.
-
-        Returns
-        -------
-        Screen
-            This screen itself, changed; no copy.
-
-        Raises
-        ------
-        ValueError
-            When a square lies outside, the lengths or types do not match, or no square would be left free. Nothing
-            changes then.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> screen = Screen(np.ones((3, 5), dtype=bool))
-        >>> screen.shortest((0.5, 1.5), (4.5, 1.5)).length
-        4.0
-        >>> screen.changed([1], [2], False).shortest((0.5, 1.5), (4.5, 1.5)).points.tolist()
-        [[0.5, 1.5], [2.0, 1.0], [3.0, 1.0], [4.5, 1.5]]
-        """
-        where = checked_squares(rows, columns, values, self.shape)
-        state, words, old = self._skeletons[1]
-        bones = change_squares(self._square, state, old, *where, self._max_affected_share)
-        self._skeletons = {1: self._survey_changed(*where) if bones is None else (state, words, bones)}
-        self._chains, self._layers, self._questions = {}, {}, {}
-        for name in ("clearance", "skeleton", "pathgraph", "pathgraph_arrays", "_walls"):
-            self.__dict__.pop(name, None)
-        return self
 
     @property
     def free(self) -> Bools:
@@ -216,7 +167,7 @@ class Screen:
         ``offsets[e + 1]``, ``narrowest`` (m,), a row of ``points``, and ``adjacency_offsets``, ``incident_edges`` and
         ``neighbours``, which list the edges at each node. Read-only; places (x, y), lengths and clearances in squares,
         in the frame of the screen: x to the east, y to the north, (0, 0) at the south-west corner. Made when first
-        asked for, and kept until the screen is changed.
+        asked for, and kept.
         """
         return self.pathgraph_arrays_for(0.0)
 
@@ -262,7 +213,7 @@ class Screen:
     def routes(
         self,
         start: Point,
-        goal: ArrayLike | set[tuple[int, int]],
+        goal: Point,
         k: int = 3,
         radius: float = 0.0,
         avoid: Iterable[Passage] = (),
@@ -274,14 +225,11 @@ class Screen:
 
         Parameters
         ----------
-        start : (x, y)
-            Where every route begins, in squares from the south-west corner of the screen.
-        goal : (x, y), or (rows, columns) array of bool, or set of (column, row)
-            Where every route ends. Of an array or a set the centre of any free square will do: each route ends where
-            that makes it shortest, and routes whose ends can be moved into each other within the set are one.
+        start, goal : (x, y)
+            Where every route begins and ends, in squares from the south-west corner of the screen.
         k : int
             How many routes at most. Their paths over the pathgraph pass no junction twice. Only the shortest of all,
-            which for a point as goal and ``k`` of 2 or more comes first, may be of another class.
+            which for ``k`` of 2 or more comes first, may be of another class.
         radius : float
             Radius of a round body about the point, in squares. It moves from centre to centre of squares whose
             clearance is at least the radius, and straight between start or goal and the centre of its square. There
@@ -291,8 +239,7 @@ class Screen:
             ``parts(avoid)``.
         word : sequence of int, optional
             A signature: the signed crossing numbers of a route of this screen and radius, in order (see ``Route``).
-            Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count. Only for a
-            point as goal; with an array or a set it is ignored.
+            Only the route of this class is returned, however it winds; ``k`` and ``avoid`` do not count.
 
         Returns
         -------
@@ -304,8 +251,8 @@ class Screen:
         Raises
         ------
         ValueError
-            When a point lies outside the screen or in a blocked square, when the goal is none of the three kinds, the
-            word is not one of this screen, ``k`` no positive whole number, or the radius negative or not finite.
+            When a point lies outside the screen or in a blocked square, when the word is not one of this screen, ``k``
+            no positive whole number, or the radius negative or not finite.
 
         Examples
         --------
@@ -317,19 +264,10 @@ class Screen:
         [6.099, 6.099]
         >>> screen.routes((1.5, 2.5), (5.5, 2.5), k=1, radius=1.0)
         []
-        >>> screen.routes((0.5, 2.5), {(6, 0), (5, 4)}, k=1)[0].points[-1].tolist()
-        [5.5, 4.5]
         """
         check_count(k)
         questions = self._ask(radius)
-        begin = self._checked(start, "start")
-        if isinstance(goal, tuple) and len(goal) == 2 and isinstance(goal[0], float):  # by far the most frequent
-            end = self._checked(goal, "goal")
-        else:
-            area = checked_goal(goal, self.shape)
-            if area is not None:
-                return routes_to_area(questions, begin, area, k, tuple(avoid))
-            end = self._checked(np.asarray(goal, np.float64).tolist(), "goal")
+        begin, end = self._checked(start, "start"), self._checked(goal, "goal")
         if not (questions.admits(begin) and questions.admits(end)):
             return []
         if word is None:
@@ -361,52 +299,6 @@ class Screen:
         """
         begin, end = self._checked(start, "start"), self._checked(goal, "goal")
         return self._ask(0.0).shortest(begin, end)
-
-    def loops(self, start: Point, around: ArrayLike, k: int = 1, radius: float = 0.0) -> list[Route]:
-        """Return closed routes that wind once, counter-clockwise, around blocked squares, the shortest first.
-
-        Parameters
-        ----------
-        start : (x, y)
-            Where every loop begins and ends, in squares from the south-west corner of the screen.
-        around : (rows, columns) array of bool
-            True on the blocked squares of one object. There are no loops when it is part of the outer wall.
-        k : int
-            How many loops at most, no two of one class.
-        radius : float
-            Radius of a round body, in squares: it moves from centre to centre of squares whose
-            clearance is at least the radius. 0 for a point.
-
-        Returns
-        -------
-        list of Route
-            Empty when there is no loop, or no room for the body at the start. Each has ``points`` (x, y), of which the
-            first and the last are the start, ``length`` and ``clearance`` in squares, ``signature`` and ``chains``.
-
-        Raises
-        ------
-        ValueError
-            When ``around`` is no array of bool of the screen's shape, holds a free square or none at all, when the
-            start lies outside the screen or in a blocked square, or ``k`` or the radius are out of range.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> free = np.ones((5, 5), dtype=bool)
-        >>> free[2, 2] = False
-        >>> [loop] = Screen(free).loops((0.5, 0.5), ~free)
-        >>> loop.points.tolist()
-        [[0.5, 0.5], [3.0, 2.0], [3.0, 3.0], [2.0, 3.0], [0.5, 0.5]]
-        """
-        mask = np.asarray(around)
-        if mask.shape != self.shape or mask.dtype != np.bool_ or not mask.any():
-            raise ValueError(f"around must be a bool array of shape {self.shape} with a square in it")
-        if (mask & self.free).any():
-            raise ValueError("around must not hold free squares")
-        check_count(k)
-        questions = self._ask(radius)
-        begin = self._checked(start, "start")
-        return questions.loops(begin, mask, k) if questions.admits(begin) else []
 
     def tighten(self, route: Route, radius: float = 0.0) -> Route:
         """Return the shortest route of the same class (all that can be deformed into it), between the same ends.
@@ -464,7 +356,7 @@ class Screen:
         Parameters
         ----------
         passage : Passage
-            One of ``passages()`` since the last change of the screen; for another the set is empty or means nothing.
+            One of ``passages()`` of this screen; for another the set is empty or means nothing.
         spare : float
             How much longer than the width of the passage a line from wall to wall may be, in squares; 0 or more.
 
@@ -553,26 +445,6 @@ class Screen:
         survey(grid, self._square, state, words)
         return state, words, contract(self._square, state, words)
 
-    def _survey_changed(self, rows: Ints, columns: Ints, values: Bools) -> tuple[States, Words, SkeletonGraph]:
-        """Return the skeleton (by cells, by words) and its graph with some squares changed, all measured anew.
-
-        That is: the states (rows + 2, columns + 2) uint8, the same memory as uint64 of eight cells each, and the graph:
-        the cells of the nodes, ascending, and of each chain its two ends (4 times the node plus the direction, 0 east
-        to 3 south), its lowest cell and its number of steps; cells are flat indices, row * width + column in the padded
-        screen.
-
-        Parameters
-        ----------
-        rows, columns : (n,) int32, the squares that change, without padding.
-        values : (n,) bool, True where the square becomes free.
-        """
-        grid = self.free
-        grid[rows, columns] = values
-        kind = smallest_distance_type(grid)
-        if self._square.dtype < kind:
-            self._rent(kind)
-        return self._survey(grid)
-
     def _skeleton_at(self, level: int) -> tuple[States, Words, SkeletonGraph]:
         """Return the skeleton and graph of the squares whose squared clearance is at least ``level``; keep them.
 
@@ -643,43 +515,3 @@ def check_count(k: int) -> None:
     """Raise ValueError unless k is a positive whole number (of Python or numpy); return nothing."""
     if not isinstance(k, Integral) or k < 1:
         raise ValueError(f"k must be a whole number and at least 1, but is {k!r}")
-
-
-def checked_squares(
-    rows: ArrayLike, columns: ArrayLike, values: ArrayLike, shape: tuple[int, int]
-) -> tuple[Ints, Ints, Bools]:
-    """Return rows, columns and values as arrays of one length, each square once (the last value counts).
-
-    Parameters
-    ----------
-    rows, columns : n whole numbers each, or one number: the squares, row 0 in the south.
-    values : n bools, or one for all squares: True where the square becomes free.
-    shape : numbers of rows and columns of the screen.
-
-    Returns
-    -------
-    (m,) int32, (m,) int32, (m,) bool, in the order given, a repeated square where it stands first; m is 0 when nothing
-    is given.
-
-    Raises
-    ------
-    ValueError
-        When a square lies outside, or the lengths or types do not match.
-    """
-    i, j = (np.atleast_1d(np.asarray(v)).ravel() for v in (rows, columns))
-    value = np.asarray(values)
-    if len(i) == len(j) == value.size == 0:
-        return np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.bool_)
-    if value.dtype != np.bool_ or len(i) != len(j) or value.size not in (1, len(i)):
-        raise ValueError("rows, columns and values must have one length, and values be True or False")
-    if i.dtype.kind not in "iu" or j.dtype.kind not in "iu":
-        raise ValueError("rows and columns must be whole numbers")
-    if len(i) and not (i.min() >= 0 and i.max() < shape[0] and j.min() >= 0 and j.max() < shape[1]):
-        raise ValueError(f"a changed square lies outside the screen of {shape[0]} rows and {shape[1]} columns")
-    values = np.full(len(i), value.item()) if value.size == 1 else value.ravel()
-    order = np.sort(i.astype(np.int64) * shape[1] + j)
-    if (order[1:] == order[:-1]).any():
-        last = {(a, b): v for a, b, v in zip(i.tolist(), j.tolist(), values.tolist(), strict=True)}
-        i, j = np.array(list(last)).T
-        values = np.array(list(last.values()))
-    return i.astype(np.int32), j.astype(np.int32), values

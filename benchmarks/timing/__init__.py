@@ -5,7 +5,6 @@ Modules, in reading order:
 growth          the time of a cycle by the area that the robot has seen
 sixrooms        the time from the task to the first command, cold
 sixrooms_child  one cold run of sixrooms
-screens_in_a_run  the screens that a run makes, and what changing them instead would save
 environment     the speed of the Gymnasium environment and of the bare table
 explaining      the time to explain recorded decisions
 paired          the processor time of two checkouts, by turns

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.homotopy.strips import Strips, append_symbol, strip_at
+from geometry.homotopy.strips import Strips, append_symbol, strip_at, symbol_between
 from geometry.kernels.arrays import XY, Ints
 
 WALL_TOLERANCE = 1e-9  # squares; rounding by which a line's corner may miss the wall corner that it touches
@@ -47,6 +47,15 @@ def word_of_line(strips: Strips, points: Sequence[Sequence[float]]) -> Ints:
     if last:
         symbols = symbols[:-1] if symbols and symbols[-1] == -last else [*symbols, last]
     return np.array(symbols, np.int32)
+
+
+def word_of_cells(strips: Strips, cells: list[int], width: int) -> Ints:
+    """Return the signed portals crossed from cell to cell, (n,) int32, not reduced: inverses may follow each other.
+
+    Cells are indices in the flat padded grid of ``width`` columns, each an edge neighbour of the one before.
+    """
+    symbols = [symbol_between(strips.row, strips.up, strips.left, a, b, width) for a, b in pairwise(cells)]
+    return np.array([s for s in symbols if s], np.int32)
 
 
 def first_strip(strips: Strips, point: XY) -> tuple[int, int]:

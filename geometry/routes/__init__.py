@@ -10,11 +10,7 @@ router  The kernel: start and goal anchored, paths found, each pulled tight.
 tighten  One path at a time: routes from words, and words from crossing numbers.
 lifting  From a word to its path over the skeleton: its chains and its clearance.
 barrier  Passages that a route must avoid.
-goal_sets  Goals that are sets of squares: their parts, and classes of routes to them.
-goal_routes  Routes to the nearest of many squares.
-loops  Closed paths that wind once about given blocked squares.
 queries  All queries about one layer, and their scratch.
 
-Public names: `Route`, `Layer`, `least_squared_clearance`, `LayerQueries`, `routes_to_area`, `checked_goal`,
-`word_of_crossings`.
+Public names: `Route`, `Layer`, `least_squared_clearance`, `LayerQueries`, `word_of_crossings`.
 """

@@ -99,27 +99,6 @@ def lift_to_skeleton(layer: Layer, ends: Ends, word: Ints, trail: Trail | None =
     return Lifted(lowest, tuple(chains)), trail
 
 
-def cells_of_word(layer: Layer, ends: Ends, word: Ints) -> list[int]:
-    """Return the padded cells of a path with this word: along each strip to the nearest square of the next portal.
-
-    Cells are indices in the flat padded grid, (row + 1) * width + column + 1, the start's first and the goal's last. A
-    word is reduced when no symbol stands next to its negative. A portal is the overlap of two strips (rows of free
-    squares) in neighbouring rows.
-
-    Parameters
-    ----------
-    layer : the free space of a body of one radius: skeleton, pathgraph and strips.
-    ends : x and y of the start, x and y of the goal, in squares from the screen's south-west corner.
-    word : signed portals (index plus 1, negative when crossed southwards) from the start's strip to the goal's; need
-        not be reduced.
-    """
-    trail = new_trail(4 * len(word) + 1024)
-    while write_cells_of_word(layer.runs, ends, word, layer.square.shape[1], trail) == TRAIL_OVERFLOW:
-        trail = new_trail(4 * len(trail.cell))
-    cells = [int(trail.cell[0]), *trail.cell[2 : trail.counts[0]].tolist(), int(trail.cell[1])]
-    return cells if trail.after[0] != 1 or cells[0] != cells[-1] else cells[:1]
-
-
 @bare
 def lift_word(
     heights: Heights, states: Flags, width: int, chains: Chains, strips: Strips, ends: Ends, word: Ints, trail: Trail

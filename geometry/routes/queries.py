@@ -1,4 +1,4 @@
-"""Queries about one layer of a screen: routes, loops, the shortest path of all; and the scratch that they share."""
+"""Queries about one layer of a screen: routes, the shortest path of all; and the scratch that they share."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -8,18 +8,16 @@ from typing import cast
 import numpy as np
 
 from geometry.homotopy.funnel import Ends
-from geometry.homotopy.landmarks import ascend, compute_landmarks, locate
-from geometry.homotopy.portals import crossings_of, join_words, word_of_line
+from geometry.homotopy.landmarks import compute_landmarks
+from geometry.homotopy.portals import crossings_of, join_words, word_of_cells, word_of_line
 from geometry.homotopy.strips import find_strips
-from geometry.kernels.arrays import XY, Bools, Ints
+from geometry.kernels.arrays import XY, Ints
 from geometry.passages.necks import Passage
 from geometry.pathfinders.polyanya import NO_PATH, SEARCH_OVERFLOW, PolyanyaSearch, new_polyanya_search, shortest_line
 from geometry.raster.exact_clearance import disc_stays_clear
 from geometry.routes.barrier import Barrier, build_barrier, path_over_cells, path_to_skeleton
-from geometry.routes.goal_sets import word_of_cells
 from geometry.routes.layer import Layer
 from geometry.routes.lifting import Lifted, Trail, lift_to_skeleton, lift_word, new_trail
-from geometry.routes.loops import Arc, cells_of_path, closed_paths
 from geometry.routes.route import Route, polyline_length, routes_of_answers
 from geometry.routes.router import (
     ROUTER_OVERFLOW,
@@ -175,16 +173,6 @@ class LayerQueries:
         length = self.shortest_length(start, goal, first)
         return routes if length >= first else [self._polyanya_route(length, (*start, *goal)), *routes][:k]
 
-    def with_skeleton_path(self, route: Route) -> Route:
-        """Return a copy of a route with the clearance and the chains of its class's path over the skeleton.
-
-        Points (x, y in squares), length and signature stay; the points must lie in free space. The clearance is in
-        squares; the chains are numbers of edges of the pathgraph, in the order of the route.
-        """
-        ends = (*self.snap(route.points[0].tolist()), *self.snap(route.points[-1].tolist()))
-        found = self._lifted(ends, word_of_line(self.layer.runs, route.points.tolist()))
-        return Route(route.points, route.length, 0.5 * found.lowest**0.5, route.signature, found.chains)
-
     def barrier(self, avoid: tuple[Passage, ...]) -> Barrier:
         """Return the floor cut along some passages, so that no route leads through them.
 
@@ -322,48 +310,6 @@ class LayerQueries:
         found, self._trail_scratch = lift_to_skeleton(self.layer, ends, word, self._trail_scratch)
         return found
 
-    def loops(self, start: XY, around: Bools, k: int) -> list[Route]:
-        """Return at most k closed tight routes that wind once, counter-clockwise, about blocked squares.
-
-        They stand shortest first; the list is empty when there are none. Each begins and ends at the start; its points,
-        length and clearance are in squares.
-
-        Parameters
-        ----------
-        start : (x, y) in squares from the screen's south-west corner, where every loop begins and ends.
-        around : (rows, columns) bool, the blocked squares of one object, row 0 in the south.
-        k : how many loops at most.
-        """
-        cell = (int(start[1]) + 1) * self._width + int(start[0]) + 1
-        data, strips, chains = self._data, self.layer.runs, self.layer.chains
-        rise = np.empty(self.layer.square.size, np.int32)
-        cell, size = ascend(cell, data.heights, data.states, data.width, strips.row, strips.up, strips.left, rise)
-        chain_arrays = chains.node, chains.leave, chains.start, chains.cells
-        anchor = locate(cell, data.states, data.width, *chain_arrays)
-        paths = closed_paths(self.layer, anchor, around, k + EXTRA_PATHS)
-        routes = [self._loop_of(start, rise[:size], path) for path in paths]
-        return sorted(routes, key=lambda route: route.length)[:k]
-
-    def _loop_of(self, start: XY, rise: Ints, path: list[Arc]) -> Route:
-        """Return the tight loop of a closed path over the pathgraph: points, length and clearance in squares, chains.
-
-        A portal is the overlap of two strips (rows of free squares) in neighbouring rows.
-
-        Parameters
-        ----------
-        start : (x, y) in squares from the screen's south-west corner, where the loop begins and ends.
-        rise : (n,) signed portals (index plus 1, negative when crossed southwards) from the start up to the skeleton.
-        path : the arcs of the closed path (chains or parts of chains, with a direction), in the order in which they
-            are walked; at least one.
-        """
-        cells = cells_of_path(self.layer.chains, path)
-        word = join_words(rise, word_of_cells(self.layer.runs, cells, self._width), -rise[::-1])
-        lowest = min(int(self.layer.square.reshape(-1)[cells].min()), self._squared_clearance(start))
-        at = self.snap(start)
-        chains = tuple(arc.chain for arc in path)
-        route = tight_route(self.layer, (*at, *at), word, 0.5 * lowest**0.5, chains)
-        return self.with_ends(route, start, start)
-
     def _router_buffers(self, wanted: int, room: int) -> RouterBuffers:
         """Return scratch for `wanted` routes, with room for words of at least `room` symbols (signed portals).
 
@@ -425,8 +371,3 @@ class LayerQueries:
         A cell's index is (row + 1) * width + column + 1, with width = columns + 2.
         """
         return cell % self._width - 0.5, cell // self._width - 0.5
-
-    def _squared_clearance(self, point: XY) -> int:
-        """Return the squared clearance of a point's square, in squared half squares; 0 when it is blocked."""
-        height: int = self.layer.square.reshape(-1)[self.cell(point)].item()
-        return height

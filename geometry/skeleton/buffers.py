@@ -1,8 +1,7 @@
 """Memory of dead screens, kept for the next screen of the same shape.
 
 A screen writes every byte of its arrays; in memory fresh from the system that can cost as much as the measuring itself.
-One set of arrays is kept, the latest, and likewise the scratch of the latest change. No array of a set is ever handed
-to a user, so nothing else can still refer to it.
+One set of arrays is kept, the latest. No array of a set is ever handed to a user, so nothing else can refer to it.
 """
 
 import sys
@@ -15,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kernels.arrays import SquaredDistances
-from geometry.skeleton.skeleton import States, Waiting, Words
+from geometry.skeleton.skeleton import Words
 
 Adviser = Callable[[int, int, int], int]
 """Takes address, length in bytes and the number of the advice; returns 0 when the system follows it."""
@@ -45,30 +44,8 @@ class Tenant:
     """The holder of a set of arrays, without attributes: when it is collected, the set is spare."""
 
 
-class Scratch(NamedTuple):
-    """Scratch for a change of a screen, of which little is ever written.
-
-    Cells are flat indices into the padded screen; `cells` is their number, (rows + 2) * (columns + 2).
-
-    Attributes
-    ----------
-    mark : (cells,) uint8
-        Marks of cells (bits TOUCHED, MOVED, JOINED, PASSED of update_skeleton.py), all 0 before and after a change.
-    touched : (cells,) int32
-        Room for the list of cells whose state may have changed.
-    before : (cells,) uint8
-        Room for the states of these before the change, in the order of the list.
-    """
-
-    mark: States
-    touched: Waiting
-    before: States
-
-
 SPARE_BUFFERS: dict[tuple[int, int], Buffers] = {}
 """The latest set that no screen holds, by its padded shape."""
-SPARE_SCRATCH: dict[int, Scratch] = {}
-"""The scratch of the latest change, by its number of cells."""
 
 
 def take_buffers(tenant: Tenant, shape: tuple[int, int], kind: type[np.int16] | type[np.int32]) -> Buffers:
@@ -108,28 +85,6 @@ def give_back(shape: tuple[int, int], buffers: Buffers) -> None:
     """Keep a set of arrays, `buffers`, no longer in use, as the only spare one; `shape` is its padded shape."""
     SPARE_BUFFERS.clear()
     SPARE_BUFFERS[shape] = buffers
-
-
-def take_scratch(cells: int) -> Scratch:
-    """Return scratch for a screen of so many padded cells: that of the last change if it was of that size, else new.
-
-    It holds an array ``mark`` of marks of cells, all 0, and room for a list of touched cells and for their states
-    before the change, both arbitrary. Cells are flat indices. It is no longer spare until ``keep_scratch``. Flat
-    indices are row * width + column in the screen padded by one blocked cell on each side.
-    """
-    scratch = SPARE_SCRATCH.pop(cells, None)
-    if scratch is None:
-        scratch = Scratch(np.zeros(cells, np.uint8), np.empty(cells, np.int32), np.empty(cells, np.uint8))
-    return scratch
-
-
-def keep_scratch(scratch: Scratch) -> None:
-    """Keep scratch, whose ``mark`` must be all 0, for the next change, as the only spare one.
-
-    Scratch holds marks of cells, room for a list of touched cells, and for their states before a change.
-    """
-    SPARE_SCRATCH.clear()
-    SPARE_SCRATCH[len(scratch.mark)] = scratch
 
 
 def populate(array: NDArray[Any], advise: Adviser | None) -> None:

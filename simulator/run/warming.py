@@ -111,7 +111,7 @@ def warm(carrying: bool, paths: str = "skeleton", compiler: KernelCompiler = THI
 def warm_all() -> None:
     """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
     mine, others = PROCESS_SPLIT[True]
-    THIS_INSTALLATION.compile_in_two_processes((*mine, move), (*others, sightlines, change))
+    THIS_INSTALLATION.compile_in_two_processes((*mine, move), (*others, sightlines, many_routes))
 
 
 def count_cached_kernels() -> int:
@@ -190,13 +190,13 @@ def sightlines() -> None:
     visibility_path(free, (0.5, 2.5), (4.5, 2.5))
 
 
-def change() -> None:
-    """Call the kernels that update a screen after changes, and find several routes."""
+def many_routes() -> None:
+    """Call the kernels that find several routes, and the shortest of all."""
     import numpy as np
 
     free = np.ones((9, 12), np.bool_)
-    free[4, 3:9] = False
-    screen = geometry.Screen(free).changed([4, 0, 1], [6, 5, 5], [True, False, False])
+    free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False
+    screen = geometry.Screen(free)
     screen.routes((0.5, 4.5), (11.5, 4.5), k=4)
     screen.shortest((0.5, 4.5), (11.5, 4.5))
 
@@ -288,7 +288,9 @@ LONGEST_KERNEL = {
 
 def main(names: Sequence[str], compiler: KernelCompiler = THIS_INSTALLATION) -> None:
     """Compile for the uses with these names: the work of the second process."""
-    uses = {use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, change)}
+    uses = {
+        use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, many_routes)
+    }
     compiler.compile_for([uses[name] for name in names])
 
 

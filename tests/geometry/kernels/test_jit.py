@@ -89,8 +89,8 @@ def test_compiling_prints_a_notice_and_loading_does_not(tmp_path):
 
 def test_kernels_also_run_uncompiled() -> None:
     code = (
-        "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); free[4, 3:9] = False; "
-        "screen = Screen(free).changed([4, 0, 1], [6, 5, 5], [True, False, False]); "
+        "import numpy as np; from geometry import Screen; free = np.ones((9, 12), bool); "
+        "free[4, 3:6] = free[4, 7:9] = free[0:2, 5] = False; screen = Screen(free); "
         "print(len(screen.routes((0.5, 4.5), (11.5, 4.5), k=4)), screen.shortest((0.5, 4.5), (11.5, 4.5)).length > 11)"
     )
     plain = {**os.environ, "NUMBA_DISABLE_JIT": "1"}

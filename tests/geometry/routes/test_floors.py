@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.engine.exact import Exact, clearances
+from benchmarks.engine.exact import clearances
 from benchmarks.floors import CHECKS, disagreements
 from geometry import Route, Screen
 from geometry.pathfinders.visibility_graph import visibility_path
@@ -18,11 +18,6 @@ FLOOR_SEED = 20  # other floors than those of the campaign
 def floor(*rows: str) -> np.ndarray:
     """Return a floor drawn north row first; # is blocked."""
     return np.array([[square != "#" for square in row] for row in rows[::-1]])
-
-
-def squares_marked(mark: str, *rows: str) -> np.ndarray:
-    """Return the squares with a mark, drawn north row first."""
-    return np.array([[square == mark for square in row] for row in rows[::-1]])
 
 
 @pytest.mark.parametrize("check", CHECKS)
@@ -44,38 +39,6 @@ def test_a_line_that_ends_at_a_pinch_must_come_from_the_side_of_its_square() -> 
     with pytest.raises(ValueError, match="leaves free space"):
         screen.tighten(Route(np.array([[0.5, 0.5], [1.0, 1.0]]), 0.0, 0.0, (), ()))
     assert screen.tighten(Route(np.array([[1.5, 1.5], [1.0, 1.0]]), 0.0, 0.0, (), ())).signature == ()
-
-
-def test_a_route_to_a_set_keeps_out_of_blocked_squares() -> None:
-    free = floor("..#....#", "....#.##", ".#.##..#", "........")
-    for route in Screen(free).routes((1.5, 2.5), {(0, 1), (2, 1)}):
-        assert Exact(free).is_free(route.points)
-
-
-def test_a_route_to_a_set_ends_at_the_nearest_square() -> None:
-    rows = "...#gg", "...g..", "gggggg"
-    route = Screen(floor(*rows)).routes((0.5, 1.5), squares_marked("g", *rows))[0]
-    assert (route.length, route.points[-1].tolist()) == (1.0, [0.5, 0.5])
-
-
-def test_blocked_squares_of_a_set_make_no_difference() -> None:
-    rows = "ggg", "gg#", ".g."
-    free, goal = floor(*rows), squares_marked("g", *rows)
-    without = Screen(free).routes((2.5, 0.5), goal)
-    goal[1, 2] = True
-    assert [route.points.tolist() for route in Screen(free).routes((2.5, 0.5), goal)] == [
-        route.points.tolist() for route in without
-    ]
-    assert without
-
-
-def test_routes_to_a_set_are_one_class_when_their_ends_can_move_into_each_other_round_a_pillar() -> None:
-    rows = ".......", ".ggggg.", ".g.#.g.", ".g.#.g.", ".ggggg.", "......."
-    goal = squares_marked("g", *rows)
-    goal[2:4, 2] = goal[2:4, 4] = False
-    routes = Screen(floor(*rows)).routes((0.5, 0.5), goal, k=5)
-    assert len(routes) == 1
-    assert routes[0].length == pytest.approx(np.sqrt(2.0))
 
 
 @pytest.mark.parametrize("radius", [0.51, 0.6, 0.7, 0.7071])
@@ -109,7 +72,6 @@ def test_an_end_nearer_to_a_wall_than_the_radius_is_refused(point: tuple[float, 
     screen = Screen(np.ones((7, 7), bool))
     for ends in ((point, (3.5, 3.5)), ((3.5, 3.5), point), (point, point)):
         assert bool(screen.routes(*ends, radius=1.4)) == admitted
-    assert bool(screen.routes(point, {(3, 3)}, radius=1.4)) == admitted
 
 
 def test_a_route_from_a_place_to_itself_has_length_zero() -> None:

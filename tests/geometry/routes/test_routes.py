@@ -156,8 +156,7 @@ def test_a_loose_route_is_tightened():
         ((float("nan"), 0.5), (0.5, 0.5), "start .* outside"),
         ((0.5, 0.5), (0.5, 9.0), "goal .* outside"),
         ((0.5, 0.5), (1.0, 2.0, 3.0), "goal must be"),
-        ((0.5, 0.5), {(1, 9)}, "goal square .* outside"),
-        ((0.5, 0.5), {(0.5, 1)}, "goal square .* whole"),
+        ((0.5, 0.5), {(0, 1)}, "goal must be a point"),
         ((0.5,), (0.5, 0.5), "start must be a point"),
         ((0.5, 0.5, 0.5), (0.5, 0.5), "start must be a point"),
         (None, (0.5, 0.5), "start must be a point"),
@@ -176,7 +175,6 @@ def test_errors_name_the_bad_end(start, goal, message):
     [{"k": 0}, {"k": 1.5}, {"k": None}, {"radius": -1}, {"radius": np.inf}, {"radius": np.nan}, {"radius": "wide"}],
     ids=str,
 )
-@pytest.mark.parametrize("goal", [(2.5, 2.5), {(2, 2)}], ids=["point", "set"])
-def test_errors_name_the_bad_number(goal, wish):
+def test_errors_name_the_bad_number(wish):
     with pytest.raises(ValueError, match=f"{next(iter(wish))} must be"):
-        Screen(np.ones((3, 3), bool)).routes((0.5, 0.5), goal, **wish)
+        Screen(np.ones((3, 3), bool)).routes((0.5, 0.5), (2.5, 2.5), **wish)

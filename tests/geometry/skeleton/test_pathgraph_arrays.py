@@ -100,19 +100,6 @@ def test_arrays_are_computed_once_and_read_only():
             array[...] = 0
 
 
-def test_arrays_given_out_before_a_change_stay_and_new_ones_are_as_of_a_new_screen():
-    free = np.ones((20, 30), bool)
-    screen = Screen(free)
-    before = screen.pathgraph_arrays
-    kept = [array.copy() for array in before]
-    screen.changed([10], [15], False)
-    assert all(np.array_equal(a, b) for a, b in zip(before, kept, strict=True))
-    free[10, 15] = False
-    fresh = Screen(free).pathgraph_arrays
-    assert all(np.array_equal(a, b) for a, b in zip(screen.pathgraph_arrays, fresh, strict=True))
-    assert plain(screen.pathgraph) == plain(Screen(free).pathgraph)
-
-
 @pytest.fixture
 def graph():
     """A graph with parallel edges and many nodes."""
