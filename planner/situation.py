@@ -1,5 +1,6 @@
 """The situation: all that the meaning of a goal depends on, and what follows from it for doors and rooms."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -33,6 +34,22 @@ from planner.stages import constraints
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
 
 
+SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
+
+
+def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> tuple[Door, ...]:
+    """Return the likely doors that there are besides those of the rooms if all things never felt are pieces of wall."""
+    verge = model.verge.copy()
+    for node in model.objects:
+        if node.colour is None and not node.moved:
+            verge |= model.mask(node.patch)
+    if (verge == model.verge).all():
+        return ()
+    others = [door for door in rooms_of(model, rules, verge).doors if door.likely]
+    new = (one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in rooms.doors))
+    return tuple(replace(door, name=f"possible_{door.name}") for door in new)
+
+
 def neck_squares(doors: Iterable[Door], shape: tuple[int, ...], margin: int = 0) -> Bools:
     """Return the squares on the necks of some doors, (rows + 2 margin, columns + 2 margin) bool.
 
@@ -62,7 +79,10 @@ class Situation:
     task : the task, with its constraints.
     rules : the user's rule files, read by every encoding.
     track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
-    closed : the names of doors that users' rules close to every plan.
+    closed : the names of doors that users' rules close to the robot.
+    door_prices : by the name of a door: the commands that users' rules add to a pass through it.
+    possible_doors : doors that there are if things that were seen and never felt are pieces of wall. They count where a
+        constraint or a rule is about doors: to go through one cannot be undone.
     lenient : whether regions that the task forbids count only where a whole square lies within them, and for those
         alone whom they are forbidden to. Then what is not possible is proved not to be, and what is possible may not
         be.
@@ -78,6 +98,8 @@ class Situation:
     rules: tuple[Path, ...] = ()
     track: tuple[XY, ...] = ()
     closed: frozenset[str] = frozenset()
+    door_prices: Mapping[str, int] = field(default_factory=dict)
+    possible_doors: tuple[Door, ...] = ()
     lenient: bool = False
     as_well: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -90,6 +112,11 @@ class Situation:
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
+
+    @property
+    def doors(self) -> tuple[Door, ...]:
+        """The doors of the rooms, and those that there may be besides."""
+        return (*self.rooms.doors, *self.possible_doors)
 
     def object_of(self, parameter: str) -> Node | None:
         """Return the object that a parameter of the task means; None while none is known, and for any other word."""
@@ -152,29 +179,49 @@ class Situation:
         if actor not in meant and not nothing:
             return ()
         if actor == ROBOT:
-            return self.avoided[:1] or self.rooms.doors
+            return self.avoided[:1] or self.doors
         return tuple(door for door in self.rooms.doors if door.likely)
 
     def shut(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that neither the constraints of the task nor users' rules let an actor pass."""
         forbidden = self.forbidden(actor)
-        return (*forbidden, *(door for door in self.rooms.doors if door.name in self.closed and door not in forbidden))
+        return (*forbidden, *(door for door in self.doors if door.name in self.closed and door not in forbidden))
 
     def region_kept_off(self, actor: str, margin: int = 0) -> Bools:
         """Compute the squares that the task forbids to an actor: see `regions_kept_off`."""
         return regions_kept_off(self.task, self.binding, self.model, actor, margin, self.lenient)
 
-    def within_shut_doors(self) -> "Situation":
-        """Return the situation with cost maps on which nothing leads through a door that is shut to the robot."""
-        kept_off = neck_squares(self.shut(ROBOT), self.model.labels.shape) | self.cost_maps.kept_off
-        return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off))
+    def with_closed(self, closed: frozenset[str]) -> "Situation":
+        """Return the situation with some more doors closed, and cost maps on which no way leads through a shut one."""
+        return replace(self, closed=self.closed | closed).within_shut_doors()
+
+    def within_shut_doors(self, others: Iterable[Door] = ()) -> "Situation":
+        """Return the situation with cost maps on which no way leads through a door that is shut to the robot.
+
+        others : doors that count as shut, too.
+        """
+        kept_off = neck_squares((*self.shut(ROBOT), *others), self.model.labels.shape) | self.cost_maps.kept_off
+        return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off)) if kept_off.any() else self
+
+    def through_shut_doors(self) -> "Situation":
+        """Return the situation with cost maps on which all doors are open."""
+        kept_off = self.region_kept_off(ROBOT)
+        return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off if kept_off.any() else None))
 
     @cached_property
     def avoided(self) -> tuple[Door, ...]:
         """The sure doors that the robot has not gone through, by its track, in the order of `rooms.doors`."""
+        return tuple(door for door in self.rooms.sure if not self._passed(door))
+
+    @property
+    def closed_doors_passed(self) -> tuple[Door, ...]:
+        """The doors that users' rules close and that the robot went through all the same, by its track."""
+        return tuple(door for door in self.doors if door.name in self.closed and self._passed(door))
+
+    def _passed(self, door: Door) -> bool:
+        """Return whether the robot has gone through a door, by its track."""
         west, south = self.model.view.west, self.model.view.south
-        track = np.array(self.track).reshape(-1, 2) - (west, south)
-        return tuple(door for door in self.rooms.sure if not went_through(track, door))
+        return went_through(np.array(self.track).reshape(-1, 2) - (west, south), door)
 
     def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
         """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool.
@@ -201,6 +248,8 @@ def regions_kept_off(
     ----------
     binding : the name of the node that each parameter of the task means.
     actor : "utak" for the robot, or the name of a node.
+    possible_doors : doors that there are if things that were seen and never felt are pieces of wall. They count where a
+        constraint or a rule is about doors: to go through one cannot be undone.
     lenient : whether only squares count that lie wholly within a region, and no distance is kept.
     """
     shape = model.labels.shape

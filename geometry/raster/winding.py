@@ -33,12 +33,20 @@ def crossing_number(points: NDArray[np.float64], about: tuple[float, float]) -> 
     >>> crossing_number(np.array([[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]]), (0.0, 0.0))
     1
     """
-    x, y = np.asarray(points, float).T - np.array(about)[:, None]
+    return int(crossings_by_step(points, np.array([about], float)).sum())
+
+
+def crossings_by_step(points: NDArray[np.float64], about: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the crossing number of each of the n - 1 steps of a polyline about each of m points, (m, n - 1).
+
+    about : (m, 2), where the rays begin, in the frame of `points`. See `crossing_number`.
+    """
+    x, y = np.asarray(points, float).T[:, None, :] - about.T[:, :, None]
     above = y >= 0
-    rise = above[1:].astype(int) - above[:-1].astype(int)
-    change = np.where(rise != 0, y[1:] - y[:-1], 1.0)
-    where = x[:-1] - y[:-1] * (x[1:] - x[:-1]) / change
-    return int(rise[where > 0].sum())
+    rise = above[:, 1:].astype(int) - above[:, :-1].astype(int)
+    change = np.where(rise != 0, y[:, 1:] - y[:, :-1], 1.0)
+    where = x[:, :-1] - y[:, :-1] * (x[:, 1:] - x[:, :-1]) / change
+    return np.where(where > 0, rise, 0)
 
 
 def shortest_path_with_crossing_number(

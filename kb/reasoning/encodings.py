@@ -6,12 +6,35 @@ names. Rules, records and dumps know it by its name alone.
 
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import clingo
 
 KB_ENCODINGS = Path(__file__).resolve().parent.parent / "asp"  # the folder of the encodings of kb
 ENCODING_FOLDERS = (KB_ENCODINGS, KB_ENCODINGS.parent.parent / "planner" / "asp")  # files elsewhere are rules of users
 SUFFIX = ".lp"  # of the files of encodings
+# Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
+# does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
+CORE_GUIDED = ("--opt-strategy=usc,oll,stratify",)
+
+
+class BoundedAnswer(NamedTuple):
+    """The best answer set that a bounded search found.
+
+    Attributes
+    ----------
+    atoms : its shown atoms, clingo symbols sorted by their text; None when none was found.
+    proved : whether the search ended: then no answer set is better, or there is none.
+    cost : its cost, pairs of level and amount, the highest level first.
+    """
+
+    atoms: tuple[clingo.Symbol, ...] | None
+    proved: bool
+    cost: tuple[tuple[int, int], ...] = ()
+
+    def cost_at(self, level: int) -> int:
+        """Return the cost at one level; 0 where nothing costs anything there."""
+        return dict(self.cost).get(level, 0)
 
 
 def all_encodings() -> tuple[Path, ...]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import clingo
 
+from kb.reasoning.encodings import CORE_GUIDED
 from kb.reasoning.rule_reader import Calculator, RuleSyntaxError, read_statements
 from kb.three_valued.clauses import ClauseError
 
@@ -45,49 +46,54 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
     -------
     One of these dictionaries; atoms are texts, rules are numbered from 0:
 
-    - {"atoms": shown atoms of the best answer set, "derived": all atoms of `heads` that some answer set may hold}
+    - {"atoms": shown atoms of the best answer set, "derived": all atoms of `heads` that some answer set may hold,
+      "cost": pairs of level and amount, "proved": whether the search ended}
     - {} when nothing was searched and no error occurred
     - {"message": clingo's message}, with line numbers from 1 that count the rules
     - {"error": message, "at": (line, column), "rule": number} for an error of arithmetic
-    - {"cut": reason} when the search reached the limit
+    - {"cut": conflicts} when the search reached the limit before there was an answer
     - {"against": numbers of rules} that together leave no answer
     """
     rules = [" ".join(rule.split("\n")) for rule in rules]
-    control, failed = _grounded(program, rules)
-    if failed is not None or conflicts == 0:
-        return failed or {}
+    for options in (CORE_GUIDED, ()):  # the same search as without users' rules
+        control, failed = _grounded(program, rules, options)
+        if failed is not None or conflicts == 0:
+            return failed or {}
+        best: list[tuple[list[str], list[tuple[int, int]]]] = []
+
+        def keep(model: clingo.Model, best: list[tuple[list[str], list[tuple[int, int]]]] = best) -> None:
+            """Keep the shown atoms of a model, as text, and its cost: pairs of level and amount."""
+            cost = list(zip(model.priority, model.cost, strict=True))
+            best.append(([str(atom) for atom in model.symbols(shown=True)], cost))
+
+        settings: Any = control.configuration.solve
+        settings.solve_limit = f"{conflicts},umax"
+        result = control.solve(on_model=keep)
+        if result.exhausted:
+            break
+    if not best:
+        return {"against": _conflicting_rules(program, rules)} if result.exhausted else {"cut": conflicts}
     derived = [
         str(atom.symbol) for name, arity in heads for atom in control.symbolic_atoms.by_signature(str(name), int(arity))
     ]
-    settings: Any = control.configuration.solve
-    settings.solve_limit = f"{conflicts},umax"
-    best: list[list[str] | None] = [None]
-    priced = [False]
-
-    def keep(model: clingo.Model) -> None:
-        """Keep the shown atoms of a model, as text, and whether it has a cost."""
-        best[0], priced[0] = [str(atom) for atom in model.symbols(shown=True)], bool(model.cost)
-
-    result = control.solve(on_model=keep)
-    if result.unknown or (priced[0] and not result.exhausted):
-        return {"cut": f"after {conflicts} conflicts"}
-    if best[0] is None:
-        return {"against": _conflicting_rules(program, rules)}
-    return {"atoms": best[0], "derived": derived}
+    atoms, cost = best[-1]
+    return {"atoms": atoms, "derived": derived, "cost": cost, "proved": result.exhausted}
 
 
-def _grounded(program: str, rules: Sequence[str]) -> tuple[clingo.Control, Response | None]:
+def _grounded(
+    program: str, rules: Sequence[str], options: Sequence[str] = ()
+) -> tuple[clingo.Control, Response | None]:
     """Return the grounded program, and the response to an error or None when there is none.
 
     The program is clingo's control object, ready to be solved when the second value is None. The response is
     {"message": clingo's message}, or {"error": message, "at": (line, column), "rule": number from 0} for arithmetic
     without a result.
 
-    program : the text of the encoding and its facts. rules : the text of each rule, one line each.
+    program : the text of the encoding and its facts. rules : the text of each rule, one line each. options : of clingo.
     """
     messages: list[str] = []
     calculator = Calculator()
-    control = clingo.Control([], logger=lambda _code, text: messages.append(text), message_limit=20)
+    control = clingo.Control([*options], logger=lambda _code, text: messages.append(text), message_limit=20)
     try:
         control.add("base", [], "\n".join(rules))
         control.add("base", [], program)

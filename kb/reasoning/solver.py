@@ -7,16 +7,13 @@ separate process, by kb.reasoning.user_rules.
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import clingo
 
-from kb.reasoning.encodings import ENCODING_FOLDERS, encoding_files
+from kb.reasoning.encodings import CORE_GUIDED, ENCODING_FOLDERS, BoundedAnswer, encoding_files
 from kb.tracing.decisions import note_answer
 
-# Bounded searches look for the best answer from below first (unsatisfiable cores), which ends where branch and bound
-# does not; measured by benchmarks.orders.strategies. Where it does not end, branch and bound tells the best so far.
-CORE_GUIDED = ("--opt-strategy=usc,oll,stratify",)
 MAX_BOUNDED_SECONDS = 600.0  # of wall-clock time; against a search that hangs, never reached within the conflicts
 
 
@@ -59,25 +56,12 @@ def solve(
     return None if answer is None else list(answer)
 
 
-class BoundedAnswer(NamedTuple):
-    """The best answer set that a bounded search found.
-
-    Attributes
-    ----------
-    atoms : its shown atoms, clingo symbols sorted by their text; None when none was found.
-    proved : whether the search ended: then no answer set is better, or there is none.
-    """
-
-    atoms: tuple[clingo.Symbol, ...] | None
-    proved: bool
-
-
 def solve_within(
     files: Sequence[Path], facts: Iterable[str], conflicts: int, about: Sequence[Any] = ()
 ) -> BoundedAnswer:
     """Return the best answer set that is found within a number of conflicts, which is the same on every machine.
 
-    With users' rules the limits of kb.reasoning.user_rules count instead.
+    With users' rules the limit of time of kb.reasoning.user_rules counts, too. Rules that leave no answer are no error.
 
     Parameters
     ----------
@@ -125,9 +109,9 @@ def _answer(
         from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
 
         files = tuple(path for path in files if path not in users)
-        found = solve_with_user_rules(files, users, facts)
+        found = solve_with_user_rules(files, users, facts, conflicts)
         if found is not None:
-            return BoundedAnswer(tuple(sorted(found, key=str)), True)
+            return found
     if conflicts is not None:
         by_cores = _searched(files, facts, seconds, conflicts, CORE_GUIDED)
         if by_cores.proved and by_cores.atoms is not None:
@@ -153,12 +137,13 @@ def _searched(
         raise EncodingError("\n".join([*messages, str(error)])) from error
     if messages:
         raise EncodingError("\n".join(messages))
-    best: list[clingo.Symbol] | None = None
+    best: BoundedAnswer = BoundedAnswer(None, False)
 
     def keep(model: clingo.Model) -> None:
         """Keep the shown atoms of a model as the best ones so far."""
         nonlocal best
-        best = list(model.symbols(shown=True))
+        cost = tuple(zip(model.priority, model.cost, strict=True))
+        best = BoundedAnswer(tuple(sorted(model.symbols(shown=True), key=str)), False, cost)
 
     if conflicts is not None:
         settings: Any = control.configuration.solve
@@ -167,4 +152,4 @@ def _searched(
         if not handle.wait(seconds):
             handle.cancel()
         exhausted = bool(handle.get().exhausted)
-    return BoundedAnswer(None if best is None else tuple(sorted(best, key=str)), exhausted)
+    return best._replace(proved=exhausted)

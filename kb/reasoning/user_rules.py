@@ -22,7 +22,7 @@ from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact
 from kb.language.tokens import Token, tokenize
 from kb.language.vocabulary import Signature
-from kb.reasoning.encodings import encoding_path, encoding_text
+from kb.reasoning.encodings import BoundedAnswer, encoding_path, encoding_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.rulebook import INTERFACE_PREDICATES, Rulebook, Statement, statement_of, why_not_in_domain
 from kb.reasoning.sentences import RuleWords, read_sentences
@@ -208,21 +208,27 @@ def _not_allowed(source: Source, tokens: Iterable[Token]) -> Iterator[Problem]:
 
 
 def solve_with_user_rules(
-    ours: Sequence[Path], users: Sequence[Path], facts: Sequence[str], limits: RuleLimits = RULE_LIMITS
-) -> list[clingo.Symbol] | None:
-    """Return the shown atoms of the best answer set of an encoding with users' rules.
+    ours: Sequence[Path],
+    users: Sequence[Path],
+    facts: Sequence[str],
+    conflicts: int | None = None,
+    limits: RuleLimits = RULE_LIMITS,
+) -> BoundedAnswer | None:
+    """Return the best answer set of an encoding with users' rules.
 
     Parameters
     ----------
     ours : the path of the encoding; exactly one.
     users : the paths of the users' rules.
     facts : the facts of the encoding, without full stops.
+    conflicts : of clingo's search, after which the best answer so far counts; there may be none, also because the
+        rules leave none. None where an answer is needed, within the conflicts of `limits`.
     limits : the wall-clock time, in seconds, and the conflicts of clingo's search.
 
     Returns
     -------
-    The atoms, clingo symbols in the order of clingo; None when none of the rules reaches this encoding, so that it must
-    be solved without them. The best answer set is the cheapest one; of several, the one that clingo finds last.
+    The atoms, whether they are proved to be the best ones, and their cost; None when none of the rules reaches this
+    encoding, so that it must be solved without them. Of several best answers the one that clingo finds last.
 
     Raises
     ------
@@ -234,7 +240,9 @@ def solve_with_user_rules(
     reaching = rules.rules_reaching(encoding.stem)
     if not reaching:
         return None
-    return _solved(encoding, reaching, facts, limits)
+    if conflicts is not None:
+        limits = limits._replace(conflicts=conflicts)
+    return _solved(encoding, reaching, facts, limits, may_fail=conflicts is not None)
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
@@ -246,7 +254,7 @@ def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
 
 
 def rules_to_blame(
-    encoding: Path, users: Sequence[Path], facts: Sequence[str], is_bad: Callable[[list[clingo.Symbol]], bool]
+    encoding: Path, users: Sequence[Path], facts: Sequence[str], is_bad: Callable[[Sequence[clingo.Symbol]], bool]
 ) -> tuple[str, ...]:
     """Return the places of the rules because of which an answer is bad, such as `rules.lp:3`; () without such rules.
 
@@ -258,22 +266,25 @@ def rules_to_blame(
     encoding : the path of the encoding.
     users : the paths of the users' rules.
     facts : the facts of the encoding, without full stops.
-    is_bad : says of the shown atoms whether they are a bad answer; they are one with all rules.
+    is_bad : says of the shown atoms whether they are a bad answer; they are one with all rules. So is no answer.
     """
     left = list(read_rules(users).rules_reaching(encoding.stem))
     for one in reversed(left):
         fewer = [other for other in left if other is not one]
-        if is_bad(_solved(encoding, fewer, facts, RULE_LIMITS)):
+        atoms = _solved(encoding, fewer, facts, RULE_LIMITS, may_fail=True).atoms
+        if atoms is None or is_bad(atoms):
             left = fewer
     return tuple(f"{one.source.file}:{one.at[0]}" for one in left)
 
 
 def _solved(
-    encoding: Path, reaching: Sequence[Statement], facts: Sequence[str], limits: RuleLimits
-) -> list[clingo.Symbol]:
-    """Return the shown atoms of the best answer set of an encoding with some rules; errors as solve_with_user_rules."""
+    encoding: Path, reaching: Sequence[Statement], facts: Sequence[str], limits: RuleLimits, may_fail: bool
+) -> BoundedAnswer:
+    """Return the best answer set of an encoding with some rules; arguments and errors as for solve_with_user_rules."""
     program = "\n".join([encoding_text(encoding), *(f"{fact}." for fact in facts)])
-    found = _solved_by_worker(encoding.name, program, reaching, limits)
+    found = _solved_by_worker(encoding.name, program, reaching, limits, may_fail)
+    if "atoms" not in found:
+        return BoundedAnswer(None, "against" in found)
     given: dict[Signature, list[Fact]] = {}
     for fact in facts_from_text("".join(f"{fact}.\n" for fact in facts)):
         given.setdefault(fact.signature, []).append(fact)
@@ -282,14 +293,16 @@ def _solved(
         why = "it is no fact" if atom is None else why_not_in_domain(encoding.stem, atom, given)
         if why:
             raise _error_at_source_rule(reaching, text, atom, f"these rules derive {text}, in {encoding.name}: {why}")
-    return [clingo.parse_term(text) for text in found["atoms"]]
+    atoms = sorted((clingo.parse_term(text) for text in found["atoms"]), key=str)
+    return BoundedAnswer(tuple(atoms), found["proved"], tuple(map(tuple, found["cost"])))
 
 
-def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], limits: RuleLimits) -> dict[str, Any]:
+def _solved_by_worker(
+    name: str, program: str, reaching: Sequence[Statement], limits: RuleLimits, may_fail: bool = False
+) -> dict[str, Any]:
     """Return the worker's response to a program with users' rules; raise BadInputError when it has no answer.
 
-    The response is {"atoms": texts, "derived": texts of atoms that heads of rules may have derived}, or {} without a
-    search.
+    The response is as of kb.reasoning.rule_solver; {} without a search. may_fail : whether no answer is no error.
 
     name : the name of the program in messages; '' for the rules alone.
     program : the text of the encoding and its facts; '' for the rules alone.
@@ -310,8 +323,12 @@ def _solved_by_worker(name: str, program: str, reaching: Sequence[Statement], li
     if "error" in found:
         line, column = found["at"]
         raise BadInputError([reaching[found["rule"]].problem(found["error"], (line, column))])
-    if "cut" in found:
-        what = f"the search for the best answer of {name or 'these rules'} was cut off: {found['cut']}"
+    if may_fail:
+        return found
+    if "cut" in found or (found.get("cost") and not found["proved"]):
+        what = (
+            f"the search for the best answer of {name or 'these rules'} was cut off: after {limits.conflicts} conflicts"
+        )
         raise _error_at_first_rule(reaching, what)
     if "against" in found:
         blamed = [reaching[number] for number in found["against"]]

@@ -17,7 +17,7 @@ import numpy as np
 from geometry import Passage, Screen
 from geometry.kernels.arrays import XY, Bools, Floats, Ints, Labels, Longs
 from geometry.passages.necks import Segment
-from geometry.raster.winding import crossing_number
+from geometry.raster.winding import crossings_by_step
 from kb.reasoning.encodings import KB_ENCODINGS
 from kb.reasoning.solver import solve
 from kb.world.doors import DoorwayNeck, find_necks
@@ -377,10 +377,7 @@ def count_crossings(points: Floats, door: Door) -> int:
     int
         Not negative, whichever way the passes lead.
     """
-    a, along = np.array(door.a), np.subtract(door.b, door.a)
-    turned = np.column_stack([(points - a) @ along, (points - a) @ np.array([-along[1], along[0]])])
-    whole = float(along @ along)
-    return abs(crossing_number(turned, (0.0, 0.0)) - crossing_number(turned, (whole, 0.0)))
+    return abs(int(_passes(points, door).sum()))
 
 
 def went_through(track: Floats, door: Door) -> bool:
@@ -394,4 +391,13 @@ def went_through(track: Floats, door: Door) -> bool:
     door : Door
         The door.
     """
-    return any(count_crossings(track[: end + 1], door) for end in range(1, len(track)))
+    return bool(_passes(track, door).cumsum().any())
+
+
+def _passes(track: Floats, door: Door) -> Longs:
+    """Return for each step of a track whether it passes the neck of a door: 1 one way, -1 the other way, else 0."""
+    a, along = np.array(door.a), np.subtract(door.b, door.a)
+    turned = np.column_stack([(track - a) @ along, (track - a) @ np.array([-along[1], along[0]])])
+    near, far = crossings_by_step(turned, np.array([[0.0, 0.0], [float(along @ along), 0.0]]))
+    passes: Longs = near - far
+    return passes

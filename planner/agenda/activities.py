@@ -25,6 +25,7 @@ from planner.goals.robot_goals import destination
 from planner.per_model import PerModel
 from planner.sights.walls import ALL_WALLS
 from planner.situation import Situation
+from planner.tasking.rule_effects import rules_that_close
 
 
 class Activities:
@@ -95,7 +96,6 @@ class Activities:
         activity : what is done. turn : the stage and what is believed. last : the last verdict of an activity.
         """
         stage, situation, clearer = turn.stage, turn.situation, self._clearer
-        ruled = turn.within(self.errands.within_rules(situation))
         goals = turn.goals_of(activity.subject)
         doing: Mapping[str, Callable[[], Decision]] = {
             "release": lambda: _put_down(situation),
@@ -104,17 +104,17 @@ class Activities:
             "agree": lambda: self._transporter.conflict(stage, situation),
             "errand": lambda: self.errands.next(turn),
             "settle": self._nothing_settles,
-            "find": lambda: self._transporter.towards(goals[0], ruled),
-            "pursue": lambda: self._transporter.towards(goals[0], ruled),
-            "go": lambda: self._own.go(ruled, self.errands.intention),
-            "wish": lambda: self._own.go_for_wish(ruled, self.errands.intention),
+            "find": lambda: self._transporter.towards(goals[0], turn),
+            "pursue": lambda: self._transporter.towards(goals[0], turn),
+            "go": lambda: self._own.go(turn, self.errands.intention),
+            "wish": lambda: self._own.go_for_wish(turn, self.errands.intention),
             "look": lambda: self._own.look(turn, self._transporter),
-            "pull": lambda: clearer.pull(goals, ruled),
-            "make_way": lambda: clearer.clear(goals, ruled),
-            "try": lambda: self._trials.next(goals, ruled),
-            "feel": lambda: clearer.feel(goals, ruled),
-            "bare": lambda: clearer.bare(goals, ruled),
-            "blame": lambda: _added(last, clearer.blame(ruled.situation)),
+            "pull": lambda: clearer.pull(goals, turn),
+            "make_way": lambda: clearer.clear(goals, turn),
+            "try": lambda: self._trials.next(goals, turn),
+            "feel": lambda: clearer.feel(goals, turn),
+            "bare": lambda: clearer.bare(goals, turn),
+            "blame": lambda: _added(last, clearer.blame(turn.situation)),
             "doubt": lambda: open_fact_against(
                 last, situation, ALL_WALLS if activity.subject == CONSTRAINTS else feeling_scope(stage, situation)
             ),
@@ -134,7 +134,7 @@ class Activities:
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""
-        if not isinstance(decision.command, Grasp) or not self.errands.blamed_so_far:
+        if not isinstance(decision.command, Grasp) or not self.errands.blamed_so_far(turn.situation):
             return decision
         return Decision(None, f"{turn.stage} cannot be attained as far as is known", TaskVerdict.LIMIT)
 
@@ -148,14 +148,18 @@ class Activities:
             why = f"{turn.stage} cannot be attained: users' rules forbid {forbidden}"
         elif last.verdict is None:
             why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"
-        if self.errands.blamed and not self.errands.is_shut_out:
+        if self.errands.blamed and not self.errands.is_shut_out(turn.situation):
             why = f"{why}; {self.errands.blamed}"
+        if closing := rules_that_close(turn.situation):
+            why = f"{why}; doors are closed by the rule{'s' * (len(closing) > 1)} at {' and '.join(closing)}"
         return replace(last, why=why, verdict=end.verdict)
 
     def _doubt_of_done(self, situation: Situation) -> str:
         """Return why the constraints may not have been kept when all goals hold, in words; "" when they surely were."""
         if situation.forbidden(ROBOT) and not situation.avoided:
             return "the robot went through every door that is sure"
+        if passed := situation.closed_doors_passed:
+            return f"the robot went through {passed[0].name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from geometry.kernels.arrays import XY
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
+from kb.reasoning.user_rules import rules_reach
 from kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
 from kb.task.task import Task
 from kb.tracing.decisions import record_decisions
@@ -24,8 +25,10 @@ from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import Verifier
 from planner.decision import Decision, TaskVerdict
 from planner.screen.projection import CostMaps, costs_to_objects
-from planner.situation import Situation, regions_kept_off
+from planner.situation import Situation, possible_doors, regions_kept_off
 from planner.stages import Stage, parameters_that_keep_meaning, stages
+from planner.tasking.proposal import TASK_ENCODING
+from planner.tasking.rule_effects import rules_about_doors
 from planner.tasking.task_plan import TaskPlan
 
 PROOFS = (TaskVerdict.IMPOSSIBLE, TaskVerdict.POSSIBLE_IF)  # verdicts that something cannot be, as things are
@@ -134,6 +137,10 @@ class Decider:
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
         situation = replace(situation, lenient=self._lenient, as_well=as_well_by_parameter(reconciled))
+        if any(goal.name == "not_through" for goal in self.task.goals) or rules_reach(TASK_ENCODING.stem, self.rules):
+            situation = replace(situation, possible_doors=possible_doors(model, self.rooms, self.rules))
+        ruled = rules_about_doors(situation)
+        situation = replace(situation, closed=ruled.closed, door_prices=ruled.prices).within_shut_doors()
         for stage in self.stages[self.attained :]:
             decision = self._activities.decide(self._turn(stage, situation, reconciled, track))
             meant = self._intention.meanings

@@ -16,7 +16,7 @@ from planner.deciding.verification import check_elsewhere, look_at_contradiction
 from planner.decision import Decision, TaskVerdict, done, nothing_to_do
 from planner.goals.joint import opposite_corners_reason
 from planner.goals.robot_goals import Destination, robot_stands_on, unknown_destination, unreachable_reason
-from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
+from planner.navigation.encircle import encircling_routes, winding_number
 from planner.screen.moves import next_move
 from planner.sights.viewpoints import TO_REACH
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
@@ -123,11 +123,12 @@ class OwnGoals:
             found = turn.seek(subgoals, lambda: missing, verdict)
             if found.command is not None or not situation.shut(ROBOT):
                 return found
-            within = situation.within_shut_doors()
+            beyond = situation.through_shut_doors().cost_maps.floor & ~situation.cost_maps.floor
+            if not beyond.any():
+                return found
             unknown = unknown_destination("every way that is known leads through a forbidden door")
-            others = subgoals_towards([unknown], within, reconciled, TO_REACH)
-            other = turn.within(within).seek(others, lambda: unknown.missing)
-            return found if other.command is None else other
+            others = subgoals_towards([unknown], situation, reconciled, TO_REACH)
+            return turn.seek(others, lambda: unknown.missing)
 
         decision = turn.feel_before_verdict(ask)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
@@ -172,10 +173,9 @@ class OwnGoals:
             return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         self._turn = next(turn for turn, other in offered.items() if other is route)
         turn.pursuer.keep_route(route, model)
-        x, y = encircled_point(node)
-        about = (x - model.view.west, y - model.view.south)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
-        return Decision(next_move(cost_maps, route.squares, kind, about), f"the way round {name}; {stage}")
+        move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
+        return Decision(move, f"the way round {name}; {stage}")
 
 
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:

@@ -53,10 +53,9 @@ class ErrandRunner:
         """
         self.forbidden = ()
         turn = self._updated(turn)
-        if self.is_shut_out:
+        if self.is_shut_out(turn.situation):
             why = f"{turn.stage} cannot be attained: {self.blamed}"
             return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
-        turn = turn.within(self.within_rules(turn.situation))
         for attempt in range(MAX_FAILURES):
             if attempt:
                 turn = self._updated(turn)
@@ -84,34 +83,26 @@ class ErrandRunner:
         step, self.forbidden = self.intention.settle(turn.stage, turn.situation, given)
         return step
 
-    def within_rules(self, situation: Situation) -> Situation:
-        """Return a situation with the doors closed that users' rules leave to no plan."""
-        closed = self.intention.rules.names_of_closed(situation)
-        return situation if closed == situation.closed else replace(situation, closed=closed)
-
     @property
     def blamed(self) -> str:
         """The users' rules because of which there is no plan for all goals, in words; "" for none."""
-        blamed = self.intention.rules.blamed
+        blamed = self.intention.blamed
         rules = "the rule" if len(blamed) == 1 else "the rules"
         return f"{rules} at {' and '.join(blamed)} leave{'s' * (len(blamed) == 1)} no plan" if blamed else ""
 
-    @property
-    def is_shut_out(self) -> bool:
-        """Whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
+    def is_shut_out(self, situation: Situation) -> bool:
+        """Return whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
 
         False while it is open where exactly a goal holds.
         """
-        rules = self.intention.rules
-        return bool(rules.blamed and not rules.closed and not self.intention.is_open)
+        return bool(self.intention.blamed and not situation.closed and not self.intention.is_open)
 
-    @property
-    def blamed_so_far(self) -> str:
-        """The users' rules because of which there is no plan as far as is known, in words; "" for none.
+    def blamed_so_far(self, situation: Situation) -> str:
+        """Return the users' rules because of which there is no plan as far as is known, in words; "" for none.
 
         "" where a plan is under way, too, and where the rules close doors: then no way through these is taken.
         """
-        return self.blamed if self.intention.plan is None and not self.intention.rules.closed else ""
+        return self.blamed if self.intention.plan is None and not situation.closed else ""
 
     def _updated(self, turn: StageTurn) -> StageTurn:
         """Make the plan anew where it no longer holds; return the turn with what it means by parameters."""

@@ -13,7 +13,7 @@ from planner.advice import Go, See
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import contact_subgoals
 from planner.decision import Decision, TaskVerdict, with_command
-from planner.navigation.fewest_moves import FewestMoves
+from planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from planner.navigation.loop_guard import LoopGuard
 from planner.navigation.routes import PlannedRoute, choose_route, find_routes
 from planner.navigation.sticky_route import StickyRoute, to_map_squares
@@ -82,7 +82,7 @@ class Pursuer:
         model = situation.model
         fewest = FewestMoves(situation.cost_maps) if stage.carried else None
         while True:
-            offered = self._circles.priced(subgoals, model)
+            offered = with_door_prices(self._circles.priced(subgoals, model), situation)
             if fewest is not None:
                 offered = fewest.priced(offered)
             subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
@@ -179,7 +179,8 @@ class Pursuer:
             return Decision(None, why, TaskVerdict.IMPOSSIBLE)
         self.keep_route(route, model, subgoal.squares)
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
-        move = next_move(cost_maps, route.squares, kind, pace=WALKING_PACE if fewest is None else CARRYING_PACE)
+        pace = WALKING_PACE if fewest is None else CARRYING_PACE
+        move = next_move(cost_maps, route.squares, route.level, kind, pace)
         return Decision(move, f"{subgoal.what}; {stage}")
 
     def _route_left(self, subgoal: Subgoal, level: int, situation: Situation) -> PlannedRoute | None:
@@ -217,7 +218,28 @@ class Pursuer:
             return None
         before = frozenset(self._kept.path(situation.model))
         forbidden = frozenset(door.name for door in situation.shut(ROBOT))
-        return choose_route(offered, situation.cost_maps, before, situation.rooms.doors, forbidden)
+        prices = {name: MOVE_COST * commands for name, commands in situation.door_prices.items()}
+        return choose_route(offered, situation.cost_maps, before, situation.doors, forbidden, prices)
+
+
+def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[Subgoal]:
+    """Return subgoals, in order, with what a pass through doors costs that users' rules price, or the way round them.
+
+    Of several priced doors the least price counts.
+    """
+    priced = [door for door in situation.doors if door.name in situation.door_prices]
+    if not priced:
+        return list(subgoals)
+    most = MOVE_COST * min(situation.door_prices[door.name] for door in priced)
+    maps, round_them = situation.cost_maps, situation.within_shut_doors(priced).cost_maps
+    found = []
+    for subgoal in subgoals:
+        through, otherwise = maps.nearest(subgoal.squares), round_them.nearest(subgoal.squares)
+        if through is not None:
+            more = most if otherwise is None else min(most, otherwise.cost - through.cost)
+            subgoal = subgoal._replace(price=subgoal.price + max(0.0, more))
+        found.append(subgoal)
+    return found
 
 
 def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:

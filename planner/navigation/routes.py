@@ -16,12 +16,13 @@ from geometry.pathfinders.grid_astar import grid_path
 from geometry.pathfinders.visibility_graph import visibility_path
 from kb.reasoning.solver import solve
 from kb.world.model import WorldModel
-from kb.world.rooms import Door, count_crossings
+from kb.world.rooms import Door, went_through
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE
 from planner.screen.projection import CostMaps, SquareIndices
 from planner.screen.sweeps import squares_along
 
 MAX_ROUTES = 4  # topologically distinct routes that are offered for a choice (tuned on random worlds)
+NO_DOOR_PRICES: Mapping[str, float] = {}
 MIN_SHARED = 0.6  # a route with more than this share of its squares in common with the last one continues it (tuned)
 
 
@@ -115,6 +116,7 @@ def choose_route(
     before: frozenset[Square],
     doors: Sequence[Door],
     forbidden: frozenset[str],
+    prices: Mapping[str, float] = NO_DOOR_PRICES,
 ) -> PlannedRoute | None:
     """Choose one of some routes, by planner/asp/routes.lp; None when every route leads through a forbidden door.
 
@@ -123,15 +125,17 @@ def choose_route(
 
     The facts for the encoding, each a string without a full stop: `not_through(door)`; for each route, numbered from 0,
     `route(number, length, clearance, risk)` with length and clearance in tenths of squares and the risk in hundredths
-    of the expected number of occupied squares; `through(number, door)`; `last(number)` for a route that continues the
-    one before.
+    of the expected number of occupied squares; `through(number, door)`; `door_price(door, price)`, a length;
+    `last(number)` for a route that continues the one before.
 
     Parameters
     ----------
     before : the squares (column, row) of the route chosen last time, on the arrays of the same view; empty for none.
     forbidden : the names of the doors that the task forbids.
+    prices : by the name of a door: what users' rules add to a pass through it, in squares of way.
     """
     facts = [f"not_through({door})" for door in sorted(forbidden)]
+    facts += [f"door_price({door},{round(TENTHS_PER_SQUARE * price)})" for door, price in sorted(prices.items())]
     for number, route in enumerate(offered):
         columns, rows = np.array(route.squares).T
         risk = round(100 * float(cost_maps.model.view.probability[rows[1:], columns[1:]].sum()))
@@ -159,12 +163,11 @@ def _corners_in_robot_frame(route: PlannedRoute, model: WorldModel) -> list[list
 
 
 def leads_through(route: PlannedRoute, door: Door) -> bool:
-    """Return whether a route crosses the neck of a door an odd number of times, and so ends on its other side.
+    """Return whether a route passes the neck of a door, also where it comes back.
 
     Both are in the view frame; the route counts as the line through the centres of its squares.
     """
-    points = np.array(route.squares) + 0.5
-    return bool(count_crossings(points, door) % 2)
+    return went_through(np.array(route.squares) + 0.5, door)
 
 
 def _centre(square: Square) -> XY:

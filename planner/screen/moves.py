@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.line_of_sight import straight
-from geometry.raster.winding import crossing_number
+from geometry.raster.winding import crossings_by_step
 from kb.body import Command, Move
 from kb.localisation.hypotheses.walk_outcomes import snap_to_line
 from kb.perception.frame import turned
@@ -102,13 +102,15 @@ CARRYING_PACE = Pace(
 def next_move(
     cost_maps: CostMaps,
     path: Sequence[Square],
+    level: int,
     kind: str,
-    about: XY | None = None,
     pace: Pace = WALKING_PACE,
+    off_centre: bool = True,
 ) -> Move:
-    """Choose the longest straight move along a path that stays on passable squares.
+    """Choose the longest straight move that stays on passable squares and in the class of a path.
 
-    It ends at a later square of the path; at the next one where no longer move is allowed, even if that one is not
+    It ends at a later square of the path, and nothing that is not free lies between the two: the way that was chosen is
+    the one that is walked. It ends at the next square where no longer move is allowed, even if that one is not
     passable. While the orientation is uncertain, the second half of a move of more than TIGHT_MOVE_LENGTH squares keeps
     one more square clear around it, unless the pace is bold.
 
@@ -116,20 +118,22 @@ def next_move(
     ----------
     path : edge-connected squares (column, row) on the arrays of the view; the first is the robot's. Of that one alone
         the move leads to its middle.
-    kind : of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square.
-    about : a point (x, y) in the view frame, in squares. The move then passes it on the same side as the path.
+    level : the certainty level of these squares.
+    kind : of the subgoal (SubgoalKind). Moves to explore, inspect or settle may end off the centre of a square, unless
+        `off_centre` is false.
     """
     here, longest = path[0], pace.most(kind, cost_maps.model)
     passable, roomy = pace.passable(cost_maps, kind), None if pace.bold else _roomy(cost_maps)
     there = path[min(1, len(path) - 1)]
+    blocked = ~(cost_maps.free(level) | passable)
     for number in range(len(path) - 1, 1, -1):
         square = path[number]
         far = max(abs(square[0] - here[0]), abs(square[1] - here[1]))
         free = far <= longest and sweep_is_free(passable, here, square) and _is_roomy(roomy, here, square)
-        if free and _same_side(path[: number + 1], about):
+        if free and _same_class(path[: number + 1], blocked):
             there = square
             break
-    view, (dx, dy) = cost_maps.model.view, _end_offset(cost_maps, there, kind if about is None else SubgoalKind.ATTAIN)
+    view, (dx, dy) = cost_maps.model.view, _end_offset(cost_maps, there, kind if off_centre else SubgoalKind.ATTAIN)
     place = view.west + there[0] + 0.5 + dx, view.south + there[1] + 0.5 + dy
     return move_to(place, cost_maps.model)
 
@@ -234,10 +238,10 @@ def halt_exactly_at(command: Command | None, place: XY, model: WorldModel) -> Co
     return move_to(place, model)
 
 
-def _same_side(part: Sequence[Square], about: XY | None) -> bool:
-    """Return whether a straight line may replace part of a path without passing `about` on its other side.
-
-    part : squares (column, row) on the arrays of the view, whose first and last the line joins.
-    about : a point (x, y) in the view frame, in squares; None for no such condition.
-    """
-    return about is None or crossing_number(np.array([*part, part[0]]) + 0.5, about) == 0
+def _same_class(part: Sequence[Square], blocked: Bools) -> bool:
+    """Return whether part of a path, (column, row), can be pulled straight without crossing a blocked square."""
+    ring = np.array([*part, part[0]])
+    (west, south), (east, north) = ring.min(axis=0), ring.max(axis=0)
+    rows, columns = np.nonzero(blocked[south : north + 1, west : east + 1])
+    centres = np.column_stack([columns + west, rows + south]).astype(float)
+    return not len(centres) or not crossings_by_step(ring, centres).sum(axis=1).any()

@@ -20,7 +20,7 @@ from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.proposal import TASK_ENCODING
-from planner.tasking.rule_effects import RuleEffects, doors_at, doors_led_round, effects_of_rules
+from planner.tasking.rule_effects import doors_at, doors_led_round, rules_without_plan
 from planner.tasking.search import make_plan
 from planner.tasking.setting import (
     WhereGoalsHold,
@@ -97,7 +97,7 @@ class Intention:
 
     Attributes
     ----------
-    rules : what users' rules did to the plan that was made last.
+    blamed : the places of users' rules because of which the plan that was made last does not attain all goals.
     """
 
     def __init__(self, where: WhereGoalsHold, pull: bool = True) -> None:
@@ -116,7 +116,7 @@ class Intention:
         self._stage: Stage | None = None  # for which `_tried` counts
         self._dropped: frozenset[Fact] = frozenset()  # wishes that could not be attained
         self._meant: Mapping[str, str] = {}  # the object that the last plan meant by each parameter of the task
-        self.rules = RuleEffects()
+        self.blamed: tuple[str, ...] = ()
 
     @property
     def plan(self) -> TaskPlan | None:
@@ -245,7 +245,7 @@ class Intention:
         if kept is None or kept.number >= len(kept.led_round):
             return situation
         closed = doors_at(kept.led_round[kept.number], situation)
-        return replace(situation, closed=situation.closed | closed)
+        return situation.with_closed(closed) if closed else situation
 
     def own_wish(self) -> tuple[Errand, Fact] | None:
         """Return the next step of the plan and its wish, when the robot goes somewhere for a wish; None otherwise."""
@@ -287,7 +287,7 @@ class Intention:
         """Return whether all things lie as the plan expects, and no way that is left is seen to be blocked."""
         if kept.number >= len(kept.plan.errands):
             missed = kept.plan.missed
-            return all(goal.holds or goal.subject == ROBOT or goal.name in missed for goal in problem.goals)
+            return all(goal.holds or goal.name in missed for goal in problem.goals)
         subject = kept.plan.errands[kept.number].subject
         now = _bounds(problem, situation)
         for name, expected in kept.bounds[kept.number].items():
@@ -325,7 +325,7 @@ class Intention:
             made = make_plan(problem, situation, oracle, tried, self._meant)
             if not made.plan.unmet:
                 break
-        self.rules = effects_of_rules(made, situation)
+        self.blamed = rules_without_plan(made, situation)
         self._hopeless = believed if made.plan.unmet else None
         self._attempt = made.plan if made.plan.unmet else None
         if made.plan.unmet:

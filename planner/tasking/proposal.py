@@ -12,6 +12,7 @@ from planner.tasking.task_plan import Errand
 
 TASK_ENCODING = PLANNER_ASP / "task"  # a folder, with a file for each action
 MAX_PLAN_CONFLICTS = 20_000  # of clingo's search for one proposal; a bound on work, so that all machines do the same
+UNMET_PLAN = "plan"  # what is unmet where users' rules leave no plan at all, as in planner/asp/agenda.lp
 
 
 class Proposal(NamedTuple):
@@ -45,7 +46,9 @@ def propose(facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] 
     about : what the names of goals mean, in words; for the record of decisions alone.
     """
     answer = solve_within([TASK_ENCODING, *rules], facts, MAX_PLAN_CONFLICTS, about)
-    atoms = answer.atoms or ()
+    if answer.atoms is None:  # rules leave no plan of that length, or the search was cut off before it found one
+        return Proposal((), (UNMET_PLAN,), facts, {}, proved=answer.proved)
+    atoms = answer.atoms
     unmet = tuple(str(atom.arguments[0]) for atom in atoms if atom.name == "unmet")
     doors: dict[int, list[str]] = {}
     found: dict[int, Errand] = {}

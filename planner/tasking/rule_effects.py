@@ -1,36 +1,22 @@
-"""The effects of users' rules on a task plan: doors that they close to every plan, and rules that leave no plan."""
+"""The effects of users' rules: doors that they close or price, whatever the plan, and rules that leave no plan."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from geometry.kernels.arrays import XY
-from kb.reasoning.solver import solve
+from kb.reasoning.encodings import BoundedAnswer
+from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach, rules_to_blame
 from kb.tracing.decisions import record_decisions
-from planner.situation import Situation
-from planner.tasking.proposal import TASK_ENCODING
+from kb.world.model import hundredths
+from planner.oracles.problem import TableState, TaskProblem
+from planner.situation import SAME_DOOR, Situation
+from planner.tasking.facts import problem_facts
+from planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from planner.tasking.search import MadePlan
 
-SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
-
-
-@dataclass(frozen=True)
-class RuleEffects:
-    """The effects of users' rules on a plan.
-
-    Attributes
-    ----------
-    closed : the middles (x, y) of doors that no plan passes, in squares, map frame.
-    blamed : the places of rules because of which the plan does not attain all goals, such as `rules.lp:3`.
-    """
-
-    closed: tuple[XY, ...] = ()
-    blamed: tuple[str, ...] = ()
-
-    def names_of_closed(self, situation: Situation) -> frozenset[str]:
-        """Return the names that the closed doors bear now."""
-        return doors_at(self.closed, situation)
+DOOR_COMMANDS = 1  # that planner/asp/task/go.lp reckons for a pass through a door
 
 
 def doors_at(middles: Sequence[XY], situation: Situation) -> frozenset[str]:
@@ -71,25 +57,83 @@ def _doors_of(made: MadePlan, situation: Situation) -> dict[str, XY]:
     }
 
 
-def effects_of_rules(made: MadePlan, situation: Situation) -> RuleEffects:
-    """Return what users' rules did to a plan; nothing when none of them is about task plans.
+class DoorRules(NamedTuple):
+    """The doors that users' rules close or price, whatever the plan.
+
+    Attributes
+    ----------
+    closed : the names of doors that no plan passes.
+    prices : by the name of a door: the commands that rules add to a pass through it, where they add any.
+    """
+
+    closed: frozenset[str] = frozenset()
+    prices: Mapping[str, int] = {}
+
+
+def rules_about_doors(situation: Situation) -> DoorRules:
+    """Return which doors users' rules close to the robot, and which they price; nothing without such rules.
+
+    Each door is asked about by itself, also where no plan can be made yet: the robot looks about under the same rules.
+    """
+    if not rules_reach(TASK_ENCODING.stem, situation.rules):
+        return DoorRules()
+    facts = _facts_about_doors(situation)
+    with record_decisions():  # questions about doors, not decisions
+        without = _answer(facts, situation)
+        closed, prices = set(), {}
+        for door in _likely_doors(situation):
+            answer = _answer((*facts, f"asked({door})"), situation)
+            if answer.atoms is None or any(atom.name == "closed" for atom in answer.atoms):
+                closed.add(door)
+            elif (price := answer.cost_at(1) - without.cost_at(1) - DOOR_COMMANDS) > 0:
+                prices[door] = price
+    return DoorRules(frozenset(closed), prices)
+
+
+def rules_that_close(situation: Situation) -> tuple[str, ...]:
+    """Return the places of users' rules that close doors, such as `rules.lp:3`; () where none is closed."""
+    blamed: list[str] = []
+    facts = _facts_about_doors(situation) if situation.closed else ()
+    for door in sorted(situation.closed.intersection(_likely_doors(situation))):
+        blamed += rules_to_blame(TASK_ENCODING, situation.rules, (*facts, f"asked({door})"), _closes)
+    return tuple(dict.fromkeys(blamed))
+
+
+def _likely_doors(situation: Situation) -> list[str]:
+    """Return the names of the doors that are likely enough to be tried."""
+    return [door.name for door in situation.doors if door.likely]
+
+
+def _facts_about_doors(situation: Situation) -> tuple[str, ...]:
+    """Return the facts of a problem without goals; a door behind which nothing is known leads to a room of its own."""
+    state = TableState({}, situation.model.place_on_view, None)
+    facts = problem_facts(TaskProblem({}, (), {}, {}, {}, state), (), situation, frozenset(), ())
+    known = {fact.partition("(")[2].partition(",")[0] for fact in facts if fact.startswith("connects(")}
+    beyond = [f"connects({door},before_{door},behind_{door})" for door in _likely_doors(situation) if door not in known]
+    widths = [f"width({door.name},{hundredths(door.width)})" for door in situation.possible_doors]
+    return ("horizon(1)", *facts, *beyond, *widths)
+
+
+def _answer(facts: tuple[str, ...], situation: Situation) -> BoundedAnswer:
+    return solve_within([TASK_ENCODING, *situation.rules], facts, MAX_PLAN_CONFLICTS)
+
+
+def rules_without_plan(made: MadePlan, situation: Situation) -> tuple[str, ...]:
+    """Return the places of users' rules because of which a plan does not attain all goals, such as `rules.lp:3`.
 
     made : the plan, with the facts from which it was made.
     """
     rules = situation.rules
-    if not made.facts or not rules_reach(TASK_ENCODING.stem, rules):
-        return RuleEffects()
-    closed = []
-    for name, middle in _doors_of(made, situation).items():
-        with record_decisions():  # a question about the plan, not a decision
-            answer = solve([TASK_ENCODING, *rules], (*made.facts, f"asked({name})"))
-        if answer and any(atom.name == "closed" for atom in answer):
-            closed.append(middle)
-    blamed = rules_to_blame(TASK_ENCODING, rules, made.facts, _leaves_goals) if made.plan.unmet else ()
-    return RuleEffects(tuple(closed), blamed)
+    if not made.facts or not made.plan.unmet or not rules_reach(TASK_ENCODING.stem, rules):
+        return ()
+    return rules_to_blame(TASK_ENCODING, rules, made.facts, _leaves_goals)
 
 
-def _leaves_goals(atoms: object) -> bool:
+def _closes(atoms: Sequence[Any]) -> bool:
+    """Return whether an answer, given by the shown atoms, says that a door is closed."""
+    return any(atom.name == "closed" for atom in atoms)
+
+
+def _leaves_goals(atoms: Sequence[Any]) -> bool:
     """Return whether a plan, given by the shown atoms, does not attain all goals."""
-    assert isinstance(atoms, list)
     return any(atom.name == "unmet" for atom in atoms)

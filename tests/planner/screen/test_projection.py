@@ -111,7 +111,7 @@ def test_a_move_sweeps_only_safe_squares(kind: str, pace: Pace) -> None:
     cost_maps = CostMaps(model)
     for goal in ((11, 0), (11, -2), (6, 5), (-4, 5), (0, 1)):
         for way in find_routes(cost_maps, 0, flat(model, *goal), "skeleton"):
-            move = next_move(cost_maps, way.squares, kind, pace=pace)
+            move = next_move(cost_maps, way.squares, way.level, kind, pace=pace)
             east, north = round(move.east), round(move.north)
             assert (east, north) == (move.east, move.north)
             assert max(abs(east), abs(north)) <= pace.longest_by_kind[kind]
@@ -130,7 +130,7 @@ def test_longer_moves_than_a_step_are_safe_in_random_models(seed: int) -> None:
         for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton"):
             if len(way.squares) < 2:
                 continue
-            move = next_move(cost_maps, way.squares, "attain")
+            move = next_move(cost_maps, way.squares, way.level, "attain")
             if max(abs(move.east), abs(move.north)) > 1:
                 c, r = swept_offsets(round(move.east), round(move.north))
                 assert cost_maps.safe[r + cost_maps.here[1], c + cost_maps.here[0]].all()
@@ -291,8 +291,8 @@ def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leewa
     cost_maps = CostMaps(model)
     for goal in ((4, 3), (-3, -2), (5, -4)):
         way = find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0]
-        move = next_move(cost_maps, way.squares, "explore")
-        whole = next_move(cost_maps, way.squares, "attain")
+        move = next_move(cost_maps, way.squares, way.level, "explore")
+        whole = next_move(cost_maps, way.squares, way.level, "attain")
         assert (whole.east, whole.north) == (round(whole.east), round(whole.north))
         west, south, east, north = leeway
         for gone, back, forth in ((move.east, west, east), (move.north, south, north)):
@@ -304,7 +304,8 @@ def test_moves_end_near_the_edge_of_a_square_while_the_origin_is_uncertain(leewa
             )
         assert (round(move.east), round(move.north)) == (move.east, move.north) or max(leeway) > LEEWAY_TOLERANCE
     assert any(
-        next_move(cost_maps, find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, "explore").east % 1
+        next_move(cost_maps, find_routes(cost_maps, 0, flat(model, *goal), "skeleton")[0].squares, 0, "explore").east
+        % 1
         for goal in ((4, 3), (-3, -2), (5, -4))
     ) == (max(leeway) > LEEWAY_TOLERANCE)
 
@@ -317,7 +318,7 @@ def test_no_move_ends_near_a_grid_line_at_any_turn_while_the_orientation_is_unce
         for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
-            move = next_move(cost_maps, way.squares, "explore")
+            move = next_move(cost_maps, way.squares, way.level, "explore")
             whole += (move.east, move.north) == (round(move.east), round(move.north))
             for degrees in range(360):
                 c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
@@ -338,7 +339,7 @@ def test_longer_moves_keep_clearance_while_the_orientation_is_uncertain_unless_b
         for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) < 2:
                 continue
-            move = next_move(cost_maps, way.squares, "explore", pace=pace)
+            move = next_move(cost_maps, way.squares, way.level, "explore", pace=pace)
             far = max(abs(move.east), abs(move.north))
             longest = max(longest, far)
             assert far < pace.longest_uncertain + 0.5
@@ -387,7 +388,7 @@ def test_one_move_reaches_exactly_the_possible_ends_of_the_next_move(kind: str, 
                 if max(abs(column - cost_maps.here[0]), abs(row - cost_maps.here[1])) <= 1
                 else cost_maps.here
             )
-            move = next_move(cost_maps, [cost_maps.here, step, (column, row)], kind, pace=CARRYING_PACE)
+            move = next_move(cost_maps, [cost_maps.here, step, (column, row)], 0, kind, CARRYING_PACE)
             ended[cost_maps.here[1] + round(move.north), cost_maps.here[0] + round(move.east)] = True
     assert (reached & cost_maps.believed == ended & cost_maps.believed).all()
 
@@ -398,6 +399,6 @@ def test_no_move_ends_near_an_edge_where_the_next_square_may_stop_it() -> None:
     for goal in np.flatnonzero(cost_maps.floor).tolist():
         for way in find_routes(cost_maps, 0, np.array([goal]), "skeleton")[:1]:
             if len(way.squares) > 1:
-                move = next_move(cost_maps, way.squares, "explore")
+                move = next_move(cost_maps, way.squares, way.level, "explore")
                 here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)
                 assert line_sweep_is_free(cost_maps.safe, here, (here[0] + move.east, here[1] + move.north))

@@ -15,7 +15,7 @@ from planner.oracles.carry import CarryOracle
 from planner.situation import Situation
 from planner.stages import parameters_that_keep_meaning
 from planner.tasking.intention import Intention, with_meanings
-from planner.tasking.rule_effects import effects_of_rules
+from planner.tasking.rule_effects import rules_without_plan
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.setting import WhereGoalsHold, problem_of
 from tests.planner.situations import known_situation
@@ -188,7 +188,7 @@ def test_a_rule_that_leaves_nothing_to_mean_leaves_no_plan_and_is_named(tmp_path
     situation = renamed(situation_with(IN_POCKET, {"x": ("h",)}, written(tmp_path, ":- meaning(x, _).")))
     made = planned(situation, POCKET_GOAL)
     assert made.plan.unmet == ("g1",)
-    assert effects_of_rules(made, situation).blamed == (f"{tmp_path / 'rule.lp'}:1",)
+    assert rules_without_plan(made, situation) == (f"{tmp_path / 'rule.lp'}:1",)
 
 
 def renamed(situation: Situation) -> Situation:

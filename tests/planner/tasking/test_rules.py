@@ -16,7 +16,7 @@ from planner.goals.robot_goals import destination
 from planner.oracles.carry import CarryOracle
 from planner.situation import Situation
 from planner.stages import Stage
-from planner.tasking.rule_effects import doors_led_round, effects_of_rules
+from planner.tasking.rule_effects import doors_led_round, rules_about_doors, rules_that_close, rules_without_plan
 from planner.tasking.search import MadePlan, make_plan
 from planner.tasking.setting import WhereGoalsHold, problem_of
 from simulator.scenario.settings import Settings
@@ -122,18 +122,19 @@ def test_a_narrow_door_is_not_passed_and_is_closed_to_the_robot() -> None:
     made, situation = walk_with(rule("01"))
     (errand,) = made.plan.errands
     assert [width_of(door, situation) for door in errand.doors] == [6.0]
-    effects = effects_of_rules(made, situation)
-    (closed,) = effects.names_of_closed(situation)
-    assert width_of(closed, situation) == 4.0 and effects.blamed == ()
+    (closed,) = rules_about_doors(situation).closed
+    assert width_of(closed, situation) == 4.0 and rules_without_plan(made, situation) == ()
+    assert rules_that_close(replace(situation, closed=frozenset([closed]))) == (f"{rule('01')[0]}:2",)
     without, situation = walk_with(())
-    assert effects_of_rules(without, situation).closed == () and not without.plan.unmet
+    assert rules_about_doors(situation).closed == frozenset() and not without.plan.unmet
 
 
 def test_a_door_with_a_price_is_led_round_and_not_closed() -> None:
     made, situation = walk_with(rule("10"))
     (errand,) = made.plan.errands
     assert [width_of(door, situation) for door in errand.doors] == [6.0]
-    assert effects_of_rules(made, situation).closed == ()
+    found = rules_about_doors(situation)
+    assert found.closed == frozenset() and [(width_of(d, situation), n) for d, n in found.prices.items()] == [(4.0, 20)]
     assert [len(doors) for doors in doors_led_round(made, situation)] == [1]
 
 
@@ -149,7 +150,7 @@ def test_a_strict_order_leaves_no_plan_where_a_preferred_one_gives_way() -> None
     ends = {"g": moved(0, 2)}  # h has no place of its own
     strict, situation = made_with(SWAPPED, ends, rule("02"), {"x": "g", "y": "h"})
     assert strict.plan.unmet == ("g1",)
-    assert effects_of_rules(strict, situation).blamed == (f"{rule('02')[0]}:4",)
+    assert rules_without_plan(strict, situation) == (f"{rule('02')[0]}:4",)
     assert actions(made_with(SWAPPED, ends, rule("03"), {"x": "g", "y": "h"})[0]) == [("carry", "g")]
 
 
@@ -179,7 +180,7 @@ def test_nothing_big_is_brought_through_doors(rows: list[str], unmet: tuple[str,
     assert not made_with(rows, east, (), {})[0].plan.unmet
     made, situation = made_with(rows, east, rule("07"), {})
     assert made.plan.unmet == unmet
-    assert bool(effects_of_rules(made, situation).blamed) == bool(unmet)
+    assert bool(rules_without_plan(made, situation)) == bool(unmet)
 
 
 def test_a_thing_is_moved_aside_within_its_room() -> None:
@@ -203,7 +204,7 @@ def test_a_goal_of_the_users_own_is_attained() -> None:
 def test_a_rule_that_leaves_no_plan_is_named() -> None:
     made, situation = made_with(SWAPPED, {"g": moved(0, 2)}, rule("09"), {})
     assert made.plan.unmet == ("g1",)
-    assert effects_of_rules(made, situation).blamed == (f"{rule('09')[0]}:2",)
+    assert rules_without_plan(made, situation) == (f"{rule('09')[0]}:2",)
 
 
 def test_nothing_is_touched_where_a_rule_leaves_no_plan(tmp_path: Path) -> None:
