@@ -34,6 +34,7 @@ class Decision:
     verdict : how the task ended, or how it ends as far as one part of it is concerned; None while it goes on.
     unless : the open fact that would overturn the verdict, in words; "" when none is known yet, None when there can be
         none.
+    proof : what proves the verdict `impossible`, in words, a clause each; that verdict is never given without.
     near : the place (x, y) that the verdict is about, in squares, view frame (that of the arrays of the view, x =
         column, y = row); None for no such place.
     """
@@ -43,6 +44,12 @@ class Decision:
     verdict: TaskVerdict | None = None
     unless: str | None = ""
     near: tuple[float, float] | None = None
+    proof: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse a verdict that nothing proves."""
+        if self.verdict == TaskVerdict.IMPOSSIBLE and not self.proof:
+            raise ValueError(f"nothing proves that this is impossible: {self.why}")
 
     @property
     def result(self) -> str:
@@ -58,6 +65,17 @@ class Decision:
 def nothing_to_do(why: str) -> Decision:
     """Return the decision that nothing is to be done."""
     return Decision(None, why)
+
+
+def impossible(why: str, *proof: str, unless: str | None = "") -> Decision:
+    """Return the verdict `impossible`.
+
+    Parameters
+    ----------
+    proof : the facts that prove it, in words, at least one.
+    unless : as for Decision.
+    """
+    return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless, proof=proof)
 
 
 def done(why: str) -> Decision:

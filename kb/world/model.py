@@ -23,8 +23,8 @@ from kb.mapping.occupancy import OPEN, MapView
 from kb.mapping.patch import Patch
 from kb.objects.subcell_extent import NO_INSETS, SideValues, SubcellExtent
 from kb.perception.frame import Frame
-from kb.perception.interpretation import SURELY_VERGE, Kinds
-from kb.perception.protrusions import protrusions, untouched_parts
+from kb.perception.interpretation import LONGEST_OBJECT, SURELY_VERGE, Kinds
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR, protrusions, untouched_parts
 from kb.perception.regions import Percept
 
 MAX_SMALL_FRAME_DOUBT = math.radians(5)  # radians: two frames that differ less may explain the same impressions; tuned
@@ -274,14 +274,39 @@ class WorldModel:
         Each is (rows, columns) bool on the view's arrays, row 0 in the south; [] when nothing sticks out. Parts may
         overlap. Such a part may be a thing that stands against the verge.
         """
+        felt = self._felt_on_view
+        return untouched_parts(protrusions(self.space, self._solid, self.view.seen, felt), felt)
+
+    @cached_property
+    def unfelt_pieces(self) -> list[Bools]:
+        """Masks of pieces of the bounds that may be things, however long, smaller ones first.
+
+        Pieces on which verge was felt are left out, and of the others what is known to be a thing. Each is (rows,
+        columns) bool on the view's arrays, row 0 in the south. Pieces may overlap.
+        """
+        verge = [square for square, colour in self._felt_on_view.items() if colour == VERGE_TOUCH_COLOUR]
+        things: Bools = np.zeros(self.labels.shape, np.bool_)
+        for node in self.objects:
+            things |= self.mask(node.patch)
+        parts = protrusions(self.space, self._solid, self.view.seen, self._felt_on_view, LONGEST_OBJECT)
+        rests = [part & ~things for part in parts]
+        return [rest for rest in rests if rest.any() and not any(rest[square] for square in verge)]
+
+    @cached_property
+    def _felt_on_view(self) -> Mapping[tuple[int, int], str]:
+        """The colour of each square (row, column) of the view's arrays that was felt not to be floor."""
         height, width = self.labels.shape
         felt = {self.view.locate(x, y): colour for (x, y), colour in self.felt.items()}
-        within = {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
+        return {(row, column): c for (row, column), c in felt.items() if 0 <= row < height and 0 <= column < width}
+
+    @cached_property
+    def _solid(self) -> Bools:
+        """Squares of what bounds the floor, or stands against that and was not moved: (rows, columns) bool."""
         standing, near_verge = self.verge.copy(), with_edge_neighbours(self.verge)
         for patch in (self.mask(node.patch) for node in self.objects if not node.moved):
             standing |= patch & (patch & near_verge).any()  # it was felt to be a thing, and may be larger than that
-        solid = standing & occupied_squares(self.view)
-        return untouched_parts(protrusions(self.space, solid, self.view.seen, within), within)
+        mask: Bools = standing & occupied_squares(self.view)
+        return mask
 
     def object(self, name: str) -> Node | None:
         """Return the node of the object with this name, `o<n>`; None when there is none.

@@ -56,7 +56,7 @@ class Activities:
         """
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
-        last = nothing_to_do("all goals hold")
+        last = proved = nothing_to_do("all goals hold")
         while isinstance(found := agenda.next(), Activity):
             if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
                 agenda.plan(step)
@@ -68,8 +68,9 @@ class Activities:
             agenda.note(found, decision)
             if decision.verdict not in (None, TaskVerdict.DONE):
                 last = decision
+                proved = decision if decision.verdict == TaskVerdict.IMPOSSIBLE else proved
         agenda.record()
-        return self._ended(found, last, turn)
+        return self._ended(found, proved if found.verdict == TaskVerdict.IMPOSSIBLE else last, turn)
 
     def _facts(self, turn: StageTurn) -> Iterator[str]:
         """Yield the facts of a stage for the agenda, without full stops."""

@@ -8,12 +8,13 @@ import numpy as np
 from kb.body import Release
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
-from planner.carrying.open_facts import verdict_if_not_found
+from kb.world.rooms import MIN_DOOR_CONFIDENCE
+from planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
 from planner.deciding.search import subgoals_towards
 from planner.deciding.stage_turn import StageTurn
-from planner.deciding.transport import Transporter
+from planner.deciding.transport import Transporter, push_to_see
 from planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
-from planner.decision import Decision, TaskVerdict, done, nothing_to_do
+from planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
 from planner.goals.joint import opposite_corners_reason
 from planner.goals.robot_goals import Destination, robot_stands_on, unknown_destination, unreachable_reason
 from planner.navigation.encircle import encircling_routes, winding_number
@@ -90,7 +91,10 @@ class OwnGoals:
             node = situation.object_of(x)
             began = model.frame.origin if node is None else transporter.origin_of(x, node, situation)
             covered = robot_square(model) if node is None else model.mask(node.patch)
-            doubt = doubt or check_elsewhere(goal.name, began, covered, situation)
+            if doubt is None and (doubt := check_elsewhere(goal.name, began, covered, situation)) and node is not None:
+                pushed = push_to_see(node, doubt, situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE), turn)
+                if pushed is not None:
+                    return pushed
         return turn.look(doubt) or nothing_to_do("nothing is left to look at")
 
     def _go(self, turn: StageTurn) -> Decision:
@@ -112,15 +116,15 @@ class OwnGoals:
                 return halt
         if opposite := opposite_corners_reason(goals, situation):
             why = f"{stage} cannot be attained: {opposite}"
-            return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
+            return impossible(why, opposite, unless=None)
         missing = "; ".join(d.missing for d in where if d.missing) or unreachable_reason(where)
         subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
-        verdict = verdict_if_not_found(situation.model) if unseen else TaskVerdict.IMPOSSIBLE
+        proof = proof_if_not_found(situation.model) if unseen else (missing, NOTHING_LEFT)
 
         def ask() -> Decision:
             """Return the next command there, or to look for another way where doors are shut; else the verdict."""
-            found = turn.seek(subgoals, lambda: missing, verdict)
+            found = turn.seek(subgoals, lambda: missing, proof)
             if found.command is not None or not situation.shut(ROBOT):
                 return found
             beyond = situation.through_shut_doors().cost_maps.floor & ~situation.cost_maps.floor
@@ -170,7 +174,7 @@ class OwnGoals:
         route = turn.pursuer.choose_route(begun, situation)
         if route is None:
             why = f"{stage} cannot be attained: no way leads round {name}"
-            return Decision(None, why, TaskVerdict.IMPOSSIBLE)
+            return impossible(why, f"no way leads round {name}")
         self._turn = next(turn for turn, other in offered.items() if other is route)
         turn.pursuer.keep_route(route, model)
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE

@@ -85,6 +85,12 @@ class Infeasibility:
         """Return why nothing can be done, in words, without full stop. It may take time, to find the narrow passage."""
         return self.message or (self.refutation.reason() if self.refutation is not None else "")
 
+    def proof(self) -> tuple[str, ...]:
+        """Return the facts that prove it, in words: what geometry refuted, or what was looked at; () for nothing."""
+        if not self.proved:
+            return ()
+        return (f"geometry refuted every plan for {self.refutation.name}" if self.refutation else self.message,)
+
     def neck(self) -> XY | None:
         """Return the middle (x, y) of the passage that is too narrow, in squares, view frame; None for none."""
         return None if self.refutation is None else self.refutation.neck()

@@ -2,7 +2,8 @@
 
 `impossible` is claimed only of what holds under every completion of what is open. A wall that was only seen may be a
 thing that can be moved; the floor may go on where nothing was seen; a thing that was never moved may be more than one
-thing. While one of these is open, the verdict is `possible_if`, and its reason names the fact.
+thing; an opening that fills no whole square looks like wall. While one of these is open, the verdict is `possible_if`,
+and its reason names the fact.
 """
 
 import math
@@ -11,13 +12,16 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import with_edge_neighbours
+from geometry.raster.components import components, with_edge_neighbours
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.screen.moves import orientation_is_settled
+from planner.sights.frontiers import MIN_UNREACHED_SQUARES
 from planner.sights.things import things_in_question
 from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
 from planner.situation import Situation
+
+NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floor that can be reached was seen
 
 
 def open_fact_against(decision: Decision, situation: Situation, scope: FeelingScope = ALL_WALLS) -> Decision:
@@ -36,10 +40,10 @@ def open_fact_against(decision: Decision, situation: Situation, scope: FeelingSc
     return replace(decision, why=f"{decision.why}; it may be possible if {fact}", verdict=TaskVerdict.POSSIBLE_IF)
 
 
-def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerdict:
-    """Return the verdict when everything was looked at and no object fits a parameter of the task.
+def proof_if_not_found(model: WorldModel, immovable: bool = False) -> tuple[str, ...]:
+    """Return what proves, when everything was looked at, that no object fits a parameter of the task; () for nothing.
 
-    It is IMPOSSIBLE when that is proved, else LIMIT. Where impressions contradicted each other, the object may have
+    In words, a clause each. Where impressions contradicted each other, the object may have
     been seen and lost: then nothing is proved.
 
     Parameters
@@ -48,13 +52,15 @@ def verdict_if_not_found(model: WorldModel, immovable: bool = False) -> TaskVerd
         frame is open, the robot may have pushed at another object: then nothing is proved, too.
     """
     proved = model.view.sure and orientation_is_settled(model) if immovable else not model.shaken
-    return TaskVerdict.IMPOSSIBLE if proved else TaskVerdict.LIMIT
+    fact = "what fits did not move when it was pushed" if immovable else "nothing that was seen fits"
+    return (fact, NOTHING_LEFT) if proved else ()
 
 
 def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_WALLS) -> str:
     """Return the open fact nearest to a place that may allow another plan, in words; "" when there is none.
 
-    A wall that was never felt comes first, then floor that goes on unseen, then an object that was never moved. A
+    A wall that was never felt comes first, then floor that goes on unseen, then an opening that fills no whole square
+    (where the robot itself must get on), then an object that was never moved. A
     clause without full stop, places in the robot frame.
 
     near : (x, y) in squares, view frame.
@@ -69,11 +75,28 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
+    hidden = None if scope.parting else _hidden_passage(situation, near)
+    if hidden is not None:
+        return f"a passage that fills no whole square leads to the floor at {model.point_in_words(hidden)}"
     several = things_in_question(situation.cost_maps, scope)
     if not several:
         return ""
     seen = "was not seen to move as one thing" if several[0].moved else "was never moved"
     return f"{several[0].name}, which {seen}, is more than one thing"
+
+
+def _hidden_passage(situation: Situation, near: XY) -> XY | None:
+    """Return the nearest place (x, y) of floor that was seen and that nothing but wall parts from it; else None.
+
+    All floor is connected, and what a wall covers in part looks like wall. In squares, view frame, as `near`.
+    """
+    model = situation.model
+    under = np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    parts = components(model.space | situation.cost_maps.floor | under)
+    large = np.bincount(parts.labels.ravel()) >= MIN_UNREACHED_SQUARES
+    column, row = situation.cost_maps.here
+    apart = large[parts.labels] & model.space & (parts.labels != parts.labels[row, column])
+    return _nearest_square(apart, near)
 
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:

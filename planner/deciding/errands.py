@@ -11,7 +11,7 @@ from planner.carrying.preconditions import turn_cost
 from planner.deciding.bringing import bring_to_end
 from planner.deciding.stage_turn import StageTurn
 from planner.deciding.transport import Transporter
-from planner.decision import Decision, TaskVerdict, nothing_to_do
+from planner.decision import Decision, impossible, nothing_to_do
 from planner.situation import Situation
 from planner.tasking.intention import Intention, NextErrand
 from planner.tasking.setting import DestinationFunction, WhereGoalsHold
@@ -55,7 +55,7 @@ class ErrandRunner:
         turn = self._updated(turn)
         if self.is_shut_out(turn.situation):
             why = f"{turn.stage} cannot be attained: {self.blamed}"
-            return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
+            return impossible(why, f"rules leave no plan: {self.blamed}", unless=None)
         for attempt in range(MAX_FAILURES):
             if attempt:
                 turn = self._updated(turn)

@@ -21,7 +21,7 @@ from kb.task.task import Task
 from kb.world.model import Node, WorldModel
 from kb.world.rooms import went_through
 from planner.constraints import CARRY_NOTHING_THROUGH, SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
-from planner.decision import Decision, TaskVerdict, nothing_to_do
+from planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
 from planner.situation import Situation
 
 OUTLINE_DOUBT = 0.25  # squares by which a measured outline may lie elsewhere, as for poses (planner.goals.near_goal)
@@ -76,13 +76,14 @@ class ConstraintKeeper:
             region = region_of(fact)
             if name == ROBOT and region.intersects(shapely.Point(0.0, 0.0)):
                 why = f"{fact} cannot hold: the robot wakes in that region"
-                return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None)
+                return impossible(why, "the robot wakes in that region", unless=None)
             node = situation.object_of(name)
             if node is None or node.polygon is None or node.moved or node.vague or not model.view.sure:
                 continue
             surely = in_robot_frame(node.polygon, model.frame).buffer(-_doubt(model, region) - 1.0)
             if not surely.is_empty and surely.intersects(region):
-                return Decision(None, f"{fact} cannot hold: {node.name} lies in that region", TaskVerdict.IMPOSSIBLE)
+                lies = f"{node.name} lies in that region"
+                return impossible(f"{fact} cannot hold: {lies}", lies)
         return nothing_to_do("no constraint is known to be broken from the beginning")
 
     def guarded(self, decision: Decision, situation: Situation) -> Decision:

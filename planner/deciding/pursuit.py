@@ -12,7 +12,7 @@ from kb.world.model import WorldModel
 from planner.advice import Go, See
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import contact_subgoals
-from planner.decision import Decision, TaskVerdict, with_command
+from planner.decision import Decision, TaskVerdict, impossible, with_command
 from planner.navigation.fewest_moves import MOVE_COST, FewestMoves
 from planner.navigation.loop_guard import LoopGuard
 from planner.navigation.routes import PlannedRoute, choose_route, find_routes
@@ -63,7 +63,7 @@ class Pursuer:
         stage: Stage,
         situation: Situation,
         missing: Callable[[], str],
-        verdict: TaskVerdict = TaskVerdict.IMPOSSIBLE,
+        proof: Sequence[str] = (),
         along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict when none can be reached.
@@ -75,7 +75,8 @@ class Pursuer:
 
         subgoals : what is worth doing, with squares on the arrays of the view.
         missing : returns what is missing, in words. It is called only for a verdict, for it may take time.
-        verdict : the verdict when none can be reached. It is `limit` when one was dropped for leading in circles.
+        proof : what proves that the stage cannot be attained when none can be reached, in words; () for nothing: then
+            the verdict is `limit`, as it is when one was dropped for leading in circles.
         along : returns how an object is taken along to a subgoal, or None when it had better stay; None when no object
             is to be taken along.
         """
@@ -87,7 +88,7 @@ class Pursuer:
                 offered = fewest.priced(offered)
             subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
             if subgoal is None:
-                return _given_up(stage, missing(), verdict, in_circles=len(offered) < len(subgoals))
+                return _given_up(stage, missing(), proof, in_circles=len(offered) < len(subgoals))
             taken = None if along is None else along(subgoal)
             if taken is not None:
                 return taken
@@ -105,12 +106,12 @@ class Pursuer:
         """
         if look is None:
             return None
-        return self.pursue([look], stage, situation, lambda: look.what, TaskVerdict.LIMIT)
+        return self.pursue([look], stage, situation, lambda: look.what)
 
     def go(self, go: Go, stage: Stage, situation: Situation) -> Decision:
         """Return the next command to a square where an object is grasped, so that the last move halts at its place.
 
-        The verdict `impossible`, or `limit` after loops, when no way leads there.
+        The verdict `limit` when no way leads there, or after loops.
 
         Parameters
         ----------
@@ -176,7 +177,7 @@ class Pursuer:
         )
         if route is None:
             why = f"{stage} cannot be attained: every route there leads through a forbidden door"
-            return Decision(None, why, TaskVerdict.IMPOSSIBLE)
+            return impossible(why, "every route there leads through a forbidden door")
         self.keep_route(route, model, subgoal.squares)
         kind = subgoal.kind if straight is not None or reached.level == 0 else SubgoalKind.PASS
         pace = WALKING_PACE if fewest is None else CARRYING_PACE
@@ -242,13 +243,12 @@ def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[
     return found
 
 
-def _given_up(stage: Stage, missing: str, verdict: TaskVerdict, in_circles: bool) -> Decision:
+def _given_up(stage: Stage, missing: str, proof: Sequence[str], in_circles: bool) -> Decision:
     """Return the verdict when no subgoal can be reached.
 
     missing : what is missing, in words.
-    verdict : the verdict, unless some subgoals led in circles: then it is `limit`.
-    in_circles : some were dropped for leading in circles.
+    proof : what proves it, in words; () for nothing. in_circles : some were dropped for leading in circles.
     """
     end = "the robot goes round in circles" if in_circles else "nothing is left to look at"
     why = f"{stage} cannot be attained: {missing}, and {end}"
-    return Decision(None, why, TaskVerdict.LIMIT if in_circles else verdict)
+    return impossible(why, *proof) if proof and not in_circles else Decision(None, why, TaskVerdict.LIMIT)

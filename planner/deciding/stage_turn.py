@@ -12,7 +12,7 @@ from planner.advice import Go
 from planner.carrying.plan_executor import Advice, PlanExecutor
 from planner.deciding.pursuit import Pursuer
 from planner.deciding.verification import Verifier
-from planner.decision import Decision, TaskVerdict, with_command
+from planner.decision import Decision, with_command
 from planner.navigation.subgoals import Subgoal
 from planner.situation import Situation
 from planner.stages import Stage
@@ -65,14 +65,14 @@ class StageTurn:
         self,
         subgoals: Sequence[Subgoal],
         missing: Callable[[], str] = str,
-        verdict: TaskVerdict = TaskVerdict.IMPOSSIBLE,
+        proof: Sequence[str] = (),
         along: Callable[[Subgoal], Decision | None] | None = None,
     ) -> Decision:
         """Return the next command towards the best of some subgoals, or the verdict: see Pursuer.pursue.
 
         missing : returns what is missing, in words; "" by default.
         """
-        return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, verdict, along)
+        return self.pursuer.pursue(subgoals, self.stage, self.situation, missing, proof, along)
 
     def closes_loop(self, command: Command) -> bool:
         """Return whether a command that is about to be given leads in a loop: see Pursuer.closes_loop."""

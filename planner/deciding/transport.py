@@ -8,25 +8,28 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from geometry.kernels.arrays import XY
+import numpy as np
+import shapely
+
+from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End
 from kb.body import Grasp, Move, Push, Turn
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.advice import Act, Go, See
 from planner.carrying.infeasibility import Infeasibility
-from planner.carrying.open_facts import verdict_if_not_found
+from planner.carrying.open_facts import proof_if_not_found
 from planner.carrying.plan_executor import Advice
 from planner.deciding.search import subgoals_towards
 from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import look_before_grasp, look_for_more
-from planner.decision import Decision, TaskVerdict, done, nothing_to_do, with_command
+from planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do, with_command
 from planner.goals.corner_goal import approach_for_goals, corner_may_move
-from planner.goals.joint import OPPOSITE_CORNERS, conflicting_goals
+from planner.goals.joint import conflicting_goals, opposite_corners_reason
 from planner.goals.object_goals import goal_placement
 from planner.goals.origins import Origins
 from planner.goals.placement import Placement, meets_any_end, robot_can_leave, to_view_frame
-from planner.goals.robot_goals import corner_side, unknown_destination
+from planner.goals.robot_goals import unknown_destination
 from planner.navigation.subgoals import Subgoal
 from planner.per_model import PerModel
 from planner.screen.moves import orientation_is_uncertain
@@ -178,22 +181,21 @@ class Transporter:
         for x in sorted({str(goal.args[0]) for goal in stage.carried}):
             goals = [goal for goal in stage.carried if str(goal.args[0]) == x]
             node = situation.object_of(x)
-            if (
-                len(goals) < 2
-                or node is None
-                or node.polygon is None
-                or any(corner_may_move(g, situation) for g in goals)
-            ):
+            if len(goals) < 2 or node is None or node.polygon is None:
+                continue
+            length = 2 * float(shapely.minimum_bounding_radius(node.polygon))
+            if opposite := opposite_corners_reason(goals, situation, length):
+                return impossible(f"{stage} cannot be attained: {opposite}", opposite, unless=None)
+            if any(corner_may_move(goal, situation) for goal in goals):
                 continue
             began = self.origin_of(x, node, situation)
             lands = [self._place(goal, node, began, situation) for goal in goals]
             found = conflicting_goals(lands, to_view_frame(node.polygon, situation))
             if found is not None:
                 one, other = (goals[number] for number in found)
-                # However much more floor becomes known, opposite corners only move further apart.
-                opposite = {corner_side(one), corner_side(other)} in map(set, OPPOSITE_CORNERS)
                 why = f"{one} and {other} cannot hold at once: their places are too far apart"
-                return Decision(None, why, TaskVerdict.IMPOSSIBLE, unless=None if opposite else "")
+                poses = one.name == other.name == "pose"  # which lie where the task says, whatever else is known
+                return impossible(why, f"no place lies in both {one} and {other}", unless=None if poses else "")
         return nothing_to_do("no two goals are known to contradict each other")
 
     def _freed(self, decision: Decision, goal: Fact, turn: StageTurn) -> Decision:
@@ -218,8 +220,8 @@ class Transporter:
         unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
         goals = [goal for goal in turn.stage.goals if str(goal.args[0]) == x]
         subgoals = self._search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
-        verdict = verdict_if_not_found(turn.situation.model, bool(immovable))
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, lambda: unseen.missing, verdict))
+        proof = proof_if_not_found(turn.situation.model, bool(immovable))
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, lambda: unseen.missing, proof))
         if immovable and decision.verdict:
             unless = f"{immovable} is more than one thing, or moves another way than it was pushed"
             decision = replace(decision, unless=unless)
@@ -271,8 +273,7 @@ class Transporter:
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
         along = partial(_take_along, node, turn, fetch=fetch)
         brought = None if land.there or again else along
-        verdict = TaskVerdict.IMPOSSIBLE if refused.proved else TaskVerdict.LIMIT
-        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, verdict, brought))
+        decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), brought))
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
             why = f"it cannot be told whether {turn.stage} holds: {land.missing}, and {node.name} shuts the robot in"
@@ -304,12 +305,12 @@ class Transporter:
             shut_off = turn.executor.infeasibility(node, must_reach, turn.situation)
             if shut_off is not None and shut_off.proved:
                 why = f"{turn.stage} cannot be attained: {shut_off.reason()}"
-                refused, decision = shut_off, Decision(None, why, TaskVerdict.IMPOSSIBLE)
+                refused, decision = shut_off, impossible(why, *shut_off.proof())
         if decision.verdict != TaskVerdict.IMPOSSIBLE:
             return decision
         recheck = turn.verifier.recheck_passage(refused, turn.situation)
         if recheck is not None:
-            return turn.seek([recheck], refused.reason)
+            return turn.seek([recheck], refused.reason, refused.proof())
         ends = must_reach or land.ends
         instead = self._measure_refused(node, ends, turn) if ends else None
         return instead or replace(decision, unless=refused.unless(), near=refused.neck())
@@ -458,3 +459,33 @@ def _push_to_see(act: Act | None, what: str, turn: StageTurn) -> Decision | None
         return None
     turn.executor.depart(act)
     return Decision(act.command, f"{act.why}: {what}; {turn.stage}")
+
+
+def push_to_see(node: Node, look: Subgoal, within: Bools, turn: StageTurn) -> Decision | None:
+    """Return the push with which a held object stays within some squares while the robot looks; None for none.
+
+    Parameters
+    ----------
+    node : the object.
+    look : where the robot looks or feels.
+    within : (rows, columns) bool on the arrays of the view.
+    turn : the stage, what is believed, and the tools.
+    """
+    model = turn.situation.model
+    if model.held != node.name:
+        return None
+    column, row = turn.situation.cost_maps.here
+    rows, columns = np.nonzero(model.mask(node.patch))
+    targets = [divmod(square, within.shape[1]) for square in look.squares.tolist()]
+    moved = [(rows + y - row, columns + x - column) for y, x in targets]
+    inside = [
+        min(ys.min(), xs.min()) >= 0
+        and ys.max() < within.shape[0]
+        and xs.max() < within.shape[1]
+        and bool(within[ys, xs].all())
+        for ys, xs in moved
+    ]
+    if not any(inside):
+        return None
+    act = turn.executor.take_along(node, look.squares[np.array(inside)], False, turn.situation)
+    return _push_to_see(act if isinstance(act, Act) else None, look.what, turn)

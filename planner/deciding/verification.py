@@ -6,17 +6,16 @@ nothing to make sure of.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from geometry.kernels.arrays import XY, Bools, Floats
-from kb.world.doors import jamb
+from geometry.kernels.arrays import XY, Bools
 from kb.world.model import Node, WorldModel
-from kb.world.rooms import MIN_DOOR_CONFIDENCE, Door, rooms_of
+from kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
 from planner.carrying.infeasibility import Infeasibility
-from planner.goals.robot_goals import hidden_from, robot_stands_on
+from planner.goals.bounds import unfelt_bounds
+from planner.goals.robot_goals import robot_stands_on
 from planner.navigation.subgoals import Subgoal
 from planner.screen.moves import orientation_is_uncertain
 from planner.sights import frontiers
@@ -24,7 +23,6 @@ from planner.sights.viewpoints import TO_TAKE, inspection
 from planner.situation import Situation
 from planner.subgoal_kind import SubgoalKind
 
-MAX_INNER_WALL = 4  # squares: the thickest wall between two rooms; a convention of random worlds
 FEW_LOOKS = 4  # squares looked from, up to which the orientation of the frame is made sure of; tuned on random worlds
 
 
@@ -142,30 +140,11 @@ def check_elsewhere(goal: str, began: XY, covered: Bools, situation: Situation) 
     began : where it began, (x, y) in squares, map frame.
     covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
     """
-    return unseen_beyond_door(goal, began, covered, situation) or unfelt_wall(goal, began, covered, situation)
-
-
-def unfelt_wall(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
-    """Return where to feel whether something is part of a wall on which the goal depends; None for no such.
-
-    If it were an object that stands against the wall, the goal would no longer hold. Of several parts of the verge, the
-    first in the order of the model. One that cannot be felt is looked at instead.
-
-    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
-        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
-    began : where the thing of the goal began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    """
-    depends_on = _dependence(goal, began, covered, situation)
-    for mask in situation.model.protruding:
-        if any(_are_jambs_in_line(mask, door, situation.model) for door in situation.rooms.sure):
-            continue
-        look = frontiers.wall_touch_viewpoint(situation.cost_maps, mask)
-        if not len(look.squares):  # one that lies askew must be seen better before the robot can stand right beside it
-            look = frontiers.viewpoint_of(situation.cost_maps, mask, look.what)
-        if len(look.squares) and depends_on(mask):
-            return Subgoal(SubgoalKind.INSPECT, *look)
-    return None
+    unseen = unseen_beyond_door(goal, began, covered, situation)
+    if unseen is not None:
+        return unseen
+    felt = unfelt_bounds(goal, began, covered, situation)
+    return Subgoal(SubgoalKind.INSPECT, *felt[0]) if felt else None
 
 
 def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situation) -> Subgoal | None:
@@ -199,55 +178,3 @@ def unseen_beyond_door(goal: str, began: XY, covered: Bools, situation: Situatio
 
     nearest = min(frontiers.find_frontiers(situation.cost_maps, frontiers.VIEW_SPACING), key=distance, default=None)
     return None if nearest is None else Subgoal(SubgoalKind.INSPECT, *nearest)
-
-
-def _are_jambs_in_line(mask: Bools, door: Door, model: WorldModel) -> bool:
-    """Return whether squares are one jamb of a door whose other jamb is a thin wall: then both are likely one wall.
-
-    mask : (rows, columns) bool on the arrays of the view, the squares. door : in squares, view frame.
-    """
-    for end, other in ((door.a, door.b), (door.b, door.a)):
-        if len(jamb(mask, end)[0]):
-            x, y = np.subtract(other, end) / max(door.width, 1e-9)
-            place = np.add(other, (0.5 * x, 0.5 * y))
-            return all(_has_floor_beside(place, way, model) for way in ((-y, x), (y, -x)))
-    return False
-
-
-def _has_floor_beside(place: Floats, way: XY, model: WorldModel) -> bool:
-    """Return whether there is floor within MAX_INNER_WALL squares of a place in a direction.
-
-    place : (x, y) in squares, view frame. way : a unit vector (x, y) along the axes of the map.
-    """
-    steps = np.arange(1, MAX_INNER_WALL + 1)[:, None] * np.array(way) + place
-    columns, rows = np.floor(steps).astype(int).T
-    height, width = model.space.shape
-    inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-    return bool(model.space[rows[inside], columns[inside]].any())
-
-
-def _dependence(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
-    """Return a function that tells whether the goal holds only if some squares of the verge are wall.
-
-    The function takes a mask, (rows, columns) bool on the arrays of the view, and returns a bool.
-
-    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
-        verge hides it from there). The verge is what bounds the floor: walls, and all that is taken for wall.
-    began : where the thing of the goal began, (x, y) in squares, map frame.
-    covered : (rows, columns) bool on the arrays of the view, the squares that it covers now.
-    """
-    model = situation.model
-    if goal == "around":
-        hidden = covered & hidden_from(model.verge, model, began)
-        return lambda mask: bool((hidden & ~hidden_from(model.verge & ~mask, model, began)).any())
-    beyond = situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE)
-
-    def moves_the_room(mask: Bools) -> bool:
-        """Return whether the next rooms are wholly others if the squares of a mask are no verge.
-
-        False if there would be none. mask : (rows, columns) bool on the arrays of the view.
-        """
-        other = situation.next_to(began, rooms_of(model, situation.rules, model.verge & ~mask), MIN_DOOR_CONFIDENCE)
-        return bool(other.any() and not (other & beyond).any())
-
-    return moves_the_room

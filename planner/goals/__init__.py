@@ -3,6 +3,7 @@
 Modules, in reading order:
 
 robot_goals   Destination: the squares on which a goal holds for the robot
+bounds        pieces of what bounds the floor on which a goal rests, and which may be things
 placement     Placement: where a goal holds for an object
 embedded      Supposition: how an object lies if it goes on in a wall
 object_goals  the placement that a goal for an object asks for

@@ -42,11 +42,13 @@ def conflicting_goals(placements: Sequence[Placement], shape: Any) -> tuple[int,
     return None
 
 
-def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
-    """Return in words why the robot cannot be at two opposite corners at once; "" when the goals do not ask for that.
+def opposite_corners_reason(goals: Sequence[Fact], situation: Situation, length: float = 0.0) -> str:
+    """Return in words why nothing can be at two opposite corners at once; "" when the goals do not ask for that.
 
-    The goals are those of one stage for the robot. However much more floor becomes known, such corners only move
+    The goals are those of one stage for one thing. However much more floor becomes known, such corners only move
     further apart. Also "" when the two corners of the known floor are near enough to each other.
+
+    length : of the thing at its longest, in squares.
     """
     wanted = set(map(corner_side, goals))
     for one, other in OPPOSITE_CORNERS:
@@ -54,7 +56,7 @@ def opposite_corners_reason(goals: Sequence[Fact], situation: Situation) -> str:
             points = (situation.corners[side].point for side in (one, other))
             (x, y), (u, v) = (situation.model.place_to_utak(*point) for point in points)
             along = abs(x - u + y - v) if one == "northeast" else abs(x - u - y + v)
-            if along > 2 * sum(CORNER_REACH):
+            if along > 2 * sum(CORNER_REACH) + math.sqrt(2) * length:
                 return f"the {one} and the {other} corner are too far apart to be at both at once"
     return ""
 

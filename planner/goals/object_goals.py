@@ -12,6 +12,7 @@ from geometry.manipulation.plan_carrying import Between, InCorner, Inside
 from kb.language.terms import Fact
 from kb.world.model import Node
 from kb.world.rooms import Rooms
+from planner.goals.bounds import BoundsByTheWay
 from planner.goals.corner_goal import corner_placement
 from planner.goals.near_goal import beside_placement, pose_placement, start_placement
 from planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
@@ -109,7 +110,8 @@ def _next_room(began: XY, node: Node, situation: Situation) -> Placement:
         ends = RegionEnds(parts).ends()
         if viewpoints and _meets_one(ends, node, situation):
             return Placement({}, viewpoints[0].what, viewpoints, there=True)
-        return Placement(ends, hoped=OptimisticEnds(parts, situation))
+        by_the_way = BoundsByTheWay("in", began, beyond, situation)
+        return Placement(ends, hoped=OptimisticEnds(parts, situation), by_the_way=by_the_way)
     missing, viewpoints = next_room_missing(situation), door_viewpoints(situation)
     parts = _room_parts(*situation.likely_next_rooms(began))
     likely = RegionEnds(parts).ends()

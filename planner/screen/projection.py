@@ -27,6 +27,7 @@ SquareIndices = NDArray[np.int64]  # flat indices on a screen: row * columns + c
 LEVEL_MAX_PROBABILITY = (MAX_FREE_PROBABILITY, 0.15, 0.3, 0.45)
 UNSEEN_LEVEL = len(LEVEL_MAX_PROBABILITY)  # the certainty level at which unseen squares may be crossed, too
 LEVEL_COST = 6.0  # squares of way that each certainty level costs (tuned on random worlds)
+PART_COVERED = 1  # squares: so deep the robot stands in those that a wall covers in part, at most (derived)
 APPROACH_LEVEL = 1  # certainty level of the squares beside an object over which the robot goes up to it
 MAX_TRUSTED_PROBABILITY = 0.04  # a square occupied with at most this probability may be crossed without a look (tuned)
 SURELY_OCCUPIED = 0.85  # a square occupied with at least this probability surely belongs to what stands there (tuned)
@@ -78,8 +79,8 @@ class CostMaps:
     def free(self, level: int) -> Bools:
         """Compute the squares that may be crossed at a certainty level, (rows, columns) bool: a new array at each call.
 
-        The robot's own square is always one of them; squares that stopped a motion never are, unless they are carried,
-        nor are those that the task forbids to it.
+        The robot's own square is always one of them (see `_stand`); squares that stopped a motion never are, unless
+        they are carried, nor are those that the task forbids to it.
 
         Parameters
         ----------
@@ -92,8 +93,24 @@ class CostMaps:
             mask |= ~view.seen if view.by_counts is None else ~view.seen | (view.by_counts <= LEVEL_MAX_PROBABILITY[-1])
         else:
             mask &= view.seen
-        mask = (mask & ~self._barred | self._carried) & ~self.kept_off
-        mask[self.here[1], self.here[0]] = True
+        return (mask & ~self._barred | self._carried) & ~self.kept_off | self._stand
+
+    @cached_property
+    def _stand(self) -> Bools:
+        """The robot's own square, (rows, columns) bool; with those to the floor where that square is in part wall.
+
+        A wall covers some squares in part, so the robot may stand in one that meets floor at a corner alone.
+        """
+        (column, row), space = self.here, self.model.space
+        mask: Bools = np.zeros(space.shape, np.bool_)
+        south, west = max(row - PART_COVERED, 0), max(column - PART_COVERED, 0)
+        near = np.argwhere(space[south : row + PART_COVERED + 1, west : column + PART_COVERED + 1])
+        if len(near) and not space[row, column]:
+            near += np.array((south, west))
+            other = near[np.hypot(*(near - (row, column)).T).argmin()]
+            (south, west), (north, east) = np.minimum(other, (row, column)), np.maximum(other, (row, column))
+            mask[south : north + 1, west : east + 1] = True
+        mask[row, column] = True
         return mask
 
     @cached_property
@@ -141,9 +158,7 @@ class CostMaps:
         view = self.model.view
         doubtful = self.unsettled & (view.probability >= MIN_DOUBTFUL_PROBABILITY) | ~view.seen
         mask: Bools = (view.state == FREE) | (self.model.space & ~dilate(doubtful, 1))
-        mask &= ~(self._barred | self.kept_off)
-        mask[self.here[1], self.here[0]] = True
-        return mask
+        return mask & ~(self._barred | self.kept_off) | self._stand
 
     @cached_property
     def believed(self) -> Bools:

@@ -1,7 +1,12 @@
 """Things that may be several that touch, and the floor from which their rims are felt all round."""
 
+import numpy as np
+
+from geometry.kernels.arrays import Bools
+from geometry.raster.components import with_edge_neighbours
+from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import Node
-from planner.screen.projection import CostMaps, dilate
+from planner.screen.projection import CostMaps
 from planner.sights.frontiers import Viewpoint, elsewhere_touch_viewpoint
 from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 
@@ -9,8 +14,8 @@ from planner.sights.walls import MIN_LIKELY_OBJECT, FeelingScope
 def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
     """Return the objects that were never seen to move as one thing, and so may be several, in the order of the model.
 
-    Where neither a wall between two parts of the floor matters nor the task speaks of objects, those all around which
-    the floor is reached are left out.
+    Where neither a wall between two parts of the floor matters nor the task speaks of objects, those are left out that
+    hide nothing: all around them and the things beside them the floor is reached, or verge was felt.
 
     Parameters
     ----------
@@ -21,8 +26,9 @@ def things_in_question(cost_maps: CostMaps, scope: FeelingScope) -> list[Node]:
     several = [node for node in model.objects if not node.whole and node.confidence >= MIN_LIKELY_OBJECT]
     if scope.parting or scope.things:
         return several
-    masks = {node.name: model.mask(node.patch) for node in several}
-    return [node for node in several if (dilate(masks[node.name], 1) & ~masks[node.name] & ~cost_maps.floor).any()]
+    verge = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
+    known: Bools = cost_maps.floor | verge | np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    return [node for node in several if (with_edge_neighbours(model.mask(node.patch)) & ~known).any()]
 
 
 def unfelt_rims(cost_maps: CostMaps, scope: FeelingScope) -> list[Viewpoint]:

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from kb.world.model import WorldModel
-from planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, verdict_if_not_found
-from planner.decision import Decision, TaskVerdict
+from planner.carrying.open_facts import nearest_open_fact, open_fact_against, possible_width, proof_if_not_found
+from planner.decision import impossible
 from planner.sights.walls import FeelingScope, unfelt_walls
 from tests.kb.drawings import known_model
 from tests.planner.situations import situation_of
 
 ROOM = ["bbbbbbb", "b.....b", "b..U..b", "b.....b", "bbbbbbb"]
 WITH_A_THING = ["bbbbbbbbb", "b.......b", "b..U.gg.b", "b....gg.b", "b.......b", "bbbbbbbbb"]
-GIVEN_UP = Decision(None, "no way leads there", TaskVerdict.IMPOSSIBLE)
+GIVEN_UP = impossible("no way leads there", "no way leads there")
 
 
 def felt(model: WorldModel, but: int = 0) -> WorldModel:
@@ -95,17 +95,32 @@ def test_a_passage_may_be_wider_by_the_squares_of_both_its_walls() -> None:
 
 
 @pytest.mark.parametrize(
-    ("shaken", "sure", "immovable", "verdict"),
+    ("shaken", "sure", "immovable", "proved"),
     [
-        (False, True, False, "impossible"),
-        (True, True, False, "limit"),  # it may have been seen and lost
-        (False, True, True, "impossible"),
-        (False, False, True, "limit"),  # another object may have been pushed
+        (False, True, False, True),
+        (True, True, False, False),  # it may have been seen and lost
+        (False, True, True, True),
+        (False, False, True, False),  # another object may have been pushed
     ],
 )
 def test_a_missing_object_proves_nothing_while_the_map_is_in_doubt(
-    shaken: bool, sure: bool, immovable: bool, verdict: str
+    shaken: bool, sure: bool, immovable: bool, proved: bool
 ) -> None:
     model = known_model(ROOM)
     model = replace(model, shaken=shaken, view=model.view._replace(sure=sure))
-    assert verdict_if_not_found(model, immovable) == verdict
+    assert bool(proof_if_not_found(model, immovable)) == proved
+
+
+def test_floor_that_is_seen_beyond_felt_walls_is_reached_by_an_opening_that_fills_no_square() -> None:
+    """A wall that covers two rows of squares in part leaves up to two squares between them, and nothing shows it."""
+    two = ["b" * 20, *["b" + "." * 8 + "bb" + "." * 8 + "b"] * 7, "b...U....bb........b", "b" * 20]
+    one = [*two[:4], "b" + "." * 18 + "b", *two[5:]]
+    own = FeelingScope(parting=False, things=False)
+
+    def fact(rows: list[str]) -> str:
+        """Return the open fact that is named in a drawing with all walls felt."""
+        situation = situation_of(felt(known_model(rows)))
+        return nearest_open_fact(situation, situation.model.place_on_view, own)
+
+    assert "a passage that fills no whole square leads to the floor" in fact(two)
+    assert fact(one) == ""

@@ -20,7 +20,6 @@ from planner.carrying.open_facts import open_fact_against
 from planner.deciding.transport import Transporter
 from planner.deciding.verification import (
     Verifier,
-    _are_jambs_in_line,
     check_elsewhere,
     look_at_contradiction,
     look_before_grasp,
@@ -29,6 +28,7 @@ from planner.deciding.verification import (
 from planner.sights.frontiers import FOVEA_RANGE
 from planner.stages import Stage
 from tests.kb.drawings import known_model, walked
+from tests.kb.eyes import utak_in
 from tests.planner.situations import BESIDE_A_THING, NO_TASK, situation_of, turn_of
 
 AT_START = replace(NO_TASK, goals=facts_from_text("at(utak, start)."))
@@ -162,21 +162,21 @@ STUB = [  # a wall between two rooms with a door in it
     *["b" + "." * 13 + "bb" + "." * 8 + "U" + "." * 4 + "b"] * 5,
     "b" * 30,
 ]
-BAR = [  # what may be an object that stands against a wall, and leaves a passage
-    "b" * 34,
-    *["b" + "." * 32 + "b"] * 5,
-    *["b" + "." * 15 + "bb" + "." * 8 + "U" + "." * 6 + "b"] * 8,
-    "b" * 34,
-]
 
 
-@pytest.mark.parametrize(("rows", "wall"), [(STUB, True), (BAR, False)])
-def test_two_jambs_in_line_are_one_wall(rows: list[str], wall: bool) -> None:
-    situation = situation_of(known_model(rows))
-    (door,) = situation.rooms.doors
-    pieces = [mask for mask in situation.model.protruding if mask.sum() in (10, 16)]
-    assert pieces
-    assert all(_are_jambs_in_line(mask, door, situation.model) == wall for mask in pieces)
+def test_a_door_is_sure_when_verge_was_felt_on_both_of_its_jambs() -> None:
+    """Each side of the wall may be a thing that stands against the verge, and then there is one room."""
+    model, (x, y) = known_model(STUB), utak_in(STUB)
+    jambs = [(15 - x, 5 - y), (15 - x, 10 - y)]  # squares of the map frame
+
+    def is_doubtful(*felt: tuple[int, int]) -> bool:
+        """Return whether the robot, in the east, may be in the same room still, with verge felt on some squares."""
+        situation = situation_of(replace(model, felt=dict.fromkeys(felt, "b")))
+        return check_elsewhere("in", (-20.0, 0.5), model.squares([(0, 0)]), situation) is not None
+
+    assert is_doubtful()
+    assert all(is_doubtful(jamb) for jamb in jambs)
+    assert not is_doubtful(*jambs)
 
 
 ARM = [  # a room with an arm to the east, just as long as it is seen to be

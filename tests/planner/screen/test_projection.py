@@ -402,3 +402,13 @@ def test_no_move_ends_near_an_edge_where_the_next_square_may_stop_it() -> None:
                 move = next_move(cost_maps, way.squares, way.level, "explore")
                 here = (cost_maps.here[0] + 0.5, cost_maps.here[1] + 0.5)
                 assert line_sweep_is_free(cost_maps.safe, here, (here[0] + move.east, here[1] + move.north))
+
+
+def test_a_robot_pressed_into_squares_that_walls_cover_in_part_reaches_the_floor_that_it_came_from() -> None:
+    """The square in which it stands meets floor at a corner alone, as in a corner of walls off the grid."""
+    rows = [*["b" * 14] * 3, *["bbb" + "." * 8 + "bbb"] * 6, "bbbU" + "." * 7 + "bbb", *["b" * 14] * 3]
+    model = known_model(rows)
+    for place in ((-0.1, -0.1), (-0.1, 0.5), (8.1, 7.1)):
+        reached = CostMaps(replace(model, place=place)).floor
+        assert reached[model.space].all()
+    assert not CostMaps(replace(model, place=(-1.5, -1.5))).floor[model.space].any()  # too deep in the wall

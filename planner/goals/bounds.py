@@ -1,0 +1,95 @@
+"""Bounds: pieces of what bounds the floor on which a goal rests, and which may be things.
+
+What bounds a room, or hides a place, is taken for verge as it was seen. A thing that stands against the verge looks the
+same; only its colour tells. So a goal that would not hold if such a piece were a thing is not settled until that is
+felt.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.kernels.arrays import XY, Bools
+from kb.world.rooms import MIN_DOOR_CONFIDENCE, rooms_of
+from planner.goals.robot_goals import hidden_from
+from planner.screen.projection import shift_mask
+from planner.sights.frontiers import Viewpoint, viewpoint_of
+from planner.situation import Situation
+
+WHAT_IS_FELT = "whether something stands against the wall was not felt"
+
+
+@dataclass(frozen=True, eq=False)
+class BoundsByTheWay:
+    """Deferred viewpoints: where it is felt, on the way, whether a goal holds.
+
+    Attributes
+    ----------
+    goal, began, situation : as for `unfelt_bounds`.
+    covered : the squares where the thing may end.
+    """
+
+    goal: str
+    began: XY
+    covered: Bools
+    situation: Situation
+
+    def viewpoints(self) -> tuple[Viewpoint, ...]:
+        """Compute where the pieces are felt that the goal rests on; () for none."""
+        return tuple(unfelt_bounds(self.goal, self.began, self.covered, self.situation))
+
+
+def unfelt_bounds(goal: str, began: XY, covered: Bools, situation: Situation) -> list[Viewpoint]:
+    """Return where to feel each piece of the bounds on which a goal rests, or to see it better; [] when it is settled.
+
+    If such a piece were a thing, alone or together with all others that may be one, the goal would not hold. Those come
+    first without which it fails for sure; then smaller ones. Pieces that cannot be felt or seen better are left out.
+
+    Parameters
+    ----------
+    goal : the kind of the goal: in or through (the thing is in another room than it began), or around (a corner of the
+        verge hides it from there).
+    began : where the thing of the goal began, (x, y) in squares, map frame.
+    covered : (rows, columns) bool on the arrays of the view, the squares that it covers.
+    """
+    pieces = situation.model.unfelt_pieces
+    if not pieces:
+        return []
+    fails_without = _failure(goal, began, covered, situation)
+    needed = [mask for mask in pieces if fails_without(mask)]
+    if not needed and fails_without(np.any(pieces, axis=0)):
+        needed = pieces
+    looks = (_felt_from(mask, situation) for mask in needed)
+    return [look for look in looks if len(look.squares)]
+
+
+def _felt_from(mask: Bools, situation: Situation) -> Viewpoint:
+    """Return the floor where the robot did not look yet, and from which it feels some squares; else sees them best."""
+    model, cost_maps = situation.model, situation.cost_maps
+    touching = np.zeros_like(mask)
+    for columns, rows in model.frame.directions():
+        touching |= shift_mask(mask, -columns, -rows)
+    floor = cost_maps.floor if model.held is None else model.space
+    squares = np.flatnonzero(touching & floor & ~cost_maps.looked_from)
+    if len(squares) or model.told[mask].all():
+        return Viewpoint(squares, WHAT_IS_FELT)
+    return viewpoint_of(cost_maps, mask, WHAT_IS_FELT)
+
+
+def _failure(goal: str, began: XY, covered: Bools, situation: Situation) -> Callable[[Bools], bool]:
+    """Return a function that tells whether a goal fails if the squares of a mask are no verge.
+
+    goal, began, covered : as for `unfelt_bounds`.
+    """
+    model = situation.model
+    if goal == "around":
+        hidden = covered & hidden_from(model.verge, model, began)
+        return lambda mask: bool((hidden & ~hidden_from(model.verge & ~mask, model, began)).any())
+
+    def is_in_no_next_room(mask: Bools) -> bool:
+        """Return whether none of the covered squares is in a next room without the verge of a mask."""
+        rooms = rooms_of(model, situation.rules, model.verge & ~mask)
+        return not (situation.next_to(began, rooms, MIN_DOOR_CONFIDENCE) & covered).any()
+
+    return is_in_no_next_room
