@@ -181,7 +181,7 @@ class Episode(Sequence[Step]):
         """
         result = [] if self.record.result is None else [{"result": self.record.result}]
         lines = [self.record.header, *self.record.steps, *result]
-        write_whole(path, "".join(map(encode, lines)), is_episode, "episode", force)
+        write_whole(path, "".join(map(encode, lines)).encode("ascii"), is_episode, "episode", force)
 
     def __len__(self) -> int:
         """Return the number of steps, that of waking included."""

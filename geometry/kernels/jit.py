@@ -8,6 +8,7 @@ import importlib
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from threading import Timer
 from types import FunctionType
@@ -115,6 +116,9 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
     import numba
 
     _skip_blas_lookup()
+    from geometry.kernels.cache import allow_reading, make_safe
+
+    allow_reading()
     options: Any = {"error_model": "numpy", "_nrt": counts_references, "no_cfunc_wrapper": True}
     try:
         dispatcher = numba.njit(cache=True, **options)(function)
@@ -123,6 +127,8 @@ def _dispatcher(function: Callable[Arguments, Returned], counts_references: bool
         dispatcher = numba.njit(**options)(function)
     if hasattr(dispatcher, "overloads"):
         PROGRESS.dispatchers.append(dispatcher)
+        if PROGRESS.has_cache:
+            make_safe(dispatcher, cast(FunctionType, function).__code__.co_filename)
         _load_without_compiler(dispatcher)
         _widen_integers(dispatcher)
         _link_when_compiling(dispatcher, cast(FunctionType, function).__globals__)
@@ -150,7 +156,8 @@ def _skip_blas_lookup() -> None:
 def _load_without_compiler(dispatcher: Any) -> None:
     """Make a dispatcher load from numba's cache without setting up the compiler: machine code does not need it.
 
-    The dispatcher is changed in place; nothing happens with versions of numba that lack the methods used here.
+    Code that cannot be loaded is compiled anew, and so is code that cannot be kept, in the next process. The dispatcher
+    is changed in place; nothing happens with versions of numba that lack the methods used here.
     """
     store = dispatcher._cache
     if not (hasattr(store, "_load_overload") and hasattr(store, "_guard_against_spurious_io_errors")):
@@ -159,10 +166,18 @@ def _load_without_compiler(dispatcher: Any) -> None:
 
     def load(signature: Any, target: Any) -> Any:
         rtsys.initialize(target)
-        with store._guard_against_spurious_io_errors():
+        with store._guard_against_spurious_io_errors(), suppress(Exception):  # damaged code raises anything
             return store._load_overload(signature, target)
 
-    store.load_overload = load
+    save_now = store.save_overload
+
+    def save(signature: Any, data: Any) -> None:
+        try:
+            save_now(signature, data)
+        except OSError:  # a folder that cannot be written, or a full disk
+            PROGRESS.has_cache = False
+
+    store.load_overload, store.save_overload = load, save
 
 
 def _widen_integers(dispatcher: Any) -> None:

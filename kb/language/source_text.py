@@ -10,6 +10,7 @@ from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, Cannot
 from kb.language.operating_system import READ_FLAGS
 
 MAX_FILE_BYTES = 4_000_000  # bytes of a user's file (docs/files.md)
+PIECE_BYTES = 1 << 20  # bytes that are read at once; a convention
 # Byte order marks at the start of files that are not ASCII, and how messages name them.
 UNSUPPORTED_ENCODINGS = {b"\xff\xfe": "UTF-16", b"\xfe\xff": "UTF-16", b"\xef\xbb\xbf": "a UTF-8 byte order mark"}
 TYPOGRAPHIC_QUOTES = "\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u201f"  # quotes that word processors write
@@ -148,7 +149,10 @@ def read_bytes(path: str, most: int) -> bytes:
         if not stat.S_ISREG(mode):
             raise CannotOpenError(path, "it is a directory" if stat.S_ISDIR(mode) else "it is no regular file")
         with os.fdopen(handle, "rb", closefd=False) as stream:
-            return stream.read(most + 1)
+            pieces: list[bytes] = []  # one call for `most` bytes would reserve them all, however small the file is
+            while (left := most + 1 - PIECE_BYTES * len(pieces)) > 0 and (piece := stream.read(min(left, PIECE_BYTES))):
+                pieces.append(piece)
+            return b"".join(pieces)
     except OSError as error:
         raise CannotOpenError(path, error.strerror or str(error)) from None
     finally:

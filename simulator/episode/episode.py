@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO
+from typing import Any
 
 from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
 from simulator.episode.forms import KeyPath, complaints
-from simulator.episode.output_files import is_episode, keep_first, open_for_writing
+from simulator.episode.output_files import GrowingFile, is_episode
 from simulator.episode.wellformed import END, EPISODE_VERSION, HEADER, STEP, column
 
 STANDARD_OUTPUT = "-"  # the value of --log for the standard output
@@ -121,6 +121,15 @@ def complete_lines(path: Path | str) -> list[bytes]:
     Raises CannotOpenError when the file cannot be read, BadInputError when it is too large.
     """
     return _split(path)[:-1]
+
+
+def lines_to_resume(path: Path | str) -> list[bytes]:
+    """Return the complete lines of an episode whose run shall go on; raises as above, and when its header is cut."""
+    *lines, rest = _split(path)
+    if not lines and rest and not _is_object(rest):
+        what = "the episode ends within its header, which states the options of the run: it cannot go on"
+        raise _damaged(str(path), 1, f"{what}; leave out --resume to begin anew")
+    return lines
 
 
 def _split(path: Path | str) -> list[bytes]:
@@ -236,20 +245,17 @@ class EpisodeLog:
         self._path, self._listen = path, listen
         self._number = 0
         self._recorded: Sequence[bytes] = ()
-        self._stream: BinaryIO | None = None
+        self._stream: GrowingFile | None = None
         if path is None or path == STANDARD_OUTPUT:
             return
         if resume and not Path(path).exists():
             raise CannotOpenError(str(path), "there is no such episode to go on from")
-        self._stream = open_for_writing(path, is_episode, "episode", force)
+        self._stream = GrowingFile(path, is_episode, "episode", force)
         try:
             if resume:
-                self._recorded = without_limit(complete_lines(path))
-            keep_first(self._stream, sum(map(len, self._recorded)))
-        except OSError as error:
-            self._stream.close()
-            raise CannotOpenError(str(path), error.strerror or str(error)) from None
-        except CannotOpenError:
+                self._recorded = without_limit(lines_to_resume(path))
+            self._stream.keep_first(sum(map(len, self._recorded)))
+        except BaseException:
             self._stream.close()
             raise
 
@@ -258,8 +264,7 @@ class EpisodeLog:
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
         if self._stream is not None:
-            with suppress(OSError):  # errors of writing were reported when they occurred
-                self._stream.close()
+            self._stream.close()
 
     @property
     def is_repeating(self) -> bool:
@@ -280,11 +285,7 @@ class EpisodeLog:
                     what = "this run was changed at the prompt, so `utak run` cannot repeat it: `utak repl` can"
                 raise _damaged(str(self._path), self._number, what)
         elif self._stream is not None:
-            try:
-                self._stream.write(text.encode("ascii"))
-                self._stream.flush()
-            except OSError as error:
-                raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
+            self._stream.write(text.encode("ascii"))
         elif self._path == STANDARD_OUTPUT:
             print(text, end="", flush=True)
         self._listen(line)

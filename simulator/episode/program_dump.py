@@ -20,6 +20,7 @@ from kb.reasoning.encodings import encoding_path, encoding_text
 from kb.reasoning.user_rules import read_rules
 from simulator.episode.episode import Episode, EpisodeLine
 from simulator.episode.record import rules_sum
+from simulator.scenario.folder_writer import check_folder, whole_folder
 
 INDEX_NAME = "index.jsonl"
 # A comment, a text in quotes, or a negated atom with its name and arguments.
@@ -47,14 +48,12 @@ class ProgramDump:
         self._sums = {rules_sum(path): path for path in kb_files}
         self._head: EpisodeLine = {}
         self._files: dict[tuple[int, int], EpisodeLine] = {}  # entries of the index by step and number
-        self._write(force)
+        check_folder(self._folder, force)
 
-    def _write(self, force: bool) -> None:
+    def _begin(self) -> None:
         """Make the folder and an empty index in it."""
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            if not force and any(self._folder.iterdir()):
-                raise CannotOpenError(str(self._folder), "it is there already, and not empty")
             (self._folder / INDEX_NAME).unlink(missing_ok=True)  # a link is replaced, not followed
             (self._folder / INDEX_NAME).touch()
         except (OSError, ValueError) as error:
@@ -73,7 +72,9 @@ class ProgramDump:
         BadInputError : the line is damaged, or rules of the run are not among `kb_files`.
         """
         if "step" not in line:
-            self._head = self._head or line
+            if not self._head:
+                self._head = line
+                self._begin()
             return
         step = line["step"]
         for number, decision in enumerate(line["belief"].get("solved", ())):
@@ -197,7 +198,8 @@ def dump_episode(
     CannotOpenError : the folder is not empty, or a file cannot be read or written.
     BadInputError : the episode is damaged, or rules of its run are not among `kb_files`.
     """
-    dump = ProgramDump(folder, name, kb_files, force)
-    for line in (episode.header, *episode.steps):
-        if last is None or line.get("step", 0) <= last:
-            dump.add(line)
+    with whole_folder(Path(folder), force) as part:
+        dump = ProgramDump(part, name, kb_files)
+        for line in (episode.header, *episode.steps):
+            if last is None or line.get("step", 0) <= last:
+                dump.add(line)

@@ -10,6 +10,7 @@ import shapely
 # Squares by which a thing may end beside its goal in expect.lp. A `pose` holds within a quarter of a square
 # (docs/files.md).
 GOAL_MARGIN = 0.3
+MAX_CELL_SCALE = 64  # the greatest N of N squares along a cell, and of N cells along a square; a convention
 COLOUR_LETTERS = "acdefghijklmnopqrstuvwxyz"  # the colours of objects: all letters but b, which is the verge's
 
 

@@ -7,7 +7,7 @@ size of a cell in user units (`cell_size_cm`) and the robots; elements whose `id
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from math import ceil
+from math import ceil, floor
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from kb.language.source_text import MAX_FILE_BYTES, Source
 from kb.language.vocabulary import MAX_TABLE_SIDE
 from simulator.importing.imported import COLOUR_LETTERS, Imported, ImportOptions, decimal
 from simulator.importing.svg_path import (
+    MAX_UNITS,
     SVG_NUMBER,
     SvgError,
     SvgRing,
@@ -36,7 +37,9 @@ SKIPPED_TAGS = ("defs", "metadata", "namo_config", "clipPath", "mask", "symbol",
 CURVE_TOLERANCE = 0.02  # squares between a curve and its chords; a convention
 MAX_CUT_AREA = 0.05  # square squares by which a wall may reach into an obstacle; more is an error; a convention
 MAX_OBSTACLES = 500  # obstacles of a file: each is compared with each; a convention
-MAX_CELL_UNITS = 1e6  # user units of a cell; a convention
+MIN_CELL_UNITS, MAX_CELL_UNITS = 1e-6, 1e6  # user units of a cell; a convention
+MAX_DRAWN_POINTS = 1_000_000  # points of all outlines of a file, which arcs make of few letters; a convention
+MAX_DRAWN_SQUARES = 1e6  # squares of a coordinate on the table, in absolute value; a convention
 WKT_DECIMALS = 12  # decimals of coordinates: rounding makes no overlap of `MAX_TOUCHING_AREA`
 MARKER_COLOUR = "z"  # the colour of the square that marks a goal
 MARKER_NAME = "goal"
@@ -84,7 +87,12 @@ def read(path: Path | str, options: ImportOptions) -> Imported:
     BadInputError : it is no such file, or TABLETOP cannot show it.
     """
     source = text_source(path, read_raw(path, MAX_FILE_BYTES, "a NAMOSIM scenario", options.untrusted))
-    return _Reader(source, parse_xml(source), options.scale or Fraction(1)).scenario()
+    root = parse_xml(source)
+    try:
+        return _Reader(source, root, options.scale or Fraction(1)).scenario()
+    except shapely.errors.GEOSException as error:
+        what = f"the outlines cannot be joined: {str(error)[:60]}"
+        raise BadInputError([source.problem(source.start(), what)]) from None
 
 
 class _Reader:
@@ -106,8 +114,9 @@ class _Reader:
         if config is None:
             raise self._wrong(root, "", "there is no namo_config element: this is no scenario of NAMOSIM")
         cell = self._numbers(config, "cell_size_cm")
-        if len(cell) != 1 or not 0 < cell[0] <= MAX_CELL_UNITS:
-            raise self._wrong(config, "cell_size_cm", "namo_config needs a cell_size_cm above 0")
+        if len(cell) != 1 or not MIN_CELL_UNITS <= cell[0] <= MAX_CELL_UNITS:
+            what = f"namo_config needs a cell_size_cm from {MIN_CELL_UNITS:g} to {MAX_CELL_UNITS:g}"
+            raise self._wrong(config, "cell_size_cm", what)
         factor = float(scale) / cell[0]
         self._width, self._height = (ceil(side * factor - 1e-9) + 2 for side in box[2:])
         if max(self._width, self._height) > MAX_TABLE_SIDE:
@@ -117,7 +126,7 @@ class _Reader:
         # One square of verge lies about the view box; y is turned to the north.
         self._to_table = Transform(factor, 0, 0, -factor, 1 - box[0] * factor, 1 + (box[1] + box[3]) * factor)
         self._view = shapely.box(1, 1, 1 + box[2] * factor, 1 + box[3] * factor)
-        self._config = config
+        self._config, self._points = config, 0
 
     def scenario(self) -> Imported:
         """Return the scenario of the file."""
@@ -147,7 +156,7 @@ class _Reader:
         else:
             place = self._middle(goals[0], "goal_id", shapes)
             x, y = place.coords[0]
-            marker = shapely.box(x - 0.5, y - 0.5, x + 0.5, y + 0.5)
+            marker = shapely.box(floor(x), floor(y), floor(x) + 1, floor(y) + 1)  # on the grid, as it is seen best
             taken = shapely.union_all([verge, *(polygon for _, _, polygon in things), shapely.Point(utak)])
             if table.covers(marker) and not marker.intersects(taken):
                 facts.append(f'fixed({MARKER_NAME}, {MARKER_COLOUR}, "{_text(marker)}").')
@@ -224,7 +233,13 @@ class _Reader:
             rings = parse_path(data, self._tolerance / max(size, 1e-9))
         except SvgError as error:
             raise self._wrong(element, name, error.what, error.at if name == "d" else 0) from None
-        return tuple([transform.of(point) for point in ring] for ring in rings)
+        self._points += sum(map(len, rings))
+        placed = tuple([transform.of(point) for point in ring] for ring in rings)
+        if self._points > MAX_DRAWN_POINTS:
+            raise self._wrong(element, name, f"the outlines up to here have more than {MAX_DRAWN_POINTS} points")
+        if not all(abs(x) <= MAX_DRAWN_SQUARES and abs(y) <= MAX_DRAWN_SQUARES for ring in placed for x, y in ring):
+            raise self._wrong(element, name, f"an outline reaches more than {MAX_DRAWN_SQUARES:g} squares away")
+        return placed
 
     def _polygon(self, shape: _Shape) -> Any:
         """Return the outline of an element; raise BadInputError when it is none.
@@ -263,9 +278,10 @@ class _Reader:
         return shapely.Point(round(middle.x, 6), round(middle.y, 6))
 
     def _numbers(self, element: XmlElement, key: str) -> list[float]:
-        """Return the numbers in an attribute; [] when it is absent or holds something else."""
+        """Return the numbers in an attribute; [] when it is absent or holds something else, or too great numbers."""
         words = element.attributes.get(key, "").replace(",", " ").split()
-        return [float(word) for word in words] if all(SVG_NUMBER.fullmatch(word) for word in words) else []
+        numbers = [float(word) for word in words] if all(SVG_NUMBER.fullmatch(word) for word in words) else []
+        return numbers if all(abs(number) <= MAX_UNITS for number in numbers) else []
 
     def _single(self, element: XmlElement, key: str) -> float:
         """Return the number in an attribute, 0 without it; raise BadInputError for something else."""

@@ -16,9 +16,12 @@ from kb.language.diagnostics import BadInputError, SourceSpan
 from kb.language.source_text import Source
 
 MAX_IMAGE_PIXELS = 1 << 25  # pixels of an image that is read: 8192 x 4096; a convention
+MAX_TEXT_BYTES_A_PIXEL, MAX_COMMENT_BYTES = 16, 100_000  # bytes of P2, blanks and comments included; a convention
 MAX_PGM_VALUE = 65535  # by the format
 GAP = re.compile(r"(?:[ \t\r\n\v\f]|#[^\r\n]*)*")  # blanks and comments
 TOKEN = re.compile(r"[^ \t\r\n\v\f#]+")
+COMMENT = re.compile(r"#[^\r\n]*")
+NO_VALUE = re.compile(r"[^ \t\r\n\v\f]*(?:[^0-9 \t\r\n\v\f]|(?<![0-9])[0-9]{10})")  # up to what makes a word no number
 MAX_PGM_DIGITS = 9  # digits of a number; more are refused before they are calculated with
 
 
@@ -84,17 +87,25 @@ def _number(source: Source, at: int, name: str, low: int, high: int) -> tuple[in
 
 def _text_values(source: Source, at: int, count: int, greatest: int) -> npt.NDArray[np.int32]:
     """Return the values of P2, (count,) int32; raise BadInputError when there are others."""
-    words = re.sub(r"#[^\r\n]*", "", source.text[at:]).split()
-    numbers = len(words) == count and all(len(w) <= MAX_PGM_DIGITS and w.isascii() and w.isdecimal() for w in words)
-    if numbers:
-        values = np.array(words, np.int32)
-        if values.max() <= greatest:
+    if len(source.text) - at > MAX_TEXT_BYTES_A_PIXEL * count + MAX_COMMENT_BYTES:
+        raise _wrong(source, at, at, f"more text than {count} pixels need")
+    text = COMMENT.sub(lambda found: " " * len(found[0]), source.text[at:])  # places stay where they are
+    wrong = NO_VALUE.search(text)
+    if wrong is not None:
+        place = wrong.start()
+    else:
+        values = np.fromstring(text, np.int32, sep=" ") if text.strip() else np.zeros(0, np.int32)
+        above = np.flatnonzero(values[:count] > greatest)
+        if len(values) == count and not len(above):
             return values
-    for _ in range(count):  # it goes wrong somewhere: find the place
-        _, at = _number(source, at, "value of a pixel", 0, greatest)
-    end = GAP.match(source.text, at)
-    assert end is not None
-    raise _wrong(source, end.end(), end.end(), f"more than {count} pixels")
+        index = int(above[0]) if len(above) else count
+        filled = np.frombuffer(text.encode("latin-1"), np.uint8) > ord(" ")
+        starts = np.flatnonzero(filled & ~np.append(False, filled[:-1]))
+        place = int(starts[index]) if index < len(values) else len(text)
+        if index == count < len(values):
+            raise _wrong(source, at + place, at + place, f"more than {count} pixels")
+    _number(source, at + place - (place < len(text)), "value of a pixel", 0, greatest)  # says what is wrong there
+    raise AssertionError(place)
 
 
 def _byte_values(source: Source, at: int, count: int, greatest: int) -> npt.NDArray[np.int32]:

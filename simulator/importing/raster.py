@@ -16,7 +16,7 @@ from geometry.kernels.arrays import Bools
 from geometry.raster.components import components
 from geometry.raster.runs import mask_to_polygon
 from kb.language.vocabulary import MAX_TABLE_SIDE
-from simulator.importing.imported import COLOUR_LETTERS, region_text
+from simulator.importing.imported import COLOUR_LETTERS, MAX_CELL_SCALE, region_text
 from simulator.scenario.picture import FLOOR_MARK, MAX_PICTURE_SIDE, UTAK_MARK
 from simulator.world.world import VERGE_COLOUR
 
@@ -143,8 +143,10 @@ def scaled_walls(walls: Bools, scale: Fraction) -> Bools:
 
     Raises
     ------
-    RasterError : the table would be larger than `MAX_TABLE_SIDE`.
+    RasterError : the table would be larger than `MAX_TABLE_SIDE`, or the scale is beyond `MAX_CELL_SCALE`.
     """
+    if not Fraction(1, MAX_CELL_SCALE) <= scale <= MAX_CELL_SCALE:
+        raise RasterError(f"{scale} squares a cell: from 1/{MAX_CELL_SCALE} to {MAX_CELL_SCALE} are possible")
     check_size(walls.shape, scale)
     if scale >= 1:
         larger: Bools = np.kron(walls, np.ones((int(scale), int(scale)), bool))

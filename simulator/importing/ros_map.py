@@ -16,7 +16,7 @@ from simulator.importing.pgm import GreyImage, parse_pgm
 from simulator.importing.ros_yaml import MapHead, parse_head
 from simulator.importing.text_file import read_raw, text_source
 
-MAX_PGM_BYTES = 200_000_000  # bytes of an image; a convention
+MAX_PGM_BYTES = 100_000_000  # bytes of an image; a convention
 DEFAULT_SQUARE_METRES = (
     0.1  # metres a square: as in floor plans of 10 squares a metre, doors have 8 to 10; a convention
 )

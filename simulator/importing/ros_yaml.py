@@ -83,6 +83,8 @@ def parse_head(source: Source) -> MapHead:
     image = found["image"]
     if not image.text:
         raise BadInputError([source.problem(image.span, "image must be the path of a file")])
+    if not image.text.isprintable():
+        raise BadInputError([source.problem(image.span, "the path of the image has a control character")])
     mode = found.get("mode")
     if mode is not None and mode.text not in MODES:
         hint = did_you_mean(str(mode.text), MODES)

@@ -16,7 +16,8 @@ BLANKS = re.compile(r"[ \t\r\n\f]*")
 MAX_CHORDS = 256  # chords for one curve; a convention
 MAX_PATH_POINTS = 100_000  # points of one path; a convention
 MAX_PATH_PARTS = 200  # closed parts of one path; a convention
-MAX_UNITS = 1e9  # user units of a coordinate, in absolute value; a convention
+MAX_UNITS = 1e9  # user units of a coordinate, and how much transforms stretch, in absolute value; a convention
+MIN_ARC_STEP = 1e-3  # radians of a chord of an arc; fewer make more chords than `MAX_CHORDS`
 ARGUMENT_COUNTS = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2, "a": 7, "z": 0}
 TRANSFORM = re.compile(r"[ \t\r\n\f,]*([A-Za-z]+)[ \t\r\n\f]*\(([^()]*)\)")
 TRANSFORM_COUNTS = {
@@ -59,11 +60,14 @@ class Transform(NamedTuple):
         return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
 
     def after(self, first: "Transform") -> "Transform":
-        """Return the map that carries out `first`, then this one."""
+        """Return the map that carries out `first`, then this one; raise SvgError when its numbers grow too great."""
         a, b = self.of((first.a, first.b))
         c, d = self.of((first.c, first.d))
         e, f = self.of((first.e, first.f))
-        return Transform(a - self.e, b - self.f, c - self.e, d - self.f, e, f)
+        whole = Transform(a - self.e, b - self.f, c - self.e, d - self.f, e, f)
+        if not all(abs(part) <= MAX_UNITS for part in whole):
+            raise SvgError(0, f"a transform that stretches or moves by more than {MAX_UNITS:g}")
+        return whole
 
 
 def parse_transform(text: str) -> Transform:
@@ -282,7 +286,7 @@ def _arc(begin: SvgPoint, numbers: Sequence[float], end: SvgPoint, tolerance: fl
     turn = math.atan2((-y - cy) / ry, (-x - cx) / rx) - first
     turn += math.tau * ((turn < 0 and sweep) - (turn > 0 and not sweep))
     most = 2 * math.acos(max(0.0, 1 - tolerance / max(rx, ry, tolerance)))
-    count = min(MAX_CHORDS, max(1, math.ceil(abs(turn) / most)))
+    count = min(MAX_CHORDS, max(1, math.ceil(abs(turn) / max(most, MIN_ARC_STEP))))
     points = []
     for step in range(1, count):
         angle = first + turn * step / count

@@ -6,9 +6,10 @@ from typing import Any
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from simulator.episode.episode import Episode, read_begun_episode
-from simulator.episode.output_files import keep_first, open_for_writing, write_whole
+from simulator.episode.output_files import check_path, is_gif, write_whole
 from simulator.replay.page import is_page, replay_page
 
+PAGE_KIND, GIF_KIND = "page of HTML", "GIF picture"  # as messages name them
 MAX_NESTING = 100  # levels of lists and objects within each other; ours have about ten
 
 
@@ -66,13 +67,13 @@ def write_page(path: Path | str, episode: Episode, force: bool = False, rule_fil
             raise
         what = "pages need Python's own module lzma, without which this Python was built; --text does not"
         raise CannotOpenError(str(path), what) from None
-    write_whole(path, page, is_page, "page of HTML", force)
+    write_whole(path, page.encode("utf-8"), is_page, PAGE_KIND, force)
     return lacking
 
 
 def check_page_path(path: Path | str, force: bool = False) -> None:
-    """Raise CannotOpenError unless a page can be written at a path; an empty file is made where there was none."""
-    open_for_writing(path, is_page, "page of HTML", force).close()
+    """Raise CannotOpenError unless a page can be written at a path; nothing is made or changed."""
+    check_path(path, is_page, PAGE_KIND, force)
 
 
 def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
@@ -93,18 +94,5 @@ def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
     except ImportError:
         what = "moving pictures need pillow, which is not installed: pip install 'utak[gif]'"
         raise CannotOpenError(str(path), what) from None
-    stream = open_for_writing(path, _is_gif, "GIF picture", force)
-    try:
-        picture = animation(episode)
-        keep_first(stream, 0)
-        stream.write(picture)
-        stream.flush()
-    except OSError as error:
-        raise CannotOpenError(str(path), f"it cannot be written: {error.strerror}") from None
-    finally:
-        stream.close()
-
-
-def _is_gif(head: bytes) -> bool:
-    """Return whether a file with these first bytes is a GIF picture."""
-    return head.startswith((b"GIF87a", b"GIF89a"))
+    check_path(path, is_gif, GIF_KIND, force)  # before the pictures are drawn, which takes long
+    write_whole(path, animation(episode), is_gif, GIF_KIND, force)

@@ -15,6 +15,7 @@ from string import Template
 from typing import Any
 
 from simulator.episode.episode import Episode
+from simulator.episode.output_files import after_prologue
 from simulator.replay.packed.events import episode_events
 from simulator.replay.packed.packing import packed_episode
 from simulator.replay.packed.short_texts import short_text
@@ -66,7 +67,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
 
 def is_page(head: bytes) -> bool:
     """Return whether a file with these first bytes is a page of HTML."""
-    return re.match(rb"\s*(<!--.*?-->\s*)*<(!DOCTYPE\s+html|html)\b", head, re.DOTALL | re.IGNORECASE) is not None
+    return re.match(rb"<(!DOCTYPE\s+html|html)\b", after_prologue(head), re.IGNORECASE) is not None
 
 
 def _part(name: str) -> str:

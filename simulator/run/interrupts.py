@@ -1,4 +1,4 @@
-"""Ctrl-C during a step: the step is completed first."""
+"""Ctrl-C during a step, which is completed first; and the request to end of other processes."""
 
 import signal
 import threading
@@ -19,6 +19,33 @@ class InterruptCount:
 
     def __bool__(self) -> bool:
         return self.times > 0
+
+
+@contextmanager
+def end_at_request() -> Iterator[None]:
+    """Let SIGTERM raise KeyboardInterrupt in a `with` block, so that all is cleaned up; then end by SIGTERM.
+
+    Nothing changes outside of the main thread, or where SIGTERM is ignored.
+    """
+    asked = False
+
+    def note(number: int, frame: FrameType | None) -> None:
+        nonlocal asked
+        if not asked:
+            asked = True
+            raise KeyboardInterrupt
+
+    before = signal.getsignal(signal.SIGTERM)
+    if before is signal.SIG_IGN or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    signal.signal(signal.SIGTERM, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        if asked:
+            signal.raise_signal(signal.SIGTERM)
 
 
 @contextmanager

@@ -111,7 +111,7 @@ def warm(carrying: bool, paths: str = "skeleton", compiler: KernelCompiler = THI
 def warm_all() -> None:
     """Compile the kernels for all uses in two processes; kernels in the cache are loaded."""
     mine, others = PROCESS_SPLIT[True]
-    THIS_INSTALLATION.compile_in_two_processes((*mine, move), (*others, sightlines, many_routes))
+    THIS_INSTALLATION.compile_in_two_processes((*mine, move), (*others, *RARE_USES))
 
 
 def count_cached_kernels() -> int:
@@ -201,6 +201,15 @@ def many_routes() -> None:
     screen.shortest((0.5, 4.5), (11.5, 4.5))
 
 
+def rings() -> None:
+    """Call the kernels that follow a skeleton around a wall that stands by itself, and put it into arrays."""
+    import numpy as np
+
+    free = np.ones((9, 9), np.bool_)
+    free[3:6, 3:6] = False
+    assert geometry.Screen(free).pathgraph_arrays
+
+
 def move() -> None:
     """Call the kernels that plan a motion of a shape past another at any angle."""
     import shapely
@@ -277,6 +286,8 @@ PROCESS_SPLIT: dict[bool, tuple[tuple[Use, ...], ...]] = {
 }
 
 
+# What few runs need: compiled by `utak warm`, else when it is called.
+RARE_USES: tuple[Use, ...] = (sightlines, many_routes, rings)
 # The kernel of each use that takes longest to compile, as numba's cache names it. When it is in the cache, the use is
 # taken for compiled.
 LONGEST_KERNEL = {
@@ -288,9 +299,7 @@ LONGEST_KERNEL = {
 
 def main(names: Sequence[str], compiler: KernelCompiler = THIS_INSTALLATION) -> None:
     """Compile for the uses with these names: the work of the second process."""
-    uses = {
-        use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), sightlines, many_routes)
-    }
+    uses = {use.__name__: use for use in (*(use for half in PROCESS_SPLIT[True] for use in half), *RARE_USES)}
     compiler.compile_for([uses[name] for name in names])
 
 

@@ -10,14 +10,13 @@ import re
 import stat
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
 from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
 from kb.language.source_text import read_bytes
-from simulator.episode.output_files import is_json_lines, keep_first, open_for_writing
+from simulator.episode.output_files import keep_first, open_for_writing, replace_whole
 
 STDOUT_NAME = "-"  # the name of a file that stands for the standard output
 MAX_RESULTS_BYTES = 2_000_000_000  # bytes; a convention
@@ -106,10 +105,19 @@ def open_results(path: Path | str | None, form: RowForm, force: bool = False) ->
 def _is_ours(form: RowForm, head: bytes) -> bool:
     """Return whether a file with these first bytes is of a form, even when its first line was cut short."""
     if form.header is None:
-        return is_json_lines(head)
+        return holds_rows(head, form.names)
     kind = form.header["utak"].encode()
     start = encode_row({"utak": form.header["utak"]})[:-2]  # the first bytes of every such file
     return re.match(rb'\s*\{\s*"utak"\s*:\s*"' + re.escape(kind) + b'"', head) is not None or start.startswith(head)
+
+
+def holds_rows(head: bytes, names: Sequence[str]) -> bool:
+    """Return whether the first line of a file with these first bytes is a JSON object that has these keys."""
+    try:
+        first = json.loads(head.split(b"\n")[0])
+    except (ValueError, RecursionError):
+        return encode_row({names[0]: ""})[:-4].startswith(head)  # a first line that was cut short at once
+    return isinstance(first, dict) and first.keys() >= set(names)
 
 
 class ResultsFile:
@@ -152,7 +160,10 @@ class ResultsFile:
             if ordered == list(self.known):
                 return
             try:
-                self._replace(encode_row(self._header) + b"".join(encode_row(self.known[key]) for key in ordered))
+                if os.name == "nt":  # elsewhere it stays locked until it is replaced
+                    self._stream.close()
+                rows = [self._header, *(self.known[key] for key in ordered)]
+                replace_whole(self._path, b"".join(map(encode_row, rows)))
             except OSError as error:
                 why = f"its lines cannot be put in order: {error.strerror}"
                 raise CannotOpenError(str(self._path), why) from None
@@ -178,26 +189,6 @@ class ResultsFile:
             self._stream.flush()
         except OSError as error:
             raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
-
-    def _replace(self, contents: bytes) -> None:
-        """Replace the file by one with other contents."""
-        target = Path(os.path.realpath(self._path))
-        other = target.with_name(f".{target.name}.{os.getpid()}.part")
-        with suppress(FileNotFoundError):
-            other.unlink()
-        try:
-            with other.open("xb") as stream:
-                stream.write(contents)
-                stream.flush()
-                os.fsync(stream.fileno())
-            other.chmod(stat.S_IMODE(target.stat().st_mode))
-            if os.name == "nt":  # Windows replaces no file that is open; elsewhere it stays locked until it is replaced
-                self._stream.close()
-            os.replace(other, target)  # noqa: PTH105 (the same, but works for paths of any length)
-        except BaseException:
-            with suppress(OSError):
-                other.unlink()
-            raise
 
 
 class PassingResults:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -69,22 +70,28 @@ def _dictionaries(stride: float) -> ActionForm:
         }
     )
 
-    def one(do: int, way: Sequence[float], turn: Sequence[float], direction: int) -> Command:
-        return _command(do, stride * way[0], stride * way[1], HALF_TURN * turn[0], direction)
+    return ActionForm(space, partial(_of_dictionary, stride), partial(_of_dictionaries, stride))
 
-    def command(action: Any) -> Command:
-        try:
-            way, turn = np.asarray(action["way"]).tolist(), np.asarray(action["turn"]).tolist()
-            return one(int(action["do"]), way, turn, int(action["direction"]))
-        except (LookupError, TypeError):
-            what = "`do`, `way` (2 numbers), `turn` (1 number) and `direction`"
-            raise ValueError(f"an action is a dictionary with {what}, not {action!r:.200}") from None
 
-    def commands(actions: Any) -> list[Command]:
-        columns = [np.asarray(actions[key]).tolist() for key in ("do", "way", "turn", "direction")]
-        return [one(*values) for values in zip(*columns, strict=True)]
+def _of_dictionary(stride: float, action: Any) -> Command:
+    """Return the command that a dictionary stands for."""
+    try:
+        way, turn = np.asarray(action["way"]).tolist(), np.asarray(action["turn"]).tolist()
+        return _of_values(stride, int(action["do"]), way, turn, int(action["direction"]))
+    except (LookupError, TypeError):
+        what = "`do`, `way` (2 numbers), `turn` (1 number) and `direction`"
+        raise ValueError(f"an action is a dictionary with {what}, not {action!r:.200}") from None
 
-    return ActionForm(space, command, commands)
+
+def _of_dictionaries(stride: float, actions: Any) -> list[Command]:
+    """Return the commands of a batch of dictionaries."""
+    columns = [np.asarray(actions[key]).tolist() for key in ("do", "way", "turn", "direction")]
+    return [_of_values(stride, *values) for values in zip(*columns, strict=True)]
+
+
+def _of_values(stride: float, do: int, way: Sequence[float], turn: Sequence[float], direction: int) -> Command:
+    """Return the command of the values of a dictionary."""
+    return _command(do, stride * way[0], stride * way[1], HALF_TURN * turn[0], direction)
 
 
 def _boxes(stride: float) -> ActionForm:
@@ -95,19 +102,23 @@ def _boxes(stride: float) -> ActionForm:
     """
     space = spaces.Box(-1.0, 1.0, (len(ACTION_KINDS) + 3,), np.float32)
 
-    def one(numbers: Sequence[float]) -> Command:
-        if np.shape(numbers) != space.shape:
-            raise ValueError(f"an action is {len(ACTION_KINDS) + 3} numbers, not {numbers!r:.200}")
-        kinds, (east, north, turn) = numbers[: len(ACTION_KINDS)], numbers[len(ACTION_KINDS) :]
-        do = max(range(len(ACTION_KINDS)), key=lambda kind: kinds[kind])
-        direction = round(math.degrees(math.atan2(east, north)) / 45.0) % len(DIRECTIONS) if do == 3 else 0
-        return _command(do, stride * east, stride * north, HALF_TURN * turn, direction)
+    return ActionForm(space, partial(_of_box, stride), partial(_of_boxes, stride))
 
-    return ActionForm(
-        space,
-        lambda action: one(np.asarray(action).tolist()),
-        lambda actions: [one(numbers) for numbers in np.asarray(actions).tolist()],
-    )
+
+def _of_box(stride: float, action: Any) -> Command:
+    """Return the command that numbers stand for."""
+    numbers = np.asarray(action).tolist()
+    if np.shape(numbers) != (len(ACTION_KINDS) + 3,):
+        raise ValueError(f"an action is {len(ACTION_KINDS) + 3} numbers, not {numbers!r:.200}")
+    kinds, (east, north, turn) = numbers[: len(ACTION_KINDS)], numbers[len(ACTION_KINDS) :]
+    do = max(range(len(ACTION_KINDS)), key=lambda kind: kinds[kind])
+    direction = round(math.degrees(math.atan2(east, north)) / 45.0) % len(DIRECTIONS) if do == 3 else 0
+    return _command(do, stride * east, stride * north, HALF_TURN * turn, direction)
+
+
+def _of_boxes(stride: float, actions: Any) -> list[Command]:
+    """Return the commands of a batch of numbers."""
+    return [_of_box(stride, numbers) for numbers in actions]
 
 
 def _numbers(stride: float) -> ActionForm:
@@ -120,13 +131,20 @@ def _numbers(stride: float) -> ActionForm:
         Release(),
     ]
 
-    def command(action: Any) -> Command:
-        number = np.asarray(action)
-        if number.size != 1 or not np.issubdtype(number.dtype, np.number) or not 0 <= number.item() < len(known):
-            raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action!r:.200}")
-        return known[int(number.item())]
+    return ActionForm(spaces.Discrete(len(known)), partial(_of_number, known), partial(_of_numbers, known))
 
-    return ActionForm(spaces.Discrete(len(known)), command, lambda actions: [command(action) for action in actions])
+
+def _of_number(known: Sequence[Command], action: Any) -> Command:
+    """Return the command that a number stands for."""
+    number = np.asarray(action)
+    if number.size != 1 or not np.issubdtype(number.dtype, np.number) or not 0 <= number.item() < len(known):
+        raise ValueError(f"an action is a number from 0 to {len(known) - 1}, not {action!r:.200}")
+    return known[int(number.item())]
+
+
+def _of_numbers(known: Sequence[Command], actions: Any) -> list[Command]:
+    """Return the commands of a batch of numbers."""
+    return [_of_number(known, action) for action in actions]
 
 
 def _command(do: int, east: float, north: float, degrees: float, direction: int) -> Command:

@@ -5,6 +5,7 @@ expectation means at one halt is said in `simulator.scenario.expectation` alone.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import shapely
@@ -97,100 +98,104 @@ def _inside(fact: Fact) -> Watch:
 
 def _near(fact: Fact) -> Watch:
     """Return the watch whether a thing, or the robot, is near a shape."""
-    return _remembering(str(fact.args[0]), lambda thing: is_near(fact, thing))
+    return partial(_remembered, str(fact.args[0]), partial(is_near, fact), [None, False])
 
 
 def _visits(fact: Fact) -> Watch:
     """Return the watch whether the centre of a thing, or the robot, was in a region at some halt."""
-    return _ever(_centre_there(fact))
+    return partial(_held_once, _centre_there(fact), [False])
 
 
 def _avoids(fact: Fact) -> Watch:
     """Return the watch whether the centre of a thing, or the robot, was in a region at no halt."""
-    was_there = _ever(_centre_there(fact))
-    return lambda halt: not was_there(halt)
+    return partial(_fails, _visits(fact))
 
 
 def _circles(fact: Fact) -> Watch:
     """Return the watch whether the track of the robot winds about a thing."""
-    name = str(fact.args[1])
-    total, before = 0.0, (0.0, 0.0)
-
-    def watch(halt: Snapshot) -> bool:
-        nonlocal total, before
-        if halt.step:
-            total += winding_of_step(before, halt.utak, halt.polygons[name].centroid)
-        before = halt.utak
-        return abs(total) >= MIN_CIRCLING_DEGREES
-
-    return watch
+    return partial(_has_wound, str(fact.args[1]), [0.0, (0.0, 0.0)])
 
 
 def _unmoved(fact: Fact) -> Watch:
     """Return the watch whether a thing is exactly where it was at the start."""
-    name = str(fact.args[0])
-    first: list[Any] = []
-
-    def watch(halt: Snapshot) -> bool:
-        polygon = halt.polygons[name]
-        if not first:
-            first.append(polygon)
-        return polygon is first[0] or outer_ring(polygon) == outer_ring(first[0])
-
-    return watch
+    return partial(_is_as_at_first, str(fact.args[0]), [])
 
 
 def _within(fact: Fact) -> Watch:
     """Return the watch whether no more commands were given than allowed."""
-    most = number_of(fact)
-    return lambda halt: halt.step <= most
+    return partial(_is_in_time, number_of(fact))
 
 
 def _whole_track(fact: Fact, world: World) -> Watch:
     """Return the watch of an expectation that is judged anew from the whole track at every halt."""
-    track: list[Snapshot] = []
-
-    def watch(halt: Snapshot) -> bool:
-        track.append(Snapshot(halt.step, halt.utak, dict(halt.polygons)))
-        return not unmet([fact], world, track)
-
-    return watch
+    return partial(_judged, fact, world, [])
 
 
 def _centre_there(fact: Fact) -> Watch:
     """Return the watch whether the centre of a thing, or the robot, is in a region now."""
     region = region_of(fact)
-    return _there(str(fact.args[0]), region, lambda thing: region.covers(thing.centroid))
+    return _there(str(fact.args[0]), region, partial(_covers_centre, region))
 
 
 def _there(name: str, region: Any, covers: Callable[[Any], bool]) -> Watch:
     """Return the watch whether a thing is in a region, which is tested at once for the robot, a point."""
     shapely.prepare(region)
-    if name == "utak":
-        return lambda halt: bool(shapely.intersects_xy(region, *halt.utak))
-    return _remembering(name, covers)
+    return partial(_robot_there, region) if name == "utak" else partial(_remembered, name, covers, [None, False])
 
 
-def _remembering(name: str, holds: Callable[[Any], bool]) -> Watch:
-    """Return the watch whether something holds of a thing, or of the robot as a point; asked when it has moved only."""
-    asked: list[Any] = [None, False]
-
-    def watch(halt: Snapshot) -> bool:
-        now = halt.utak if name == "utak" else halt.polygons[name]
-        if now is not asked[0]:
-            asked[:] = now, bool(holds(shapely.Point(now) if name == "utak" else now))
-        return bool(asked[1])
-
-    return watch
+# What watches do at a halt: functions of the module and a list of what was seen, so that copies of a game are apart.
 
 
-def _ever(now: Watch) -> Watch:
-    """Return the watch whether something held at some halt so far."""
-    held = False
+def _robot_there(region: Any, halt: Snapshot) -> bool:
+    """Return whether the robot is in a region."""
+    return bool(shapely.intersects_xy(region, *halt.utak))
 
-    def watch(halt: Snapshot) -> bool:
-        nonlocal held
-        held = held or now(halt)
-        return held
 
-    return watch
+def _covers_centre(region: Any, thing: Any) -> bool:
+    """Return whether the centre of a thing is in a region."""
+    return bool(region.covers(thing.centroid))
+
+
+def _remembered(name: str, holds: Callable[[Any], bool], asked: list[Any], halt: Snapshot) -> bool:
+    """Return whether something holds of a thing, or of the robot as a point; asked when it has moved only."""
+    now = halt.utak if name == "utak" else halt.polygons[name]
+    if now is not asked[0]:
+        asked[:] = now, bool(holds(shapely.Point(now) if name == "utak" else now))
+    return bool(asked[1])
+
+
+def _held_once(now: Watch, held: list[bool], halt: Snapshot) -> bool:
+    """Return whether something held at some halt so far."""
+    held[0] = held[0] or now(halt)
+    return held[0]
+
+
+def _fails(watch: Watch, halt: Snapshot) -> bool:
+    """Return whether a watch says no."""
+    return not watch(halt)
+
+
+def _has_wound(name: str, so_far: list[Any], halt: Snapshot) -> bool:
+    """Return whether the track has wound about a thing. so_far : the degrees, and the robot's last place."""
+    if halt.step:
+        so_far[0] += winding_of_step(so_far[1], halt.utak, halt.polygons[name].centroid)
+    so_far[1] = halt.utak
+    return bool(abs(so_far[0]) >= MIN_CIRCLING_DEGREES)
+
+
+def _is_as_at_first(name: str, first: list[Any], halt: Snapshot) -> bool:
+    """Return whether a thing is where it was. first : its outline at the first halt."""
+    polygon = halt.polygons[name]
+    first += [] if first else [polygon]
+    return polygon is first[0] or outer_ring(polygon) == outer_ring(first[0])
+
+
+def _is_in_time(most: int, halt: Snapshot) -> bool:
+    """Return whether at most so many commands were given."""
+    return halt.step <= most
+
+
+def _judged(fact: Fact, world: World, track: list[Snapshot], halt: Snapshot) -> bool:
+    """Return whether an expectation is met by the whole track, to which the halt is added."""
+    track.append(Snapshot(halt.step, halt.utak, dict(halt.polygons)))
+    return not unmet([fact], world, track)

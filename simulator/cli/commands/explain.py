@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simulator.terminal import exits
@@ -122,13 +123,13 @@ def _fix(options: argparse.Namespace) -> int:
     from simulator.explaining.fixing.recorded import recorded_run
     from simulator.explaining.fixing.report import is_repeated, report_text, report_values
     from simulator.explaining.fixing.search import find_fixes
-    from simulator.explaining.fixing.writing import require_empty_folder
     from simulator.explaining.questions import rule_paths
+    from simulator.scenario.folder_writer import check_folder
 
     rules = rule_paths(options.kb)
     run = recorded_run(options.episode, read_begun_episode(options.episode), rules)
     if options.write is not None:
-        require_empty_folder(options.write)
+        check_folder(Path(options.write))
     budget = Budget(DEFAULT_RUNS if options.runs is None else options.runs, options.seconds)
     report = find_fixes(run, budget, _progress_printer(run, budget))
     if options.json:

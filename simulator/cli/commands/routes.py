@@ -68,7 +68,7 @@ def execute(options: argparse.Namespace) -> int:
         from simulator.episode.output_files import is_svg, write_whole
 
         picture = draw(screen, routes, ends=(start, goal), words=lambda point: place(_mirrored(point, top)))
-        write_whole(options.svg, picture, is_svg, "SVG picture", options.force)
+        write_whole(options.svg, picture.encode("utf-8"), is_svg, "SVG picture", options.force)
     _print(routes, options.json, top)
     return exits.SUCCESS if routes else exits.NOT_REACHED
 
@@ -76,20 +76,16 @@ def execute(options: argparse.Namespace) -> int:
 def _free_squares(name: str) -> "Bools":
     """Return the free squares: those of a map, or those of a scenario's table where nothing stands."""
     from geometry.io.movingai import MapError, parse_map
-    from kb.language.source_text import read_bytes
+    from simulator.importing.text_file import read_raw, text_source
 
     if Path(name).is_dir():
         return _free_squares_of_scenario(name)
-    raw = read_bytes(name, MAX_MAP_BYTES)
-    if len(raw) > MAX_MAP_BYTES:
-        raise BadInputError([Problem(name, SourceSpan(1, 1, 1), f"the map is larger than {MAX_MAP_BYTES} bytes")])
+    raw = read_raw(name, MAX_MAP_BYTES, "a map")
     try:
         return parse_map(raw)
     except MapError as error:
-        line = raw.split(b"\n")[error.line - 1].decode("latin-1").rstrip("\r")
-        raise BadInputError(
-            [Problem(name, SourceSpan(error.line, error.column, error.end), error.what, line)]
-        ) from None
+        span = SourceSpan(error.line, error.column, error.end)
+        raise BadInputError([text_source(name, raw).problem(span, error.what)]) from None
 
 
 def _free_squares_of_scenario(name: str) -> "Bools":

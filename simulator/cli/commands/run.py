@@ -220,9 +220,9 @@ def exit_code(result: "Result") -> int:
 
 def _recorded_header(options: argparse.Namespace) -> dict[str, Any] | None:
     """Return the header of the episode that is to be resumed; None when there is none."""
-    from simulator.episode.episode import complete_lines, read_episode
+    from simulator.episode.episode import lines_to_resume, read_episode
 
-    if not options.resume or not Path(options.log).exists() or not complete_lines(options.log):
+    if not options.resume or not Path(options.log).exists() or not lines_to_resume(options.log):
         return None
     return read_episode(options.log).header
 

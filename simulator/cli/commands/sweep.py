@@ -55,6 +55,7 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Carry out the sweep, print the summary and return the exit code."""
+    from simulator.run.interrupts import end_at_request
     from simulator.sweep.carrying_out import carry_out_sweep, form_of
     from simulator.sweep.plan import MAX_RUNS
     from simulator.sweep.results import STDOUT_NAME, open_results
@@ -65,7 +66,7 @@ def execute(options: argparse.Namespace) -> int:
     if plan.size > MAX_RUNS:
         return _usage(f"{plan.size} runs are more than {MAX_RUNS}")
     _check_picture(options)
-    with _Times(options.times, options.force) as times:
+    with end_at_request(), _Times(options.times, options.force) as times:
         results = open_results(options.output, form_of(plan), options.force)
         code = exits.SUCCESS
         try:
@@ -134,10 +135,10 @@ def _executor(options: argparse.Namespace, paths: str, carrying: bool) -> "Execu
 
 def _check_picture(options: argparse.Namespace) -> None:
     """Raise CannotOpenError when the picture could not be written at the end."""
-    from simulator.episode.output_files import is_svg, open_for_writing
+    from simulator.episode.output_files import check_path, is_svg
 
     if options.svg:
-        open_for_writing(options.svg, is_svg, "SVG picture", options.force).close()
+        check_path(options.svg, is_svg, "SVG picture", options.force)
 
 
 def usable_processors() -> int:
@@ -173,22 +174,27 @@ class _Watch:
         self._progress.note((run.scenario, run.noise), outcome.seconds)
 
 
+def is_times(head: bytes) -> bool:
+    """Return whether a file with these first bytes is one of `--times`."""
+    from simulator.sweep.plan import SweepRun
+    from simulator.sweep.results import holds_rows
+
+    return holds_rows(head, (*SweepRun._fields, "seconds"))
+
+
 class _Times:
     """The file of `--times`: the wall-clock seconds of each run that is carried out now, in the order of their ends.
 
     Parameters
     ----------
     path : the file, which is overwritten; None for no file.
-    force : whether to overwrite a file that holds no JSON lines.
+    force : whether to overwrite a file that holds something else.
     """
 
     def __init__(self, path: str | None, force: bool) -> None:
-        from simulator.episode.output_files import is_json_lines, keep_first, open_for_writing
+        from simulator.episode.output_files import GrowingFile
 
-        self._path = path
-        self._stream = None if path is None else open_for_writing(path, is_json_lines, "file of times", force)
-        if self._stream is not None:
-            keep_first(self._stream, 0)
+        self._stream = None if path is None else GrowingFile(path, is_times, "file of times", force)
 
     def __enter__(self) -> "_Times":
         return self
@@ -201,13 +207,7 @@ class _Times:
         """Write the time of a run."""
         if self._stream is not None:
             line = as_json({**run._asdict(), "seconds": round(seconds, 3)})
-            try:
-                self._stream.write(line.encode("ascii") + b"\n")
-                self._stream.flush()
-            except OSError as error:
-                from kb.language.diagnostics import CannotOpenError
-
-                raise CannotOpenError(str(self._path), f"it cannot be written: {error.strerror}") from None
+            self._stream.write(line.encode("ascii") + b"\n")
 
 
 def _report(options: argparse.Namespace, plan: "SweepPlan", rows: "list[ResultRow]") -> None:
@@ -220,7 +220,7 @@ def _report(options: argparse.Namespace, plan: "SweepPlan", rows: "list[ResultRo
     if options.svg:
         from simulator.sweep.picture import sweep_picture
 
-        write_whole(options.svg, sweep_picture(counts), is_svg, "SVG picture", options.force)
+        write_whole(options.svg, sweep_picture(counts).encode("utf-8"), is_svg, "SVG picture", options.force)
     if options.json:
         every = total_of(counts)
         values = {

@@ -59,10 +59,10 @@ def execute(options: argparse.Namespace) -> int:
 
 def _open_junit(options: argparse.Namespace) -> None:
     """Make sure, before anything is run, that the file of `--junit` can be written."""
-    from simulator.episode.output_files import is_junit, open_for_writing
+    from simulator.episode.output_files import check_path, is_junit
 
     if options.junit is not None:
-        open_for_writing(options.junit, is_junit, JUNIT_KIND, options.force).close()
+        check_path(options.junit, is_junit, JUNIT_KIND, options.force)
 
 
 def _write_junit(options: argparse.Namespace, records: "list[TrialRecord]") -> None:
@@ -71,7 +71,7 @@ def _write_junit(options: argparse.Namespace, records: "list[TrialRecord]") -> N
     from simulator.testing.junit import as_junit
 
     if options.junit is not None:
-        write_whole(options.junit, as_junit(records), is_junit, JUNIT_KIND, options.force)
+        write_whole(options.junit, as_junit(records).encode("utf-8"), is_junit, JUNIT_KIND, options.force)
 
 
 def _jobs(text: str) -> int:

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from kb.language.diagnostics import CannotOpenError
 from simulator.explaining.fixing.recorded import start_text
+from simulator.scenario.folder_writer import whole_folder
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.world.world import World
 
@@ -17,26 +17,10 @@ def write_scenario(scenario: Scenario, folder: Path | str) -> None:
     CannotOpenError : the folder is not empty, or cannot be written.
     BadInputError : the scenario is none that files can state; the files show why.
     """
-    require_empty_folder(folder)
-    folder = Path(folder)
-    try:
+    with whole_folder(Path(folder)) as part:
         for name, text in scenario_files(scenario).items():
-            with (folder / name).open("x") as stream:
-                stream.write(text)
-    except (OSError, ValueError) as error:
-        raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
-    read_scenario(folder)
-
-
-def require_empty_folder(folder: Path | str) -> None:
-    """Make a folder if there is none; raise CannotOpenError when it is not empty, or cannot be made."""
-    try:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        is_full = any(Path(folder).iterdir())
-    except (OSError, ValueError) as error:
-        raise CannotOpenError(str(folder), getattr(error, "strerror", None) or str(error)) from None
-    if is_full:
-        raise CannotOpenError(str(folder), "it is there already, and not empty")
+            (part / name).write_text(text)
+        read_scenario(part)
 
 
 def scenario_files(scenario: Scenario) -> dict[str, str]:

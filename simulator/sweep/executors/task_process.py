@@ -1,11 +1,13 @@
 """The handle of a worker process: it limits the time of tasks, and starts the process anew when it has ended."""
 
 import json
+import os
 import signal
 import subprocess
 import threading
 import time
 from contextlib import suppress
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
@@ -31,6 +33,8 @@ class TaskProcess:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
         self._closed = False
+        # The place of all temporary files of the process: it goes, even when the process is killed before it cleans up.
+        self._temporary = TemporaryDirectory(prefix="utak-sweep-", ignore_cleanup_errors=True)
 
     def run(self, task: WorkerTask) -> TaskOutcome:
         """Carry out a task in the process and return the outcome.
@@ -66,6 +70,7 @@ class TaskProcess:
             process, self._process = self._process, None
         if process is not None:
             _end(process)
+        self._temporary.cleanup()
 
     def _attempt(self, task: WorkerTask) -> TaskOutcome:
         """Carry out a task once."""
@@ -86,6 +91,7 @@ class TaskProcess:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
+            env={**os.environ, **dict.fromkeys(("TMPDIR", "TEMP", "TMP"), self._temporary.name)},
             start_new_session=True,  # Ctrl-C must reach the parent only, which then ends the process
             creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # the same on Windows
         )

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -124,3 +125,64 @@ def test_bare_kernels_make_and_return_no_arrays(path):
                 assert node.func.attr not in MAKERS, name
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 assert node.func.id not in counting, name
+
+
+ROOT = Path(__file__).resolve().parents[3]
+KERNEL = """
+import sys
+import numpy
+from geometry.kernels.jit import PROGRESS
+sys.path.insert(0, sys.argv[1])
+from own_kernel import shifted
+print(shifted(2), PROGRESS.compiled_count)
+"""
+UNWRITABLE = """
+from numba.core import caching
+def refuse(self):
+    raise PermissionError(13, "no")
+caching.InTreeCacheLocator.ensure_cache_path = refuse
+"""
+OWN_KERNEL = """
+from geometry.kernels.jit import compiled
+@compiled
+def shifted(x: int) -> int:
+    return x + 40
+"""
+
+
+@pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT", "0") != "0", reason="nothing is compiled")
+def test_damaged_files_in_the_cache_are_made_anew(tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    (tmp_path / "own_kernel.py").write_text(OWN_KERNEL)
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": str(ROOT)}
+
+    def called() -> str:
+        command = [sys.executable, "-c", KERNEL, str(tmp_path)]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.strip()
+
+    assert called() == "42 1"
+    assert called() == "42 0"
+    for end in ("nbi", "nbc"):
+        (file,) = cache.rglob(f"*.{end}")
+        whole = file.read_bytes()
+        middle = len(whole) // 2
+        flipped = whole[:middle] + bytes([whole[middle] ^ 4]) + whole[middle + 1 :]
+        for damaged in (b"", whole[:middle], flipped):
+            file.write_bytes(damaged)
+            assert called() == "42 1", (end, len(damaged))
+        assert called() == "42 0"
+
+
+@pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT", "0") != "0", reason="nothing is compiled")
+def test_kernels_of_an_installation_that_cannot_be_written_are_read(tmp_path: Path) -> None:
+    installation = tmp_path / "here"
+    shutil.copytree(ROOT / "geometry", installation / "geometry", ignore=shutil.ignore_patterns("__pycache__"))
+    (installation / "geometry" / "own_kernel.py").write_text(OWN_KERNEL)
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment |= {"PYTHONPATH": str(installation), "XDG_CACHE_HOME": str(tmp_path / "users")}
+    no_user = UNWRITABLE + "caching.UserWideCacheLocator.ensure_cache_path = refuse\n"
+    for before, expected in (("", "42 1"), (UNWRITABLE, "42 0"), (no_user, "42 0")):
+        code = before + KERNEL.replace("from own_kernel", "from geometry.own_kernel")
+        command = [sys.executable, "-c", code, str(installation)]
+        run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, cwd=installation)
+        assert run.stdout.strip() == expected, run.stderr

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,8 @@ from random_scenes import write_scene
 from kb.language.diagnostics import CannotOpenError
 from simulator.cli.main import main
 from simulator.episode.episode import EpisodeLog, read_episode
-from simulator.episode.output_files import is_episode, is_svg, write_whole
+from simulator.episode.output_files import is_episode, is_junit, is_svg, write_whole
+from simulator.replay.page import is_page
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -124,5 +126,65 @@ def test_a_picture_overwrites_nothing_but_a_picture(tmp_path: Path) -> None:
 def test_a_file_that_cannot_be_written_is_reported(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "no" / "file", "/dev/full"):
         with pytest.raises(CannotOpenError):
-            write_whole(path, "x" * 9, is_svg, "picture")
+            write_whole(path, b"x" * 9, is_svg, "picture")
     assert is_episode(b'{"utak": "episode", "version": 1')
+
+
+@pytest.mark.parametrize(
+    ("start", "end"), [(b"<!-- a -->\n", b"-->"), (b"<!---->", b""), (b"<!-->-->", b"<"), (b" ", b"")]
+)
+@pytest.mark.parametrize("tell", [is_page, is_svg, is_junit])
+def test_the_kind_of_a_file_is_told_in_linear_time(tell: Callable[[bytes], bool], start: bytes, end: bytes) -> None:
+    """Sixty comments took a regular expression longer than anybody waits: this test ends, or it hangs."""
+    assert not tell((start * 400)[:4000] + end)
+    assert tell((start * 60) + {is_page: b"<html>", is_svg: b"<svg>", is_junit: b"<testsuites>"}[tell])
+
+
+def test_what_is_written_at_once_is_there_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.svg"
+
+    def fail(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    for old in (None, b"<svg/>"):
+        if old is not None:
+            path.write_bytes(old)
+        with monkeypatch.context() as full:
+            full.setattr(os, "fsync", fail)
+            with pytest.raises(CannotOpenError, match="No space left"):
+                write_whole(path, b"<svg>new</svg>", is_svg, "picture")
+        assert [one.read_bytes() for one in tmp_path.iterdir()] == ([] if old is None else [old])
+    path.chmod(0o640)
+    link = tmp_path / "link"
+    link.symlink_to(path)
+    write_whole(link, b"<svg>new</svg>", is_svg, "picture")
+    assert path.read_bytes() == b"<svg>new</svg>" and path.stat().st_mode & 0o777 == 0o640 and link.is_symlink()
+
+
+def test_a_refused_run_leaves_no_files_and_keeps_old_ones(scene: Path, tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text("this is no rule")
+    page, log, dump = (tmp_path / "out" / name for name in ("page.html", "ep.jsonl", "asp"))
+    page.parent.mkdir()
+    options = ["run", str(scene), "--kb", str(rules), "--html", str(page), "--log", str(log), "--dump-asp", str(dump)]
+    assert main(options) == 65
+    assert list(page.parent.iterdir()) == []
+    page.write_text("<html>old")
+    assert main(["run", str(scene), "--log", str(log), "--max-steps", "2"]) == 75
+    before = log.read_bytes()
+    assert main(options) == 65
+    assert (page.read_text(), log.read_bytes()) == ("<html>old", before)
+
+
+def test_a_new_scenario_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write, calls = Path.write_text, []
+
+    def fail(self: Path, *args: object, **options: object) -> int:
+        calls.append(self)
+        if len(calls) > 2:
+            raise OSError(28, "No space left on device")
+        return write(self, *args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Path, "write_text", fail)
+    assert main(["new", str(tmp_path / "a" / "b")]) == 66
+    assert len(calls) == 3 and list(tmp_path.iterdir()) == []

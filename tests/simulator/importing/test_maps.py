@@ -2,6 +2,7 @@
 
 import math
 import os
+import tracemalloc
 from fractions import Fraction
 from pathlib import Path
 
@@ -421,3 +422,50 @@ def test_drawn_ros_maps_are_imported_pixel_by_pixel(values: np.ndarray, tmp_path
     rows, columns = free.any(axis=1).nonzero()[0], free.any(axis=0).nonzero()[0]
     wanted = free[max(0, rows[0] - 1) : rows[-1] + 2, max(0, columns[0] - 1) : columns[-1] + 2]
     assert np.array_equal(floor_of(imported(ros_map(tmp_path, values), tmp_path / "s").world), wanted)
+
+
+@pytest.mark.parametrize("resolution", ["0.000001", "0.0000152", "1e-6"])
+def test_a_pixel_of_a_tiny_part_of_a_square_is_refused(
+    resolution: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "m.yaml").write_text(YAML.replace("0.1\n", f"{resolution}\n"))
+    (tmp_path / "map.pgm").write_bytes(b"P5 3 3 255\n" + b"\xfe" * 9)
+    tracemalloc.start()
+    code = main(["import", str(tmp_path / "m.yaml"), str(tmp_path / "s")])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert code == 65
+    assert "1/64" in capsys.readouterr().err
+    assert peak < 50_000_000
+
+
+@pytest.mark.parametrize("rest", ["11 " * 500_000, "#\n" * 500_000, " " * 2_000_000])
+def test_text_that_no_pixel_needs_is_not_taken_apart(rest: str) -> None:
+    source = Source("m.pgm", f"P2 1 1 255\n{rest}")
+    tracemalloc.start()
+    with pytest.raises(BadInputError):
+        parse_pgm(source)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 4 * len(rest) + 10_000_000
+    assert len(rest) < 1_000_001 or peak < 10_000_000
+
+
+@pytest.mark.parametrize("image", ["a\0b.pgm", '"a\0b.pgm"', "a\x01.pgm"])
+def test_control_characters_in_the_name_of_an_image_are_refused(
+    image: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "m.yaml").write_text(YAML.replace("map.pgm", image))
+    for more in ([], ["--untrusted"]):
+        assert main(["import", str(tmp_path / "m.yaml"), str(tmp_path / "s"), *more]) == 65
+        assert "m.yaml:1:" in capsys.readouterr().err
+
+
+WRONG_PIXELS = {"1 2 3 x": "7-7", "1 2 99 3": "5-6", "1 # 2 9 9": "10-10", "1 2 1234567890 3": "5-14", "#": "2-2"}
+
+
+@pytest.mark.parametrize(("pixels", "place"), WRONG_PIXELS.items())
+def test_the_place_of_a_wrong_pixel_is_told(pixels: str, place: str) -> None:
+    with pytest.raises(BadInputError) as caught:
+        parse_pgm(Source("m.pgm", f"P2 2 2 9\n{pixels}"))
+    assert str(caught.value).startswith(f"m.pgm:2:{place}: error: ")

@@ -46,11 +46,29 @@ def test_walls_obstacles_robot_and_goal_lie_in_their_places(scale: int, tmp_path
     assert world.movable[0].polygon.symmetric_difference(box).area < 1e-9
     assert world.utak == (1 + 7 * scale, 1 + 9 * scale)
     marker = world.fixed[0].polygon
-    assert (marker.centroid.x, marker.centroid.y) == pytest.approx((1 + 21 * scale, 1 + 3 * scale))
-    assert marker.area == pytest.approx(1)
+    assert marker.equals(shapely.box(1 + 21 * scale, 1 + 3 * scale, 2 + 21 * scale, 2 + 3 * scale))
     assert [str(goal) for goal in scenario.task.goals] == ["at(utak,x)"]
     assert scenario.expectations is not None
     assert str(scenario.expectations[0]).startswith("near(utak,")
+
+
+@pytest.mark.parametrize("place", ["101.3,68.2", "97,71", "104.9,60.01"])
+def test_the_marker_of_a_goal_lies_on_the_grid(place: str, tmp_path: Path) -> None:
+    scenario = imported(WHOLE.replace("m 100,70", f"m {place}"), tmp_path)
+    x, y = (float(part) for part in place.split(","))
+    marker = scenario.world.fixed[0].polygon
+    assert all(float(side).is_integer() for side in marker.bounds)
+    assert marker.covers(shapely.Point(1 + (x + 5) / 5, 1 + (90 - y - 5) / 5))
+
+
+def test_outlines_of_a_file_have_a_bounded_number_of_points(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("simulator.importing.namosim.MAX_DRAWN_POINTS", 5_000)
+    arcs = "<path d='M 0 0 " + "a 40 40 0 1 1 0 .1 " * 2 + "z'/>"
+    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, WALL + arcs * 400))
+    assert main(["import", str(tmp_path / "a.svg"), str(tmp_path / "s")]) == 65
+    assert "more than 5000 points" in capsys.readouterr().err
 
 
 def test_a_goal_under_something_is_a_corner(tmp_path: Path) -> None:
@@ -149,6 +167,17 @@ WRONG = {  # a file, the text at the place of the message (the begin of the file
     "a robot in a wall": (WHOLE.replace("m 30,40", "m 30,-4"), "", "inside the verge"),
     "a transform of words": (WHOLE.replace('="wall"', '="wall" transform="turn(1)"'), "turn(1)", "turn"),
     "an endless number": (WHOLE.replace("M 0,0", "M 1e999,0"), "1e999", "numbers"),
+    "an endless view box": (WHOLE.replace("0 0 120 90", "0 0 1e999 10"), "0 0 1e999 10", "viewBox"),
+    "an endless cell": (WHOLE.replace('cm="5"', 'cm="1e-320"'), "1e-320", "cell_size_cm"),
+    "a skew of a quarter turn": (WHOLE.replace('="wall"', '="wall" transform="skewX(90)"'), "skewX", "stretches"),
+    "stretched and stretched": (
+        WHOLE.replace(WALL, '<g transform="scale(1e9)"><g transform="scale(1e8)">' * 20 + WALL + "</g>" * 40),
+        "scale(1e8)",
+        "stretches",
+    ),
+    "stretched in one": (WHOLE.replace('="wall"', '="wall" transform="scale(1e9) scale(1e9)"'), "scale", "stretches"),
+    "moved far away": (WHOLE.replace('="wall"', '="wall" transform="translate(1e9)"'), "M 0,0", "squares away"),
+    "a pin of an arc": (WHOLE.replace("h 15 v 15 h -15", "A1e9 1e-9 0 0 1 9 9"), "m 60,30", "outline"),
     "an entity": (f'<!DOCTYPE svg [<!ENTITY a "x">]>\n{WHOLE}', "[", "entities"),
     "an entity from outside": (f'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]>\n{WHOLE}', "[", "entities"),
     "an unknown entity": (WHOLE.replace('"box"', '"&boxes;"'), '<path id="&', "no XML"),

@@ -152,6 +152,9 @@ def test_without_a_file_rows_are_kept_in_memory_alone() -> None:
 def test_a_file_without_header_is_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "r.jsonl"
     path.write_text('{"old": 1}\n{"old": 2}\n')
+    with pytest.raises(CannotOpenError):
+        open_results(path, FORM._replace(header=None))
+    path.write_text('{"name": "x", "seed": 7}\n')
     results = open_results(path, FORM._replace(header=None))
     results.append(row(1))
     results.append(row(0))

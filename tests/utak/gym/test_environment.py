@@ -1,9 +1,11 @@
 """The Gymnasium environment: its checker, seeds, rewards, ends, actions, pictures, and many tables together."""
 
+import copy
+import pickle
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -288,3 +290,33 @@ def test_what_is_no_action_is_refused_in_words(form: str, action: Any) -> None:
         env.step(action)
     with pytest.raises(ValueError, match="there is no scenario 'first'"):
         env.reset(options={"scenario": "first"})
+
+
+@pytest.mark.parametrize("actions", ["dict", "box", "discrete"])
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_copies_of_an_environment_are_independent(actions: str, copied: Callable[[TabletopEnv], TabletopEnv]) -> None:
+    expected = (
+        'visits(utak, "POLYGON ((9 6, 14 6, 14 9, 9 9, 9 6))"). circles(utak, o). near(utak, "POINT (3 3)", 1). '
+        'avoids(utak, "POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0))"). unmoved(o). within(40). '
+        'pose(o, "POINT (6 6)", 0, 1). inside(utak, "POLYGON ((9 6, 14 6, 14 9, 9 9, 9 6))").'
+    )
+    world = (
+        'table(16, 12). verge("POLYGON ((0 0, 16 0, 16 12, 0 12, 0 0), (1 1, 15 1, 15 11, 1 11, 1 1))"). '
+        'object(o, g, "POLYGON ((5 5, 7 5, 7 7, 5 7, 5 5))"). utak("POINT (2.5 2.5)", 0).'
+    )
+    scenario = utak.Scenario.from_text(world, "at(utak, corner(northeast)).", expect=expected)
+    env = TabletopEnv(scenario, actions=actions, noise=0.1)
+    env.reset(seed=3)
+    env.action_space.seed(7)
+    first, second = ([env.action_space.sample() for _ in range(30)] for _ in range(2))
+    for action in first:
+        env.step(action)
+    whole, again = copied(env), copied(env)
+
+    def rewards(one: TabletopEnv) -> list[object]:
+        return [one.step(action)[1:] for action in second]
+
+    found = rewards(whole)
+    assert rewards(env) == found
+    assert rewards(again) == found
+    assert len({str(step) for step in found}) > 1

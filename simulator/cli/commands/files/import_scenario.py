@@ -14,7 +14,6 @@ from simulator.terminal.numbers import parse_decimal, parse_whole
 if TYPE_CHECKING:
     from simulator.importing.imported import Imported, ImportOptions
 
-MAX_CELL_SCALE = 64  # the greatest N of --scale N and --scale 1/N; a convention
 MAX_LEVEL_NUMBER = 1_000_000  # the greatest --level; a convention
 MAX_START_COORDINATE = 1e7  # the greatest coordinate of --start, in absolute value; a convention
 UNKNOWN_CHOICES = ("verge", "floor")  # what cells are of which the source says nothing
@@ -187,6 +186,8 @@ def _check(files: dict[str, str], name: str, goal: str | None) -> None:
 
 def _scale(text: str) -> Fraction:
     """Return the number for `--scale`."""
+    from simulator.importing.imported import MAX_CELL_SCALE
+
     if text.startswith("1/"):
         return Fraction(1, parse_whole(text[2:], 1, MAX_CELL_SCALE))
     return Fraction(parse_whole(text, 1, MAX_CELL_SCALE))

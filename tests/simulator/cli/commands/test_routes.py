@@ -96,3 +96,17 @@ def test_lines_and_sizes_are_in_proportion(side: int) -> None:
         wide = route_line_width(number, 8, scale)
         assert wide * scale >= 1.5
         assert wide <= 0.25 or wide * scale <= 3.0
+
+
+@pytest.mark.parametrize("secret", ["password: hunter2", "type octile\nheight 1\nwidth 8\nmap\nhunter2!\n"])
+def test_a_link_out_of_the_folder_is_told_and_not_quoted(
+    secret: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "elsewhere").mkdir()
+    (folder / "elsewhere" / "secret").write_text(secret)
+    (folder / "here").mkdir()
+    (folder / "here" / "l.map").symlink_to(folder / "elsewhere" / "secret")
+    assert main(["routes", str(folder / "here" / "l.map"), "--from", "1,1", "--to", "2,2"]) == 65
+    said = capsys.readouterr().err
+    assert "leads out of its folder" in said
+    assert not any(word in said for word in ("password", "hunter", "'h'", "'p'"))

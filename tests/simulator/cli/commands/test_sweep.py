@@ -122,3 +122,39 @@ def test_an_interrupt_keeps_what_is_done_and_leaves_no_process(scenario: Path, t
     assert process.returncode == 130 and done >= 1
     assert f"utak: interrupted: {done} of 500 runs are done; the same command goes on from there\n" == errors
     assert started and still_there(started) == []
+
+
+@pytest.mark.parametrize(
+    "text", ['{"a": 1}\n', "{}", '{"scenario": "x", "noise": 0}\n', "{ my notes", '{"utak": "episode"}\n']
+)
+def test_times_overwrite_nothing_but_times(text: str, scenario: Path, tmp_path: Path) -> None:
+    path = tmp_path / "notes"
+    path.write_text(text)
+    assert main(["sweep", str(scenario), "--max-steps", "0", "--times", str(path)]) == 66
+    assert path.read_text() == text
+
+
+def test_no_temporary_folders_stay_after_a_request_to_end(scenario: Path, tmp_path: Path) -> None:
+    place = tmp_path / "temporary"
+    place.mkdir()
+    code = (
+        "import sys, time; from pathlib import Path; from simulator.sweep.executors import task_process as t\n"
+        "from simulator.cli.main import main\n"
+        "class Hanging(t.TaskProcess):\n"
+        "    def run(self, task):\n"
+        "        self.prepare(); Path(self._temporary.name, 'utak-sweep-left').mkdir()\n"
+        "        print(flush=True); time.sleep(600)\n"
+        "import simulator.sweep.executors.processes as p; p.TaskProcess = Hanging\n"
+        "import simulator.run.warming as w; w.warm = lambda *_: None\n"
+        "sys.exit(main(['sweep', sys.argv[1]]))"
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(place)}
+    command = [sys.executable, "-c", code, str(scenario)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as sweep:
+        assert sweep.stdout is not None
+        sweep.stdout.readline()
+        assert list(place.iterdir())
+        sweep.send_signal(signal.SIGTERM)
+        sweep.communicate()
+    assert sweep.returncode == -signal.SIGTERM
+    assert list(place.iterdir()) == []
