@@ -40,7 +40,7 @@ OPTIONAL_IN = {
     "prompt_toolkit": "simulator/repl",
     "rich": "simulator/repl",
 }
-NUMBA_IN = "geometry/kernels/jit.py"
+NUMBA_IN = ("geometry/kernels/jit.py", "geometry/kernels/cache.py")
 CLINGO_IN = ("kb/reasoning", "kb/three_valued", "kb/tracing")  # where rules are solved, asked and traced
 # What stands in fronts besides a docstring: public names are what users of Python import.
 FRONTS_WITH_CODE: dict[str, tuple[type[ast.stmt], ...]] = {
@@ -125,8 +125,8 @@ def others_used(root: Path) -> Iterator[str]:
                     yield f"{name} uses {library}, which {OPTIONAL_IN[library]} alone may"
             elif library not in MAY_USE[name.split("/")[0]]:
                 yield f"{name} uses {library}"
-            if library == "numba" and name != NUMBA_IN:
-                yield f"{name} uses numba, which {NUMBA_IN} alone may"
+            if library == "numba" and name not in NUMBA_IN:
+                yield f"{name} uses numba, which {' and '.join(NUMBA_IN)} alone may"
             if library == "clingo" and not name.startswith(CLINGO_IN):
                 yield f"{name} uses clingo, which {' and '.join(CLINGO_IN)} alone may"
 

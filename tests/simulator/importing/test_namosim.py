@@ -61,14 +61,11 @@ def test_the_marker_of_a_goal_lies_on_the_grid(place: str, tmp_path: Path) -> No
     assert marker.covers(shapely.Point(1 + (x + 5) / 5, 1 + (90 - y - 5) / 5))
 
 
-def test_outlines_of_a_file_have_a_bounded_number_of_points(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("simulator.importing.namosim.MAX_DRAWN_POINTS", 5_000)
-    arcs = "<path d='M 0 0 " + "a 40 40 0 1 1 0 .1 " * 2 + "z'/>"
-    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, WALL + arcs * 400))
+def test_outlines_of_a_file_have_a_bounded_number_of_points(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arcs = "<path d='M 0 0 " + "a 1e5 1e5 0 1 1 0 .1 " * 300 + "z'/>"
+    (tmp_path / "a.svg").write_text(WHOLE.replace(WALL, WALL + arcs * 15))
     assert main(["import", str(tmp_path / "a.svg"), str(tmp_path / "s")]) == 65
-    assert "more than 5000 points" in capsys.readouterr().err
+    assert "more than 1000000 points" in capsys.readouterr().err
 
 
 def test_a_goal_under_something_is_a_corner(tmp_path: Path) -> None:

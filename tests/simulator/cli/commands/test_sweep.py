@@ -137,24 +137,12 @@ def test_times_overwrite_nothing_but_times(text: str, scenario: Path, tmp_path: 
 def test_no_temporary_folders_stay_after_a_request_to_end(scenario: Path, tmp_path: Path) -> None:
     place = tmp_path / "temporary"
     place.mkdir()
-    code = (
-        "import sys, time; from pathlib import Path; from simulator.sweep.executors import task_process as t\n"
-        "from simulator.cli.main import main\n"
-        "class Hanging(t.TaskProcess):\n"
-        "    def run(self, task):\n"
-        "        self.prepare(); Path(self._temporary.name, 'utak-sweep-left').mkdir()\n"
-        "        print(flush=True); time.sleep(600)\n"
-        "import simulator.sweep.executors.processes as p; p.TaskProcess = Hanging\n"
-        "import simulator.run.warming as w; w.warm = lambda *_: None\n"
-        "sys.exit(main(['sweep', sys.argv[1]]))"
-    )
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(place)}
-    command = [sys.executable, "-c", code, str(scenario)]
+    command = [sys.executable, "-m", "simulator.cli", "sweep", str(scenario), "--seeds", "0:5000"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment) as sweep:
-        assert sweep.stdout is not None
-        sweep.stdout.readline()
-        assert list(place.iterdir())
+        while not list(place.glob("*/*/world.txt")) and sweep.poll() is None:
+            time.sleep(0.01)
         sweep.send_signal(signal.SIGTERM)
-        sweep.communicate()
-    assert sweep.returncode == -signal.SIGTERM
+        _, said = sweep.communicate()
+    assert sweep.returncode == -signal.SIGTERM, said
     assert list(place.iterdir()) == []
