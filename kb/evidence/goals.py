@@ -9,7 +9,7 @@ from kb.evidence.plans import plan_step_reasons
 from kb.evidence.reason import Reason, ReasonKind
 from kb.evidence.witness import command_reason
 from kb.language.atoms import atom_parts
-from kb.language.vocabulary import ROBOT
+from kb.language.vocabulary import ROBOT, check_goal_table
 from kb.task.task import WRAPPING_GOALS
 from kb.tracing.decisions import SolverCall
 from kb.world.model import ROOT_NODE
@@ -37,6 +37,7 @@ GOAL_FACTS = {  # goal -> the facts that decide it, {0} for the node of its firs
     "avoid": PLACES,
     "carry_nothing_through": ("connects(", "width("),
 }
+check_goal_table(GOAL_FACTS, "GOAL_FACTS in kb/evidence/goals.py")
 
 
 @dataclass(frozen=True)

@@ -160,6 +160,14 @@ GOAL_VOCABULARY: Vocabulary = {
 }
 
 
+def check_goal_table(table: Mapping[str, object], place: str) -> None:
+    """Raise LookupError unless a table has a row for each goal word and no other. place : where it is, for messages."""
+    missing, unknown = sorted(GOAL_CONDITIONS.keys() - table.keys()), sorted(table.keys() - GOAL_CONDITIONS.keys())
+    if missing or unknown:
+        what = "lacks the goal words" if missing else "has words that GOAL_CONDITIONS lacks:"
+        raise LookupError(f"{place} {what} {', '.join(missing or unknown)} (see docs/guides/goal_word.md)")
+
+
 class Openness(StrEnum):
     """The extent to which a predicate may hold beyond what is believed."""
 

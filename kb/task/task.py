@@ -16,6 +16,7 @@ from kb.language.vocabulary import (
     TRACK_GOALS,
     Vocabulary,
     check_facts,
+    check_goal_table,
 )
 
 CERTAIN_CONFIDENCE = 100  # percent; the confidence of a claim that stands alone
@@ -35,6 +36,7 @@ GOAL_ARGUMENT_KINDS: Mapping[str, tuple[tuple[str, ...] | None, ...]] = {
     "avoid": (("object", "utak"), None),
     "carry_nothing_through": (("door",),),
 }
+check_goal_table(GOAL_ARGUMENT_KINDS, "GOAL_ARGUMENT_KINDS in kb/task/task.py")
 WRAPPING_GOALS = ("first", "then", "prefer")  # words of goal.lp whose first argument is a goal
 
 

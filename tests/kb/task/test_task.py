@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from kb.language.diagnostics import BadInputError
 from kb.language.reader import facts_from_text
-from kb.task.task import Task, read_task
+from kb.language.vocabulary import GOAL_CONDITIONS, check_goal_table
+from kb.task.task import GOAL_ARGUMENT_KINDS, Task, read_task
 
 
 def task(folder: Path, start: str, goal: str) -> Task:
@@ -147,3 +148,12 @@ def test_clingo_accepts_every_parameter_name(name: str) -> None:
     except BadInputError:
         return
     assert str(clingo.parse_term(f"wanted({name})")) == f"wanted({name})"
+
+
+@pytest.mark.parametrize("change", [{"near_to": ()}, {"beside": None}])
+def test_a_table_that_does_not_fit_the_goal_words_is_told(change: dict[str, object]) -> None:
+    table = {name: row for name, row in {**GOAL_ARGUMENT_KINDS, **change}.items() if row is not None}
+    with pytest.raises(LookupError, match=next(iter(change))):
+        check_goal_table(table, "this table")
+    for name, kinds in GOAL_ARGUMENT_KINDS.items():
+        assert len(kinds) == len(GOAL_CONDITIONS[name])
