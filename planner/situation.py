@@ -38,14 +38,14 @@ SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was an
 
 
 def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> tuple[Door, ...]:
-    """Return the likely doors that there are besides those of the rooms if all things never felt are pieces of wall."""
+    """Return the doors that there are besides those of the rooms if all things never felt are pieces of wall."""
     verge = model.verge.copy()
     for node in model.objects:
         if node.colour is None and not node.moved:
             verge |= model.mask(node.patch)
     if (verge == model.verge).all():
         return ()
-    others = [door for door in rooms_of(model, rules, verge).doors if door.likely]
+    others = rooms_of(model, rules, verge).doors
     new = (one for one in others if all(math.dist(one.place, door.place) > SAME_DOOR for door in rooms.doors))
     return tuple(replace(door, name=f"possible_{door.name}") for door in new)
 

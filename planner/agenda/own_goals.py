@@ -10,7 +10,7 @@ from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.world.rooms import MIN_DOOR_CONFIDENCE
 from planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
-from planner.deciding.search import subgoals_towards
+from planner.deciding.search import contact_subgoals, subgoals_towards
 from planner.deciding.stage_turn import StageTurn
 from planner.deciding.transport import Transporter, push_to_see
 from planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
@@ -119,6 +119,8 @@ class OwnGoals:
             return impossible(why, opposite, unless=None)
         missing = "; ".join(d.missing for d in where if d.missing) or unreachable_reason(where)
         subgoals = subgoals_towards(where, situation, reconciled, TO_REACH)
+        if situation.possible_doors:  # which doors there are tells which one must not be passed
+            subgoals = [*subgoals, *contact_subgoals(situation)]
         unseen = any(str(goal.args[1]) in reconciled.hypothesised for goal in goals)
         proof = proof_if_not_found(situation.model) if unseen else (missing, NOTHING_LEFT)
 

@@ -81,7 +81,7 @@ def rules_about_doors(situation: Situation) -> DoorRules:
     with record_decisions():  # questions about doors, not decisions
         without = _answer(facts, situation)
         closed, prices = set(), {}
-        for door in _likely_doors(situation):
+        for door in _doors_asked_about(situation):
             answer = _answer((*facts, f"asked({door})"), situation)
             if answer.atoms is None or any(atom.name == "closed" for atom in answer.atoms):
                 closed.add(door)
@@ -94,14 +94,15 @@ def rules_that_close(situation: Situation) -> tuple[str, ...]:
     """Return the places of users' rules that close doors, such as `rules.lp:3`; () where none is closed."""
     blamed: list[str] = []
     facts = _facts_about_doors(situation) if situation.closed else ()
-    for door in sorted(situation.closed.intersection(_likely_doors(situation))):
+    for door in sorted(situation.closed.intersection(_doors_asked_about(situation))):
         blamed += rules_to_blame(TASK_ENCODING, situation.rules, (*facts, f"asked({door})"), _closes)
     return tuple(dict.fromkeys(blamed))
 
 
-def _likely_doors(situation: Situation) -> list[str]:
-    """Return the names of the doors that are likely enough to be tried."""
-    return [door.name for door in situation.doors if door.likely]
+def _doors_asked_about(situation: Situation) -> list[str]:
+    """Return the names of the doors that are likely enough to be tried, and of those that a touch would make doors."""
+    likely = [door.name for door in situation.rooms.doors if door.likely]
+    return [*likely, *(door.name for door in situation.possible_doors)]
 
 
 def _facts_about_doors(situation: Situation) -> tuple[str, ...]:
@@ -109,7 +110,9 @@ def _facts_about_doors(situation: Situation) -> tuple[str, ...]:
     state = TableState({}, situation.model.place_on_view, None)
     facts = problem_facts(TaskProblem({}, (), {}, {}, {}, state), (), situation, frozenset(), ())
     known = {fact.partition("(")[2].partition(",")[0] for fact in facts if fact.startswith("connects(")}
-    beyond = [f"connects({door},before_{door},behind_{door})" for door in _likely_doors(situation) if door not in known]
+    beyond = [
+        f"connects({door},before_{door},behind_{door})" for door in _doors_asked_about(situation) if door not in known
+    ]
     widths = [f"width({door.name},{hundredths(door.width)})" for door in situation.possible_doors]
     return ("horizon(1)", *facts, *beyond, *widths)
 
