@@ -281,7 +281,7 @@ class Knowledge:
             lost=memory.lost,
             anew=bool(memory.been),
             shaken=memory.shaken,
-            contradicted=accommodated.explanation.residual > 0,
+            contradicted=accommodated.explanation.unexplained > 0,
         )
 
     def _with_objects(self, model: WorldModel) -> WorldModel:

@@ -24,7 +24,6 @@ from kb.localisation.propose.held_object_state import lean_on_obstacle, object_a
 from kb.localisation.propose.larger_object import larger_objects
 from kb.localisation.propose.parted_object import parted_objects
 from kb.localisation.score import (
-    CONTRADICTION_RESIDUAL,
     Judgement,
     SearchBudget,
     choose,
@@ -65,18 +64,18 @@ def explain_carry(state: TrackerState, surprise: Surprise, held: HeldObject, mot
     budget = SearchBudget(state.search_count)
     if has_whole_way(blocked):
         return Judgement(choose(state, list(blocked)), budget.spent, blocked)
-    if not whole.residual and not blocked:
+    if not whole.unexplained and not blocked:
         contact = overlooked_contact(surprise, held, motion)
         if contact is None:
             return Judgement(whole, budget.spent)
-        doubtful = whole._replace(residual=CONTRADICTION_RESIDUAL)
+        doubtful = whole._replace(contradicted=True)
         return Judgement(choose(state, [doubtful, _outcome(state, surprise, contact)]), budget.spent)
-    if not whole.residual:
-        whole = whole._replace(residual=CONTRADICTION_RESIDUAL)
+    if not whole.unexplained:
+        whole = whole._replace(contradicted=True)
     contacts = surprise.obstructions.contacts(state.place, held.polygon, motion)
     explanations = [whole, *_outcomes(state, surprise, held, motion, whole, blocked, contacts)]
-    simple = any(not one.residual for one in explanations[1:] if one.how != "slipped" or state.slipped)
-    explanations += propose_frame(state, surprise, whole.residual, budget, simple)
+    simple = any(not one.unexplained for one in explanations[1:] if one.how != "slipped" or state.slipped)
+    explanations += propose_frame(state, surprise, whole.unexplained, budget, simple)
     explanations += propose_earlier_motions(state, surprise, explanations, budget)
     if not any(is_simple(state, one) for one in explanations):
         explanations += propose_blocked_push_and_origin(surprise, budget)
@@ -275,7 +274,7 @@ def moved_object(
     """
     others, place = state.others(held), chosen.place
     held = replace(held, inexact=held.inexact or state.slipped)
-    carried = object_after(held, chosen.outcome, chosen.residual, bool(suspected))
+    carried = object_after(held, chosen.outcome, chosen.unexplained, bool(suspected))
     if carried.inexact and carried.proven and not suspected and chosen.outcome and chosen.outcome.stopped:
         known = Obstructions(state.occupancy, place, carried.polygon, motion).known
         carried = lean_on_obstacle(

@@ -28,7 +28,6 @@ from kb.localisation.hypotheses.walk_outcomes import observation_places, slipped
 from kb.localisation.propose.blocked import has_whole_way, possible_ends
 from kb.localisation.propose.origin import blocked_walks_with_origin
 from kb.localisation.score import (
-    CONTRADICTION_RESIDUAL,
     Judgement,
     SearchBudget,
     choose,
@@ -107,8 +106,8 @@ class _WalkExplainer:
         self._observation = Observation(ranges, state.frame.place_to_utak(*self._predicted))
         self._observations = [*state.observations, self._observation]
         self._possible_ends = self._blocked_walk(command) if ends.blocked and isinstance(command, Move) else ()
-        if self._possible_ends and not has_whole_way(self._possible_ends) and not self._whole.residual:
-            self._whole = self._whole._replace(residual=CONTRADICTION_RESIDUAL)
+        if self._possible_ends and not has_whole_way(self._possible_ends) and not self._whole.unexplained:
+            self._whole = self._whole._replace(contradicted=True)
         begun = lru_cache(MAX_KEPT_REPLAYS)(lambda frame: ReplayPrefixes(frame, self._observations, {}))
         self._reestimations = cache(
             lambda motion: tuple(reestimate_walk(motion, state.frame, self._observations, begun))
@@ -123,25 +122,25 @@ class _WalkExplainer:
         state, first = self._state, self._whole
         if not state.held_objects:
             stopped = [motion for motion in state.earlier if motion.blocked]
-            if first.residual and any(not one.residual for motion in stopped for one in self._reestimations(motion)):
+            if first.unexplained and any(not one.residual for motion in stopped for one in self._reestimations(motion)):
                 turned = self._blocked_elsewhere(map(self._reestimations, stopped))
             else:
                 recent = [*state.observations[-MAX_CHECKED_OBSERVATIONS:], self._observation]
                 left = weigh_hypotheses(prune_hypotheses(state.hypotheses, recent), recent)
-                if not first.residual and any(hypothesis.contains(state.frame) for hypothesis in left):
+                if not first.unexplained and any(hypothesis.contains(state.frame) for hypothesis in left):
                     return self._judgement(self._best_prior(self._possible_ends or [first], left), left)
                 turned = self._other_frame(left, recent)
-        elif first.residual and self._command is not None:
+        elif first.unexplained and self._command is not None:
             surprise = state.surprise(self._command, self._ranges)
-            turned = propose_frame(state, surprise, first.residual, self._budget)
+            turned = propose_frame(state, surprise, first.unexplained, self._budget)
         elif self._possible_ends:
             return self._judgement(choose(state, list(self._possible_ends)))
         else:
             turned = []
-        if not first.residual and not turned:
+        if not first.unexplained and not turned:
             return self._judgement(first)
-        if not first.residual:  # no settled square contradicts it, but two observations contradict each other
-            first = first._replace(residual=CONTRADICTION_RESIDUAL)
+        if not first.unexplained:  # no settled square contradicts it, but two observations contradict each other
+            first = first._replace(contradicted=True)
         return self._judgement(choose(state, self._all(first, turned)))
 
     def _judgement(self, chosen: Explanation, left: tuple[FrameHypothesis, ...] | None = None) -> Judgement:
@@ -218,8 +217,8 @@ class _WalkExplainer:
         others : all explanations so far.
         """
         state = self._state
-        if all(e.residual for e in turned):
-            simple = any(not e.residual for e in others if e.how != "slipped" or state.slipped)
+        if all(e.unexplained for e in turned):
+            simple = any(not e.unexplained for e in others if e.how != "slipped" or state.slipped)
             return self._blocked_elsewhere(map(self._reestimations, state.earlier if simple else state.reestimable))
         met = [
             e for e in self._blocked_elsewhere(map(self._reestimations, state.reestimable)) if e.met_known or e.chance
@@ -286,8 +285,8 @@ class _WalkExplainer:
         """Return the explanation by another frame, where observations contradict the believed one, in a list.
 
         It is of kind turned; [] when no frame is left, else one: the frame, the place (x, y) in squares, map frame of
-        it, the number of fields unexplained (1 more when the origin has suspiciously little room), and the hypotheses
-        left. All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little
+        it, the number of fields unexplained, whether the origin has suspiciously little room, and the hypotheses left.
+        All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little
         and the budget allows it.
 
         Parameters
@@ -309,9 +308,8 @@ class _WalkExplainer:
             if (fewer, prior_cost(state, another.angle)) < (residual, prior_cost(state, frame.angle)):
                 left, frame, residual = found, another, fewer
         place = frame.place_from_utak(*observation.place)
-        residual += is_cramped(left, len(state.observations))
-        cost = prior_cost(state, frame.angle)
-        return [Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost=cost)] * bool(left)
+        turned = Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost(state, frame.angle))
+        return [turned._replace(cramped=is_cramped(left, len(state.observations)))] * bool(left)
 
     def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
         """Return the frame of the least residual among those left, and that residual (a count of fields).

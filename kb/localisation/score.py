@@ -24,7 +24,6 @@ from kb.objects.held_object import HeldObject
 
 MAX_FRAME_SEARCHES = 6  # searches over all frames before slips are blamed for residuals; tuned on random worlds
 MAX_FAILED_SEARCHES = 18  # searches that explained nothing, after which no slow proposal is made; tuned likewise
-CONTRADICTION_RESIDUAL = 2  # fields that a contradiction of observations counts as: more than any other frame costs
 Found = TypeVar("Found")
 
 
@@ -249,7 +248,7 @@ def is_simple(state: TrackerState, explanation: Explanation) -> bool:
     state : what was believed before the observation.
     """
     likely = explanation.how != "slipped" or state.slipped
-    return likely and not explanation.residual and explanation.frame.angle == state.frame.angle
+    return likely and not explanation.unexplained and explanation.frame.angle == state.frame.angle
 
 
 def _earlier_motion(state: TrackerState, motion: ReestimatedMotion) -> Explanation:

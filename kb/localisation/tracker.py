@@ -373,14 +373,14 @@ class Tracker:
         moved = tuple(object_pose(held, state.frame) for held in held_objects.values())
         observation = Observation(ranges, state.frame.place_to_utak(*explanation.place), moved)
         occupancy.observe(samples, counts, x, y, number)
-        occupancy.overruled += explanation.residual  # contradictions among open squares count as well
+        occupancy.overruled += explanation.unexplained  # contradictions among open squares count as well
         if number == 0:
             occupancy.stand(x, y, 0)
         self.state = replace(
             state,
             held_objects=held_objects,
             observations=(*state.observations, observation),
-            residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.residual),
+            residuals=(*state.residuals[1 - RESIDUAL_WINDOW :], explanation.unexplained),
             place=_standing_place(state, explanation.place),
         )
         return Accommodation(explanation, fields)

@@ -100,8 +100,8 @@ def possible_rectangle_shapes(polygon: Any, insets: SubcellExtent | None) -> tup
 def corrected_shape(shape: Mapping[str, int], polygon: Any, insets: SubcellExtent | None) -> Mapping[str, int]:
     """Return the confidences in shape classes, corrected where a rectangle is known to be smaller than its squares.
 
-    Then the class that its believed sides show, square or brick, gets the greatest confidence of square, brick and
-    rectangle, and the other one of both the lesser of their two confidences.
+    Then the class that its believed sides show, square or brick, gets the greater confidence of both, and the other one
+    the lesser: together they have what a rectangle has.
 
     Parameters
     ----------
@@ -123,8 +123,6 @@ def corrected_shape(shape: Mapping[str, int], polygon: Any, insets: SubcellExten
         return shape
     if any(side.most - side.least > MAX_SIDE_UNCERTAINTY for side in sides):
         return shape
-    square, brick = "square", "brick"
-    if abs(sides[0].believed - sides[1].believed) > MAX_SQUARE_DIFFERENCE:
-        square, brick = brick, square
-    confidence = max(shape.get(name, 0) for name in ("square", "brick", "rectangle"))
-    return {**shape, square: confidence, brick: min(shape.get(square, 0), shape.get(brick, 0))}
+    is_brick = abs(sides[0].believed - sides[1].believed) > MAX_SQUARE_DIFFERENCE
+    lesser, greater = sorted(shape.get(name, 0) for name in ("square", "brick"))
+    return {**shape, "square": lesser if is_brick else greater, "brick": greater if is_brick else lesser}

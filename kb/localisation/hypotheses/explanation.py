@@ -14,6 +14,7 @@ from kb.reasoning.encodings import KB_ENCODINGS
 from kb.reasoning.solver import solve
 
 PRICE_PER_NAT = 2  # prices of kb/asp/accommodation.lp for a factor of e in probability: the scale of that encoding
+CONTRADICTION_WEIGHT = 2  # fields that a contradiction of observations counts as: more than any other frame costs
 MIN_PRICED_CHANCE = 1e-9  # probability below which an end of a motion is no less likely, so that its price is finite
 
 
@@ -44,6 +45,9 @@ class Explanation(NamedTuple):
     origin_weighed : whether `prior_cost` contains the log odds against the origin of `frame`.
     instead : the object before the motion, if it was larger than was seen, or only a part of it; else None.
     left : the squares of what seemed part of the object and stayed where it was, map frame; empty for none.
+    contradicted : whether it cannot be so though no single field contradicts it: the counts of several observations
+        together do.
+    cramped : whether it leaves the origin of the frame suspiciously little room in the square of waking.
     """
 
     how: str
@@ -60,6 +64,13 @@ class Explanation(NamedTuple):
     origin_weighed: bool = False
     instead: HeldObject | None = None
     left: frozenset[Square] = frozenset()
+    contradicted: bool = False
+    cramped: bool = False
+
+    @property
+    def unexplained(self) -> int:
+        """The fields that count against it: the residual, CONTRADICTION_WEIGHT where contradicted, 1 where cramped."""
+        return self.residual + CONTRADICTION_WEIGHT * self.contradicted + self.cramped
 
     @property
     def remaps(self) -> bool:
@@ -138,6 +149,8 @@ def cheapest(explanations: Sequence[Explanation], facts: Sequence[str]) -> Expla
     offered = [
         f"explanation({number},{e.how},{e.residual},{math.ceil(e.distance)})" for number, e in enumerate(explanations)
     ]
+    offered += [f"contradicted({number})" for number, e in enumerate(explanations) if e.contradicted]
+    offered += [f"cramped({number})" for number, e in enumerate(explanations) if e.cramped]
     offered += [f"odd({number})" for number, e in enumerate(explanations) if e.is_odd]
     for number, e in enumerate(explanations):
         offered += [f"crooked({number},{round(PRICE_PER_NAT * e.prior_cost)})"] * (e.prior_cost > 0)
