@@ -17,7 +17,10 @@ AGGREGATE_WORDS = {
     "#count": "the number of", "#sum": "the sum of", "#sum+": "the sum of the positive ones of",
     "#min": "the least of", "#max": "the greatest of",
 }  # fmt: skip
-VARIABLE = re.compile(r"\b_*[A-Z][A-Za-z0-9_']*")
+VARIABLE = re.compile(r""""(?:[^"\\]|\\.)*"|\b_*[A-Z][A-Za-z0-9_']*""")  # or a string, in which nothing is one
+ARITHMETIC_SIGNS = tuple("+-*/\\&?^~")
+FACTOR = r"(?:\w+|\(-\w+\)|-\w+)"
+PRODUCT = re.compile(rf"(?<![*/\\\w])(?<!^-)(?<![-+*/\\(]-)\(({FACTOR}(?:[*/\\]{FACTOR})+)\)(?![*/\\])")  # in brackets to spare
 MAX_MEMBERS_SHOWN = 6  # members of an aggregate that its words list; a convention
 
 
@@ -111,18 +114,28 @@ def member_text(terms: Iterable[LiteralValue]) -> str:
 
 
 def substituted(text: str, values: Mapping[str, str]) -> str:
-    """Return a text of the program with values in the place of variables; a variable without a value stays."""
-    return VARIABLE.sub(lambda match: values.get(match.group(), match.group()), text)
+    """Return a text of the program with values in the place of variables; a variable without a value stays.
+
+    A negative number has brackets behind a sign, and as the base of a power.
+    """
+
+    def value(match: re.Match[str]) -> str:
+        """Return what stands in the place of a variable or a string."""
+        found = values.get(match.group(), match.group())
+        signed = text[: match.start()].endswith(ARITHMETIC_SIGNS) or text.startswith("**", match.end())
+        return f"({found})" if found.startswith("-") and signed else found
+
+    return VARIABLE.sub(value, text)
 
 
 def variables_in(text: str) -> set[str]:
     """Return the names of the variables in a text of the program, strings in it left out."""
-    return set(VARIABLE.findall(re.sub(r'"(?:[^"\\]|\\.)*"', "", text)))
+    return {found for found in VARIABLE.findall(text) if not found.startswith('"')}
 
 
 def _unwrapped(text: str) -> str:
-    """Return arithmetic without brackets around all of it, and without those that clingo puts around products."""
-    text = re.sub(r"\(((?:[\w-]+[*/\\])+[\w-]+)\)(?![*/\\])", r"\1", text)
+    """Return arithmetic without brackets around all of it, and around products where what stands beside needs none."""
+    text = PRODUCT.sub(r"\1", text)
     if text.startswith("(") and text.endswith(")"):
         depth = 0
         for index, char in enumerate(text):

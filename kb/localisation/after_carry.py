@@ -183,7 +183,7 @@ def _smaller(state: TrackerState, ranges: FieldRanges, held: HeldObject, whole: 
     if less is None:
         return []
     smaller = outcome._replace(how="smaller", polygon=less.polygon, insets=less.insets)
-    return [whole._replace(how="smaller", residual=0, outcome=smaller)]
+    return [whole._replace(how="smaller", residual=0, contradicted=False, outcome=smaller)]
 
 
 def _outcome(state: TrackerState, surprise: Surprise, outcome: CarryOutcome) -> Explanation:

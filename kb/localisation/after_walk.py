@@ -286,8 +286,8 @@ class _WalkExplainer:
 
         It is of kind turned; [] when no frame is left, else one: the frame, the place (x, y) in squares, map frame of
         it, the number of fields unexplained, whether the origin has suspiciously little room, and the hypotheses left.
-        All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little
-        and the budget allows it.
+        All frames are searched anew, at the cost of 1 slow search, when those that are left explain too little and the
+        budget allows it.
 
         Parameters
         ----------
@@ -308,8 +308,9 @@ class _WalkExplainer:
             if (fewer, prior_cost(state, another.angle)) < (residual, prior_cost(state, frame.angle)):
                 left, frame, residual = found, another, fewer
         place = frame.place_from_utak(*observation.place)
-        turned = Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost(state, frame.angle))
-        return [turned._replace(cramped=is_cramped(left, len(state.observations)))] * bool(left)
+        cost, cramped = prior_cost(state, frame.angle), is_cramped(left, len(state.observations))
+        turned = Explanation("turned", place, frame, residual, 0.0, None, left, prior_cost=cost, cramped=cramped)
+        return [turned] * bool(left)
 
     def _best_frame(self, left: tuple[FrameHypothesis, ...]) -> tuple[Frame, int]:
         """Return the frame of the least residual among those left, and that residual (a count of fields).

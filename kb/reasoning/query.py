@@ -7,6 +7,7 @@ for `kind(N, object, C)`. `kb.three_valued.evaluation` decides what is certain, 
 of kb.language.vocabulary; docs/files.md describes the rules.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import TracebackType
@@ -227,7 +228,7 @@ def _check_query(text: str) -> None:
         raise _query_error(text, "the query is empty", hint="such as object(X), shape(X, square, C)")
     if len(text) > MAX_QUERY_CHARACTERS:
         raise _query_error(text[:100], f"a query has at most {MAX_QUERY_CHARACTERS} characters")
-    if "%" in text:
+    if "%" in re.sub(r'"(?:[^"\\]|\\.)*"', "", text):
         raise _query_error(text, "a query has no comments")
     problems = list(integers_beyond_32_bits(source_from_bytes("query", text.encode("utf-8", errors="surrogateescape"))))
     if problems:

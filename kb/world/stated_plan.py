@@ -107,8 +107,8 @@ class PlanRefutation(NamedTuple):
     @property
     def words(self) -> str:
         """The refutation in words."""
-        told = " and ".join(filter(None, (_circumstance_in_words(one, self.step) for one in self.circumstances)))
-        return f"{self.step} is refuted" + (f" while {told}" if told else " whatever else is the case")
+        told = " and ".join(map(_circumstance_in_words, self.circumstances))
+        return f"{self.step} is refuted by what was known then" + (f", while {told}" if told else "")
 
 
 @dataclass(frozen=True)
@@ -280,15 +280,12 @@ def _by_number(name: str) -> tuple[str, int, str]:
     return letters, int(digits) if digits else -1, name
 
 
-def _circumstance_in_words(circumstance: str, step: str) -> str:
-    """Return a circumstance in words; "" where it only says that what a step brings is where it was."""
+def _circumstance_in_words(circumstance: str) -> str:
+    """Return a circumstance in words."""
     (kind, _, rest) = circumstance.removesuffix(")").partition("(")
     name, _, place = rest.partition(",")
     if kind == "at":
-        if place == HERE_PLACE:
-            subject = "utak" if step.startswith("arrive(") else step.partition("(")[2].partition(",")[0]
-            return "" if name == subject else f"{name} is where it was"
-        return f"{name} is at {place}"
+        return f"{name} is where it was" if place == HERE_PLACE else f"{name} is at {place}"
     if kind == "stood":
         return f"the robot stands where it {'was' if name == START_WORD else f'put {name}'}"
     return f"door {name} is not passed"

@@ -92,7 +92,7 @@ class Decider:
 
         Where something is open it is the plan that settles that; goals that depend on it are unmet in it.
         """
-        return self._intention.plan or self._intention.settling
+        return self._intention.followed
 
     @property
     def attempt(self) -> TaskPlan | None:

@@ -108,6 +108,7 @@ class Intention:
         """
         self._where, self._pull = where, pull
         self._kept: _Kept | None = None
+        self._under_way: TaskPlan | None = None  # its first step is done amid a turn, while no plan can be made
         self._settling: TaskPlan | None = None  # the plan that settles something, while that is open
         self._attempt: TaskPlan | None = None  # the last plan that does not attain all goals, while there is no other
         self._tried: list[tuple[Any, RefutedStep]] = []  # with where everything lay then
@@ -126,6 +127,14 @@ class Intention:
         return replace(self._kept.plan, errands=self._kept.plan.errands[self._kept.number :])
 
     @property
+    def followed(self) -> TaskPlan | None:
+        """The plan whose present step is done, from that step on: also one that settles something; None for none.
+
+        A thing that is held amid a turn is still brought where the plan from before the turn says.
+        """
+        return self.plan or self._settling or self._under_way
+
+    @property
     def attempt(self) -> TaskPlan | None:
         """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._attempt if self._kept is None else None
@@ -141,9 +150,12 @@ class Intention:
         turn : how many commands a turn counts for.
         """
         stage = self._without_dropped(stage)
+        followed = self.followed if stage == self._stage else None
         self._problem = problem_of(stage, situation, self._where)
         if stage != self._stage:
             self._stage, self._tried = stage, []
+        is_carried = followed is not None and [one.subject for one in followed.errands[:1]] == [situation.model.held]
+        self._under_way = followed if is_carried and self._problem is None else None
         self._settling = None
         if self._problem is None or self._problem.waiting:
             self._kept = self._attempt = None
@@ -156,11 +168,6 @@ class Intention:
             situation = with_meanings(situation, meant)
             self._problem = problem_of(stage, situation, self._where)
         return situation
-
-    @property
-    def settling(self) -> TaskPlan | None:
-        """The plan that settles what is open, from its present step on; None where nothing is open."""
-        return self._settling
 
     def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, tuple[str, ...]]:
         """Plan what settles what is open; return its first step, and what users' rules forbid where there is none.

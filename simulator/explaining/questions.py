@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from shapely.errors import ShapelyError
@@ -93,7 +94,8 @@ class Questions:
         Parameters
         ----------
         fact : a fact of the world model such as `shape(o1, square, 95)`, one of the goals, or `verdict(done)`. Names
-            with a capital letter and `_` stand for anything: the first fact that fits is explained.
+            with a capital letter and `_` stand for anything: of the facts that fit, the surest is explained, and the
+            reason says how many there are.
         step : the number of the step; None for the last one.
 
         Raises
@@ -112,7 +114,8 @@ class Questions:
                 return explain_goal(self.beliefs, goal, at)
             if (name, len(atom_parts(wanted)[1])) not in BELIEF_PREDICATES or name == "object":
                 return self._why_derived(plain, at)
-            return self.beliefs.explain(self._instance(wanted, at), at)
+            found, *others = self._instances(wanted, at)
+            return _one_of(self.beliefs.explain(found, at), 1 + len(others))
 
     def why_not(self, fact: str, step: int | None = None) -> Reason:
         """Return why a fact is not believed: the smallest set of facts that is missing or in the way.
@@ -138,7 +141,7 @@ class Questions:
             signature = atom_parts(wanted)[0], len(atom_parts(wanted)[1])
             if (signature not in BELIEF_PREDICATES or signature[0] == "object") and _has_variables(wanted):
                 raise _problem(fact, "one atom at a time: give values in the place of variables")
-            believed = self._instance(wanted, at)
+            believed = self._instances(wanted, at)[0]
             if believed in self.beliefs.record.steps[at].fact_set and not _is_weak(wanted, believed):
                 raise _problem(fact, f"this is believed at step {at}: {believed}; why tells the reason")
             return self._absences.explain(wanted, at)
@@ -203,10 +206,10 @@ class Questions:
         if signature not in BELIEF_PREDICATES and signature not in query_predicates(self._rule_files):
             raise BadInputError([unknown_predicate(atom, signature, self._rule_files)])
         if _has_variables(atom):
-            holding = certain_atoms(facts, self._rule_files)
-            atom = next((one for one in holding if _fits(atom, one)), atom)
-            if _has_variables(atom):
+            holding = [one for one in certain_atoms(facts, self._rule_files) if _fits(atom, one)]
+            if not holding:
                 raise _problem(atom, "no atom of this form certainly holds by what is believed")
+            return _one_of(prove_query_atom(facts, holding[0], leaf, self._rule_files), len(holding))
         return prove_query_atom(facts, atom, leaf, self._rule_files)
 
     def _why_verdict(self, wanted: str) -> Reason:
@@ -218,10 +221,11 @@ class Questions:
             raise _problem(wanted, f"this is not the verdict: it is {found.claim}")
         return found
 
-    def _instance(self, wanted: str, step: int) -> str:
-        """Return the first believed fact that fits a fact with variables; the fact itself when none does."""
+    def _instances(self, wanted: str, step: int) -> list[str]:
+        """Return the believed facts that fit a fact with variables, the surest first; the fact itself for none."""
         plain = plain_fact(wanted)
-        return next((fact for fact in self.beliefs.record.steps[step].facts if _fits(plain, fact)), plain)
+        found = [fact for fact in self.beliefs.record.steps[step].facts if _fits(plain, fact)]
+        return sorted(found, key=_confidence, reverse=True) or [plain]
 
     def _checked(self, step: int | None) -> int:
         """Return the number of a step; raise BadInputError when there is no such step."""
@@ -283,6 +287,20 @@ def _fits(wanted: str, fact: str) -> bool:
 def _has_variables(atom: str) -> bool:
     """Return whether an argument of an atom stands for anything."""
     return any(QUESTION_VARIABLE.fullmatch(argument) for argument in atom_parts(atom)[1])
+
+
+def _confidence(fact: str) -> int:
+    """Return the confidence of a fact; 100 for one that states none."""
+    name, arguments = atom_parts(fact)
+    declared = BELIEF_PREDICATES.get((name, len(arguments)))
+    return int(arguments[-1]) if declared is not None and declared.confident else 100
+
+
+def _one_of(reason: Reason, count: int) -> Reason:
+    """Return the reason of the first of several facts that fit a question; it says how many there are."""
+    if count == 1:
+        return reason
+    return replace(reason, because=f"{reason.because} (1 of {count} that fit)".lstrip(), data={**reason.data, "fit": count})
 
 
 def _is_weak(wanted: str, believed: str) -> bool:
