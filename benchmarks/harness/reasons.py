@@ -18,7 +18,7 @@ StepLine = Mapping[str, Any]
 Tree = Mapping[str, Any]
 TOUCH_DIRECTIONS = ("north", "northeast", "east", "southeast", "south", "southwest", "west", "northwest")
 PLAN_MEASURES = ("takes(", "verified(", "refuted(", "given(")  # what geometry said of steps of the task plan
-ENDS = {"measured", "cells", "touch", "command", "task", "convention", "negation", "computed", "rejected"}
+ENDS = {"measured", "decided", "cells", "touch", "command", "task", "convention", "negation", "computed", "rejected"}
 
 
 def complaints(lines: Sequence[StepLine], tree: Tree) -> Iterator[str]:

@@ -93,25 +93,39 @@ class AbsenceExplainer:
         if name == "kind" and len(arguments) == 3 and arguments[0] in now.regions:
             confidence = _number_or(arguments[2], SURE_KIND.get(arguments[1], 95))
             atom = f"kind({now.regions[arguments[0]]},{arguments[1]},{confidence})"
-            yield from self._calls("interpretation", atom, step, "")
+            yield from self._calls("interpretation", atom, step)
         elif name == "shape" and len(arguments) == 3:
             confidence = _number_or(arguments[2], SURE_SHAPE.get(arguments[1], SURE_CLASS))
             atom = f"shape({arguments[0]},{arguments[1]},{confidence})"
-            yield from self._calls("shapes", atom, step, f"fit({arguments[0]},")
+            yield self._newest("shapes", step, f"fit({arguments[0]},"), atom
         elif name == "bound" and len(arguments) == 2:
-            yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step, "")
-        elif name in ("door", "connects", "width"):
+            yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
+        elif name in ("door", "connects", "width") and f"door({arguments[0]})" not in now.fact_set:
             yield from self._opening(step)
+            call = self._newest("rooms", step, "neck(")
+            if call.facts:
+                yield call, f"door({sum(given.startswith('neck(') for given in call.facts)},100)"  # one more neck
         elif name == "corner" and len(arguments) == 3:
             yield from self._corner(arguments, step)
         elif name == "plan" and len(arguments) == 2:
             yield from planned_choice(self._facts.record, arguments[0], arguments[1], step)
 
-    def _calls(self, encoding: str, atom: str, step: int, needs: str) -> Iterator[tuple[SolverCall, str]]:
-        """Yield the newest answer of an encoding at a step whose facts have one that begins with `needs`."""
+    def _calls(self, encoding: str, atom: str, step: int) -> Iterator[tuple[SolverCall, str]]:
+        """Yield the answers of an encoding at a step, the newest first."""
         for call in reversed(self._facts.record.decisions(step)):
-            if call.encoding == encoding and any(fact.startswith(needs) for fact in call.facts):
+            if call.encoding == encoding:
                 yield call, atom
+
+    def _newest(self, encoding: str, step: int, needs: str) -> SolverCall:
+        """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`.
+
+        Where there is none, one to which nothing was given: what is missing is the same then.
+        """
+        for number in range(step, -1, -1):
+            for call in reversed(self._facts.record.decisions(number)):
+                if call.encoding == encoding and any(fact.startswith(needs) for fact in call.facts):
+                    return call
+        return SolverCall(encoding, (), (), ())
 
     def _opening(self, step: int) -> Iterator[tuple[SolverCall, str]]:
         """Yield the answer of rooms.lp with the neck that comes nearest to being a door and is none."""
@@ -170,6 +184,8 @@ class AbsenceExplainer:
             because += "; it states this" if instead else ""
         elif name == "held" and instead:
             because = "the robot did not grasp it; this is in hand instead"
+        elif name in ("door", "connects", "width") and not instead:
+            because = "doors are necks of the floor, by kb/asp/rooms.lp, and no neck was measured so far"
         elif instead:
             because = "it would have to be measured so; this is believed instead"
         elif f"node({thing})" in self._facts.record.steps[step].fact_set:

@@ -18,6 +18,33 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
     "fixed": "movable({0},0)",
 }
 AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
+# What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
+DECIDED_INPUTS = frozenset(
+    [
+        "horizon",
+        "place",
+        "aside",
+        "asked",
+        "rank",
+        "wish",
+        "fulfils",
+        "about",
+        "order",
+        "meant_before",
+        "may_mean",
+        "missing",
+        "unclear",
+        "waits",
+        "stuck",
+        "came_to",
+        "holds",
+        "thing",
+        "goal",
+        "bound_before",
+        "planned",
+        "given_up",
+    ]
+)
 PARAMETER_INPUTS = frozenset(
     {"bound_before", "planned", "given_up"}
 )  # of a parameter and a node, from earlier decisions
@@ -56,7 +83,8 @@ def input_reason(record: Record, given: Given, fact_reason: Callable[[str, int],
     if name in TASK_INPUTS:
         return Reason(given.atom, says, ReasonKind.TASK, "the task")
     below = [*_below(record, given, name, arguments, fact_reason)]
-    kind = ReasonKind.INPUT if below else ReasonKind.MEASURED
+    decided = given.call.encoding == "agenda" or name in DECIDED_INPUTS
+    kind = ReasonKind.INPUT if below else ReasonKind.DECIDED if decided else ReasonKind.MEASURED
     return Reason(given.atom, says, kind, f"step {given.step}", tuple(below), _data(given, arguments))
 
 
@@ -75,7 +103,7 @@ def _below(
     arguments: tuple[str, ...],
     fact_reason: Callable[[str, int], Reason | None],
 ) -> list[Reason]:
-    """Return the reasons of an input; [] when it is a measurement that rests on nothing that is recorded."""
+    """Return the reasons of an input; [] when it rests on nothing that is recorded."""
     step, encoding = given.step, given.call.encoding
     if encoding == "interpretation":
         return _region_reasons(record, step, name, arguments)

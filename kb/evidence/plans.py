@@ -51,7 +51,8 @@ def plan_fact_reason(beliefs: PlanExplainer, fact: str, step: int) -> Reason:
     if below:
         return Reason(fact, says, ReasonKind.FACT, f"step {step}", below)
     at = step if name in COUNTED_FROM_PRESENT_STEP else _made_at(beliefs.record, step)
-    return Reason(fact, says, ReasonKind.MEASURED, f"step {at}")
+    kind = ReasonKind.MEASURED if name in ("takes", "verified", "refuted", "given") else ReasonKind.DECIDED
+    return Reason(fact, says, kind, f"step {at}")
 
 
 def plan_step_reasons(beliefs: PlanExplainer, step: int) -> Iterator[Reason]:
@@ -92,9 +93,21 @@ def _below(beliefs: PlanExplainer, name: str, arguments: Sequence[str], step: in
             if fact.startswith("serves(") and atom_parts(fact)[1][1] == arguments[0]:
                 yield from _stated(beliefs, f"plan({atom_parts(fact)[1][0]},", step)
     elif name == "refuted":
+        yield from _found_by_geometry(beliefs.record, arguments[1], step)
         yield from _stated(beliefs, f"given({arguments[1]},", step)
     elif name == "price":
         yield from _stated(beliefs, "takes(", step)
+
+
+def _found_by_geometry(record: Record, number: str, step: int) -> Iterator[Reason]:
+    """Yield what geometry found for a refutation by its number: where, how wide, what is missing; if recorded."""
+    decision, begin = _decision(record, step), f"refutation {number}: "
+    for about in decision[1].about if decision is not None else ():
+        if isinstance(about, str) and about.startswith(begin):
+            found = about.removeprefix(begin)
+            yield Reason(
+                f"geometry found no way: {found}", "", ReasonKind.MEASURED, f"step {decision[0] if decision else step}"
+            )
 
 
 def _stated(beliefs: PlanExplainer, start: str, step: int) -> Iterator[Reason]:

@@ -26,6 +26,9 @@ class ReasonKind(StrEnum):
     """What an encoding was given."""
     MEASURED = "measured"
     """What geometry measured or verified: a witness."""
+    DECIDED = "decided"
+    """What the robot decided or did before, such as a bound on steps, a place that it offers, or what an activity came
+    to: a leaf."""
     CELLS = "cells"
     """Cells of impressions: a leaf."""
     TOUCH = "touch"

@@ -27,6 +27,7 @@ QUERY_PARTS = (ProgramPart("queries", 1, OBJECT_RULE),)
 # Requests that may take any time without users' rules, too: where facts may change, clingo grounds a sum for each set
 # of them, and nothing stops it. They go to a process that can be killed.
 UNBOUNDED_TASKS = ("change",)
+MAX_OWN_SECONDS = 60.0  # for one of these about our own rules alone, which takes seconds on a machine that is not busy
 
 
 class ExplanationError(Exception):
@@ -96,7 +97,8 @@ class DecisionProgram:
         """Return the response of kb.tracing to a request about this program; ExplanationError when it fails."""
         whole = {**request, "parts": [list(part) for part in self.parts]}
         if self._users or request["task"] in UNBOUNDED_TASKS:
-            found = rules_worker().exchange({"trace": whole}, self._seconds)
+            seconds = self._seconds if self._users else max(self._seconds, MAX_OWN_SECONDS)
+            found = rules_worker().exchange({"trace": whole}, seconds)
             if "limit" in found:
                 raise ExplanationError(f"the explanation was given up: {found['limit']}")
             if "error" in found:

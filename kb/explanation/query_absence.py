@@ -1,11 +1,17 @@
 """Why an atom of a predicate that users' rules define for queries does not certainly hold: what is not believed."""
 
 from collections.abc import Sequence
+from itertools import count
 
 from kb.explanation.belief import explain_query_atom, query_response
 from kb.explanation.programs import BELIEF, ExplanationError, canonical, decision_program
 from kb.explanation.values import Absence, Proof
 from kb.explanation.whynot import change_in_words, is_sensible
+from kb.language.diagnostics import SourceSpan
+from kb.language.terms import Number, Symbol
+from kb.language.vocabulary import BELIEF_PREDICATES, CORNER_NAMES, SHAPE_CLASSES
+
+NUMBERED_LETTERS = "odrjl"  # of objects, doors, rooms, junctions and links, which have a number behind them
 
 
 def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[str] = ()) -> Absence:
@@ -34,7 +40,7 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
         raise ExplanationError(f"{wanted} certainly holds by what is believed")
     program = decision_program(BELIEF, files)
     request = {"facts": list(given), "atom": wanted}
-    candidates = program.ask({**request, "task": "candidates", "known": list(given)})
+    candidates = program.ask({**request, "task": "candidates", "known": [*given, *_possible_atoms(given)]})
     candidates["facts"] = [fact for fact in candidates["facts"] if is_sensible(BELIEF, fact)]
     found = program.ask({**request, "task": "change", "candidates": candidates})
     missing, in_way = tuple(found["missing"]), tuple(found["in_way"])
@@ -53,6 +59,25 @@ def explain_query_absence(facts: Sequence[str], atom: str, rule_files: Sequence[
         return Absence(BELIEF, wanted, (), (), bool(candidates["cut"]) or found["found"], False, sentence)
     partial = not found["least"] or (bool(candidates["cut"]) and len(missing) + len(in_way) > 1)
     return Absence(BELIEF, wanted, missing, in_way, partial, True, sentence, None, proof)
+
+
+def _possible_atoms(given: Sequence[str]) -> list[str]:
+    """Return atoms of all believed predicates with names that nothing has yet, and with the classes of the vocabulary.
+
+    Each value that an argument may have stands in one of them. Predicates that take any name are left out.
+    """
+    told = " ".join(given)
+    numbered = [next(f"{letter}{n}" for n in count(1) if f"{letter}{n}" not in told) for letter in NUMBERED_LETTERS]
+    nowhere, words = SourceSpan(1, 1, 1), [*numbered, *SHAPE_CLASSES, *CORNER_NAMES, "object"]
+    terms = [*(Symbol(word, (), nowhere) for word in words), Number(100, nowhere)]
+    unfit = Symbol("any_other_name", (), nowhere)
+    found = []
+    for (name, _), predicate in BELIEF_PREDICATES.items():
+        values = [[str(term) for term in terms if type_.check(term) is None] for type_ in predicate.arguments]
+        if all(values) and not any(type_.check(unfit) is None for type_ in predicate.arguments):
+            most = max(map(len, values))
+            found += [f"{name}({','.join(one[n % len(one)] for one in values)})" for n in range(most)]
+    return found
 
 
 def _answer(facts: Sequence[str], atom: str, rule_files: tuple[str, ...]) -> str:

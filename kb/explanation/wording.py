@@ -20,7 +20,9 @@ AGGREGATE_WORDS = {
 VARIABLE = re.compile(r""""(?:[^"\\]|\\.)*"|\b_*[A-Z][A-Za-z0-9_']*""")  # or a string, in which nothing is one
 ARITHMETIC_SIGNS = tuple("+-*/\\&?^~")
 FACTOR = r"(?:\w+|\(-\w+\)|-\w+)"
-PRODUCT = re.compile(rf"(?<![*/\\\w])(?<!^-)(?<![-+*/\\(]-)\(({FACTOR}(?:[*/\\]{FACTOR})+)\)(?![*/\\])")  # in brackets to spare
+PRODUCT = re.compile(
+    rf"(?<![*/\\\w])(?<!^-)(?<![-+*/\\(]-)\(({FACTOR}(?:[*/\\]{FACTOR})+)\)(?![*/\\])"
+)  # in brackets to spare
 MAX_MEMBERS_SHOWN = 6  # members of an aggregate that its words list; a convention
 
 

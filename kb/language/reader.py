@@ -249,7 +249,10 @@ class _Reader:
             self.ended = self.peek.kind != "number"
             if self.ended:
                 raise self.not_closed(stop)
-            raise self.refuse(token, "a number with a fraction; facts know integers alone")
+            whole = f"{'-' * (value < 0 or sign is not None)}{token.text}.{self.peek.text}"
+            raise self.refuse(
+                token, "a number with a fraction; facts know integers alone", f'quoted where one may stand: "{whole}"'
+            )
         return Number(value, span)
 
     def not_a_fact(self, token: Token) -> _RefusedError:

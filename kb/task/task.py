@@ -1,6 +1,6 @@
 """The task: parameters and claims about them (start.lp), and goals (goal.lp)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -310,7 +310,7 @@ def _claims(
         claim = _claim(fact)
         name = claim.fact.args[0]
         if str(name) not in parameters:
-            problems.append(source.problem(name.span, *_not_introduced(str(name), parameters)))
+            problems.append(source.problem(name.span, *_not_introduced(str(name), parameters, ("object",))))
         elif parameters[str(name)].kind != "object":
             what = f"{name} is a {parameters[str(name)].kind}; only objects have a {claim.fact.name}"
             problems.append(source.problem(name.span, what))
@@ -433,13 +433,17 @@ def _wrong_kind(
     elif term.name in RESERVED_PARAMETER_NAMES:
         yield source.problem(term.span, f"{goal.name} wants {wanted} here, not {term}")
     else:
-        yield source.problem(term.span, *_not_introduced(term.name, parameters))
+        fitting = [name for name, parameter in parameters.items() if parameter.kind in kinds]
+        yield source.problem(term.span, *_not_introduced(term.name, fitting, kinds))
 
 
-def _not_introduced(name: str, parameters: Mapping[str, Parameter]) -> tuple[str, str]:
+def _not_introduced(name: str, known: Iterable[str], kinds: Sequence[str]) -> tuple[str, str]:
     """Return message and hint for a parameter that start.lp does not introduce.
 
-    name : the parameter. parameters : those that are introduced, by name; the hint names the most similar one.
+    name : the parameter. known : those that are introduced and may stand there; the hint names the most similar one.
+    kinds : the kinds of parameters, and the words, that may stand there.
     """
-    hint = did_you_mean(name, [*parameters, "utak", "start"])
-    return f"{name} is not introduced in start.lp", hint or f"write object({name}). in start.lp (or door, room)"
+    introduced = " or ".join(f"{kind}({name})." for kind in kinds if kind in PARAMETER_KINDS)
+    words = [kind for kind in kinds if kind not in PARAMETER_KINDS]
+    hint = did_you_mean(name, [*known, *words]) or (f"write {introduced} in start.lp" if introduced else "")
+    return f"{name} is not introduced in start.lp", hint

@@ -29,6 +29,14 @@ from planner.situation import Situation, neck_squares
 MAX_MARGIN_SQUARES = 48  # squares that the floor is extended beyond the view for ends that lie there; a bound on time
 
 
+REFUSALS = {  # CarryingPlan.reason in words
+    "body": "no way was found for it, even by itself",
+    "hold": "it could pass by itself, but no way was found for it with the robot",
+    "start": "it would overlap a wall where it lies",
+    "goal": "there is no such end on the floor",
+}
+
+
 class Certainty(StrEnum):
     """The kinds of answers of the oracle: a sure way, a way over floor that is hoped to be free, or none."""
 
@@ -164,6 +172,22 @@ class CarryOracle:
     def is_refuted_from_anywhere(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> bool:
         """Return whether an object cannot be brought to an end in a state wherever the robot stands; see `bring`."""
         return self._plan(state, name, end, FloorKind.POSSIBLE, shut, anywhere=True).status != "found"
+
+    def refusal(self, state: TableState, name: str, end: End, shut: frozenset[str]) -> str:
+        """Return in words what geometry found where an object cannot be brought to an end in a state; see `bring`.
+
+        A passage that is too narrow has its place in the robot frame, its width and what is missing, in squares.
+        """
+        refused = self._plan(state, name, end, FloorKind.POSSIBLE, shut)
+        by = "by whole squares and quarter turns, " if self._on_lattice else ""
+        if refused.status == "found" or refused.passage is None:
+            return by + REFUSALS.get(refused.reason, "the robot would shut itself in with it")
+        (x, y), margin = refused.passage.place, self.floors.margin
+        where = self._situation.model.point_in_words((x - margin, y - margin))
+        wide = f"{by}the passage at {where}, {refused.passage.width:.2f} squares wide,"
+        if not refused.opens:
+            return f"{wide} does not let it through, and a wider one would not help"
+        return f"{wide} is too narrow by {refused.missing:.2f} squares"
 
     def is_refuted(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> bool:
         """Return whether an object cannot be brought to an end in a state, as `bring` would say; this asks for less.

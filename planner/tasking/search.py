@@ -261,7 +261,11 @@ class PlanSearch:
         given = tuple((name, state.things[name].place) for name in sorted(others - gone))
         self._offers.note_in_way([name for name, _ in given])
         stood = state.last if self._depends_on_robot(state.without(gone), errand, shut) else None
-        return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)))
+        found = "no way leads there"
+        if errand.subject != ROBOT:
+            end = self._problem.places[errand.subject, errand.place]
+            found = self._oracle.refusal(state.without(gone), errand.subject, end, shut)
+        return RefutedStep(errand.subject, origin, errand.place, given, stood, tuple(sorted(shut)), found)
 
     def _depends_on_robot(self, state: TableState, errand: Errand, shut: frozenset[str]) -> bool:
         """Return whether a refuted errand could be done if the robot stood elsewhere."""
@@ -284,8 +288,9 @@ class PlanSearch:
         return None
 
     def _about(self) -> list[str]:
-        """Return the goals in words, by their number from 1, for the record."""
-        return [f"{goal.name}: {goal.words}" for goal in self._problem.goals]
+        """Return the goals in words, by their number from 1, and what geometry found, by refutation, for the record."""
+        found = [f"refutation {n}: {one.found}" for n, one in enumerate(self._answers.refutations) if one.found]
+        return [*(f"{goal.name}: {goal.words}" for goal in self._problem.goals), *found]
 
     def _with_geometry(self, plan: TaskPlan, facts: tuple[str, ...]) -> MadePlan:
         """Return a plan with the states that it leads to and the squares that it crosses."""

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from geometry.kernels.arrays import XY
 from kb.language.vocabulary import ROBOT
@@ -64,6 +64,7 @@ class RefutedStep:
     given : the places of other objects on which the refutation rests: (object, place), sorted.
     stood : the object beside which the robot stood ("start" for where it is now); None when that does not matter.
     shut : the doors that were not passed, on which it rests; sorted.
+    found : what geometry found, in words; "" where it was not asked.
     """
 
     subject: str
@@ -72,6 +73,7 @@ class RefutedStep:
     given: tuple[tuple[str, str], ...] = ()
     stood: str | None = None
     shut: tuple[str, ...] = ()
+    found: str = field(default="", compare=False)
 
     @property
     def step(self) -> str:

@@ -300,7 +300,9 @@ def _one_of(reason: Reason, count: int) -> Reason:
     """Return the reason of the first of several facts that fit a question; it says how many there are."""
     if count == 1:
         return reason
-    return replace(reason, because=f"{reason.because} (1 of {count} that fit)".lstrip(), data={**reason.data, "fit": count})
+    return replace(
+        reason, because=f"{reason.because} (1 of {count} that fit)".lstrip(), data={**reason.data, "fit": count}
+    )
 
 
 def _is_weak(wanted: str, believed: str) -> bool:

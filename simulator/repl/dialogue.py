@@ -160,4 +160,5 @@ class Dialogue:
             self.printer.say(self.explainers[name].explain(self.story, *asked(rest)))
         else:
             hint = did_you_mean(name, self.names) or "help lists what there is, ?- asks"
+            hint = f"{name} takes nothing behind it" if name in self.names else hint
             self.printer.tell(f"unknown command {name[:40]}; {hint}")

@@ -138,8 +138,12 @@ def _unknown_names(source: Source, facts: Sequence[Fact], world: World) -> Itera
         term = fact.args[THING_ARGUMENT_INDEX[fact.name]]
         walker = str(term) == "utak" and fact.name in WALKER_EXPECTATIONS
         if not walker and str(term) not in known:
-            hint = did_you_mean(str(term), [*sorted(known), "utak"])
-            yield source.problem(term.span, f"the world has no object {term}", hint)
+            walkers = ["utak"] * (fact.name in WALKER_EXPECTATIONS)
+            hint = (
+                did_you_mean(str(term), [*sorted(known), *walkers])
+                or f"there are {', '.join([*sorted(known), *walkers])}"
+            )
+            yield source.problem(term.span, f"the world has no object {term}", hint if known or walkers else "")
         elif fact.name == "pose" and str(term) not in movable:
             yield source.problem(term.span, f"{term} is fixed: a pose is expected of things that can be moved")
 

@@ -101,3 +101,11 @@ def test_rules_with_errors_and_texts_that_are_no_facts_are_refused(rules: str, t
     wrong.write_text("near(X) :- objekt(X).\n")
     with pytest.raises(BadInputError):
         explain_query_absence(["kind(o1,object,95)"], "near(o1)", [str(wrong)])
+
+
+def test_what_nothing_is_believed_of_yet_is_a_candidate(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.lp"
+    rules.write_text("has_door :- door(D).\nround :- shape(X, disc, C), C > 50.\n")
+    facts = ["node(o1)", "kind(o1,object,95)", "shape(o1,square,62)"]
+    assert explain_query_absence(facts, "has_door", [str(rules)]).missing == ("door(d1)",)
+    assert explain_query_absence(facts, "round", [str(rules)]).missing[0].startswith("shape(o1,disc,")
