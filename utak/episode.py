@@ -237,7 +237,7 @@ class Episode(Sequence[Step]):
         ----------
         fact : str
             A fact of the world model, such as `shape(o1, square, 95)`, one of the goals, or `verdict(done)`. Names with
-            a capital letter stand for anything: the first fact that fits is explained.
+            a capital letter stand for anything: the surest fact that fits is explained.
         step : int
             The number of the step, counted from the end when negative; by default the last one.
 

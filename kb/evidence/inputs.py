@@ -19,32 +19,11 @@ NODE_INPUTS = {  # what reconciliation.lp and shapes.lp are given of a node: the
 }
 AGENDA_INPUTS = ("stage_goal", "came_to")  # goals, and what activities came to; the record says what and why
 # What encodings of the planner are given that was not measured: bounds, what is offered, asked, or came of something.
-DECIDED_INPUTS = frozenset(
-    [
-        "horizon",
-        "place",
-        "aside",
-        "asked",
-        "rank",
-        "wish",
-        "fulfils",
-        "about",
-        "order",
-        "meant_before",
-        "may_mean",
-        "missing",
-        "unclear",
-        "waits",
-        "stuck",
-        "came_to",
-        "holds",
-        "thing",
-        "goal",
-        "bound_before",
-        "planned",
-        "given_up",
-    ]
-)
+DECIDED_INPUTS = frozenset({
+    "horizon", "place", "aside", "asked", "rank", "wish", "fulfils", "about", "order", "meant_before", "may_mean",
+    "missing", "unclear", "waits", "stuck", "came_to", "holds", "thing", "goal", "bound_before", "planned",
+    "given_up",
+})  # fmt: skip
 PARAMETER_INPUTS = frozenset(
     {"bound_before", "planned", "given_up"}
 )  # of a parameter and a node, from earlier decisions

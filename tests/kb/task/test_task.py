@@ -157,3 +157,17 @@ def test_a_table_that_does_not_fit_the_goal_words_is_told(change: dict[str, obje
         check_goal_table(table, "this table")
     for name, kinds in GOAL_ARGUMENT_KINDS.items():
         assert len(kinds) == len(GOAL_CONDITIONS[name])
+
+
+def test_hints_name_what_may_stand_there(tmp_path: Path) -> None:
+    for goal, hint in (
+        ("in(x, d).", "write room(d). in start.lp"),
+        ("through(utak, d).", "write door(d). in start.lp"),
+        ("beside(x, d).", "write object(d). in start.lp"),
+        ("at(x, 2.5).", 'quoted where one may stand: "2.5"'),
+    ):
+        (tmp_path / "start.lp").write_text("object(x).\n")
+        (tmp_path / "goal.lp").write_text(goal)
+        with pytest.raises(BadInputError) as caught:
+            read_task(tmp_path / "start.lp", tmp_path / "goal.lp")
+        assert hint in str(caught.value), goal
