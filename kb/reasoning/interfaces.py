@@ -89,6 +89,8 @@ ACTIVITIES: Mapping[str, int] = {
     **dict.fromkeys(("resume", "blame", "doubt", *SETTLING_STEPS), 1),
 }
 ACTIVITY_ARGUMENT = _compound_argument("activity", "activities", ACTIVITIES)
+# By the name of an argument type of compound terms: their names, with the numbers of arguments.
+COMPOUND_FORMS: Mapping[str, Mapping[str, int]] = {"step": PLAN_STEPS, "activity": ACTIVITIES}
 SUBJECT_ARGUMENT = _name_argument("subject")  # what the robot is stuck with: a goal, all, robot, task, plan or look
 RESULT_ARGUMENT = word_argument("result", ("idle", "done", "limit", "impossible", "possible_if", "settled"))
 BEGUN_ARGUMENT = word_argument("begun activity", ("make_way", "try", "feel"))
@@ -146,6 +148,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("may_be", 3): (CANDIDATE_ARGUMENT, PROPERTY_ARGUMENT, NAME_ARGUMENT),
         ("planned", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("given_up", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
+        ("refused", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("kept", 1): (PARAMETER_ARGUMENT,),
         ("as_well", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
         ("bind", 2): (PARAMETER_ARGUMENT, CANDIDATE_ARGUMENT),
@@ -202,6 +205,7 @@ USER_RULE_INTERFACES: Mapping[str, Interface] = {
         ("came_to", 2): (ACTIVITY_ARGUMENT, RESULT_ARGUMENT),
         ("holds", 1): (NODE_ARGUMENT,),
         ("settles", 2): (STEP_ARGUMENT, SUBJECT_ARGUMENT),
+        ("default_price", 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT),
         ("price", 2): (STEP_ARGUMENT, AMOUNT_ARGUMENT),
         ("left", 1): (STEP_ARGUMENT,),
         ("settling", 1): (TIME_ARGUMENT,),
@@ -244,7 +248,7 @@ PLAN_FACTS = frozenset(
         "refuted", "given", "stood", "shut", "time", "doors_lead", "at", "last", "occurs", "brought", "busy",
         "may_mean", "meant_before", "about", "order", "meaning", "not_meant", "asked_for",
         "robot_in", "needed", "reached", "otherwise", "unmet", "missed", "asked", "closed",
-        "acts", "waits", "holds", "left", "settling", "settled",
+        "default_price", "acts", "waits", "holds", "left", "settling", "settled",
     ]
 )  # fmt: skip
 # By the name of an encoding: predicates that users' rules may read there, but not derive.

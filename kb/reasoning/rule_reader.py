@@ -137,12 +137,19 @@ def _atoms(node: AST) -> Iterator[dict[str, Any]]:
     """Yield the atoms in a part of a statement, each as a dictionary of JSON values, in the order of the text.
 
     The keys are "name" (the predicate), "arity" (the number of arguments), "at" (line and column, from 1), "constants"
-    (the text of each argument that is a constant, None for any other), "places" (line and column of each argument) and
-    "negative" (whether it is negated, or stands in an aggregate or a condition).
+    (the text of each argument that is a constant, None for any other), "places" (line and column of each argument),
+    "forms" (name and number of arguments of each argument that is a compound term, None for any other) and "negative"
+    (whether it is negated, or stands in an aggregate or a condition).
     """
     reader = _AtomCollector()
     reader.visit(node)
     yield from reader.found
+
+
+def _form(term: AST) -> tuple[str, int] | None:
+    """Return the name and the number of arguments of a compound term; None for any other term."""
+    compound = term.ast_type == ASTType.Function and bool(term.name)
+    return (term.name, len(term.arguments)) if compound else None
 
 
 class _AtomCollector(Transformer):
@@ -195,6 +202,7 @@ class _AtomCollector(Transformer):
                     "at": place_of(option),
                     "constants": [str(part) if part.ast_type == ASTType.SymbolicTerm else None for part in arguments],
                     "places": [place_of(part) for part in arguments],
+                    "forms": [_form(part) for part in arguments],
                     "negative": self.negative,
                 }
             )

@@ -15,6 +15,7 @@ from kb.language.source_text import Source
 from kb.language.terms import Fact
 from kb.language.vocabulary import BELIEF_PREDICATES, Signature
 from kb.reasoning.interfaces import (
+    COMPOUND_FORMS,
     DEFINING_FACTS,
     READ_ONLY_PREDICATES,
     READ_ONLY_THERE,
@@ -57,6 +58,7 @@ class RuleAtom:
     constants : of each argument its text when it is a constant, else None.
     at : line and column of the atom, from 1.
     places : line and column of each argument, from 1.
+    forms : of each argument its name and number of arguments when it is a compound term, else None.
     negative : whether `not` stands before the atom, or it stands in an aggregate or a condition.
     """
 
@@ -64,6 +66,7 @@ class RuleAtom:
     constants: tuple[str | None, ...]
     at: tuple[int, int]
     places: tuple[tuple[int, int], ...]
+    forms: tuple[tuple[str, int] | None, ...]
     negative: bool
 
     @property
@@ -136,14 +139,15 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
 
 
 def _atom(entry: Mapping[str, Any]) -> RuleAtom:
-    """Return an atom from the JSON values of the worker: name, constants, at, places, negative.
+    """Return an atom from the JSON values of the worker: name, constants, at, places, forms, negative.
 
     It holds the predicate, the text of each argument that is a constant (else None), its place and those of its
     arguments (line, column, from 1), and whether it is negated.
     """
     line, column = entry["at"]
     places = tuple((place[0], place[1]) for place in entry["places"])
-    return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, entry["negative"])
+    forms = tuple(None if form is None else (form[0], form[1]) for form in entry["forms"])
+    return RuleAtom(entry["name"], tuple(entry["constants"]), (line, column), places, forms, entry["negative"])
 
 
 class Rulebook:
@@ -241,6 +245,7 @@ class Rulebook:
                 INTERNAL_PREDICATES
             ):
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES | self.own_predicates))
+            yield from self._unknown_steps(one, atom)
         for atom in one.heads:
             if atom.signature in READ_ONLY_PREDICATES:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
@@ -263,6 +268,23 @@ class Rulebook:
         spoken = {other.signature for other in one.body} & INTERFACE_PREDICATES
         known = [names for names in PREDICATES_BY_ENCODING.values() if not spoken or spoken & names]
         return any(atom.name == name for names in known for name, _ in names)
+
+    def _unknown_steps(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
+        """Yield the problems of steps and activities in an atom of a body that no encoding knows: the atom never holds.
+
+        one : the statement. atom : one of the atoms of its body.
+        """
+        options = [types[atom.signature] for types in USER_RULE_INTERFACES.values() if atom.signature in types]
+        for number, place in enumerate(atom.places):
+            form, constant = atom.forms[number], atom.constants[number]
+            kinds = {types[number].name for types in options}
+            if (form is None and constant is None) or not kinds or not kinds <= COMPOUND_FORMS.keys():
+                continue
+            name, count = form or (str(constant), 0)
+            known = {known: counts for kind in sorted(kinds) for known, counts in COMPOUND_FORMS[kind].items()}
+            if known.get(name) != count:
+                hint = f"there is {name}/{known[name]}" if name in known else did_you_mean(name, known)
+                yield one.problem(f"unknown {' or '.join(sorted(kinds))} {name}/{count}", place, hint)
 
     def _constants_outside_domains(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of constants in a head atom that no encoding accepts at their place.

@@ -53,6 +53,7 @@ def reconcile(
     planned: Mapping[str, str] = NO_MEANINGS,
     kept: Iterable[str] = (),
     given_up: Iterable[tuple[str, str]] = (),
+    refused: Iterable[tuple[str, str]] = (),
 ) -> Reconciliation:
     """Return the best match of the task's object parameters with objects of the world model.
 
@@ -68,6 +69,7 @@ def reconcile(
     kept : the names of the parameters that may mean nothing but what they are bound to, in every plan.
     given_up : (parameter, node) pairs where what is asked cannot be done with the node as far as is known; others that
         match equally well are preferred.
+    refused : (parameter, node) pairs that users' rules leave to no task plan; never bound.
 
     Returns
     -------
@@ -87,6 +89,7 @@ def reconcile(
     facts += [f"planned({x},{node})" for x, node in sorted(planned.items())]
     facts += [f"kept({x})" for x in sorted(kept)]
     facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
+    facts += [f"refused({x},{node})" for x, node in sorted(refused)]
     found: dict[str, list[tuple[str, ...]]] = {}
     for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))

@@ -84,6 +84,7 @@ class Decider:
         self._activities = Activities(task, pull)
         self._intention = self._activities.errands.intention
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
+        self._refused: frozenset[tuple[str, str]] = frozenset()  # those that users' rules leave to no plan
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
     @property
@@ -148,6 +149,9 @@ class Decider:
                 self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
                 self._reconcile(cost_maps)
             if decision.verdict not in (None, TaskVerdict.DONE):
+                if refused := self._intention.refused_meanings(stage, situation) - self._refused:
+                    self._refused |= refused
+                    return self._decided(model, track)  # the next thing that matches is meant, or looked for
                 if self._gave_up_meaning(stage, situation):
                     return self._decided(model, track)  # the same is tried with another thing that is meant as well
                 vain = self._tried_in_vain(stage)
@@ -238,8 +242,9 @@ class Decider:
         parameters = dict.fromkeys(str(goal.args[0]) for goal in stage.carried)
         given_up = sorted(self._given_up)
         tried = [(x, [n for p, n in given_up if p == x and n != self.bound.get(x)]) for x in parameters]
+        named = [f"users' rules leave no plan in which {x} means {n}" for x, n in sorted(self._refused)]
         words = (f"{x} may be {' or '.join(names)} as well, and that was no better" for x, names in tried if names)
-        return "; ".join(words)
+        return "; ".join([*named, *words])
 
     def _reconcile(self, cost_maps: CostMaps) -> Reconciliation:
         """Return what the parameters of the task mean now (each the name of an object), and remember it as bound.
@@ -254,6 +259,6 @@ class Decider:
         kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
         planned, before, given_up = self._intention.meanings, self.bound, self._given_up
         model, rules = cost_maps.model, self.rules
-        reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up)
+        reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused)
         self.bound = reconciled.binding
         return reconciled

@@ -191,6 +191,18 @@ class Intention:
         """The object that each parameter of the task means in the plan under way, where it chose among several."""
         return {} if self._kept is None else dict(self._kept.plan.meanings)
 
+    def refused_meanings(self, stage: Stage, situation: Situation) -> frozenset[tuple[str, str]]:
+        """Return the (parameter, object) pairs bound now that users' rules leave to no plan; none while there is one.
+
+        stage, situation : as for `update`, which is called before.
+        """
+        attempt = self.attempt
+        if attempt is None or not attempt.proved or not self.blamed:
+            return frozenset()
+        meant, parameters = dict(attempt.meanings), {str(goal.args[0]) for goal in stage.carried}
+        bound = ((x, name) for x, name in situation.binding.items() if x in parameters - meant.keys())
+        return frozenset((x, name) for x, name in bound if situation.model.object(name) is not None)
+
     def next_errand(self, stage: Stage, situation: Situation) -> NextErrand | None:
         """Return the next errand of the plan; None when there is no plan, or the next step is the robot's own.
 

@@ -1,0 +1,63 @@
+"""Rules of users in whole runs, and in decisions about what settles something: what they say is what is done."""
+
+from pathlib import Path
+
+import pytest
+
+import utak
+from kb.language.diagnostics import BadInputError
+from kb.reasoning.user_rules import read_rules
+from planner.tasking.proposal import propose
+
+TWO_SQUARES = (
+    """table(46, 28).
+verge("POLYGON ((0 0, 0 28, 46 28, 46 0, 0 0), (23 2, 23 17, 25 17, 25 2, 44 2, 44 26, 25 26, 25 23, 23 23, 23 26, """
+    """2 26, 2 2, 23 2))").
+utak("POINT (13.5 6.5)", 90).
+object(t1, c, "POLYGON ((21 8, 18 8, 18 11, 21 11, 21 8))").
+object(t2, d, "POLYGON ((12 20, 12 23, 15 23, 15 20, 12 20))").
+"""
+)
+
+
+def rule_file(folder: Path, text: str) -> Path:
+    """Return the path of a new file with rules."""
+    path = folder / "own.lp"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_meaning_that_a_rule_refuses_makes_the_next_thing_meant(tmp_path: Path) -> None:
+    """x is no thing of colour c: the run ends with the other one in the next room."""
+    expected = 'inside(t2, "POLYGON ((44 2, 44 26, 25 26, 25 2, 44 2))"). unmoved(t1).'
+    scenario = utak.Scenario.from_text(
+        world=TWO_SQUARES, start="object(x). shape(x, square).", goal="in(x, room(next)).", expect=expected
+    )
+    rules = rule_file(tmp_path, ":- meaning(x, X), colour(X, c, _).")
+    episode = utak.Run(scenario, rules=[rules]).finish()
+    assert (episode.verdict, episode.achieved) == ("done", True)
+
+
+def test_a_price_that_a_rule_states_replaces_the_default(tmp_path: Path) -> None:
+    """Feeling counts for 10 commands, and pulling for less; with a price of 1 feeling comes first."""
+    facts = ("horizon(1)", "goal(g1)", "stuck(g1,impossible)")
+    steps = [str(errand) for errand in propose(facts, ()).errands]
+    assert steps != ["feel(g1)"]
+    cheap = rule_file(tmp_path, "price(feel(S), 1) :- stuck(S, impossible).")
+    assert [str(errand) for errand in propose(facts, (cheap,)).errands] == ["feel(g1)"]
+
+
+@pytest.mark.parametrize(
+    ("rule", "hint"),
+    [
+        (":- occurs(goto(D), T), width(D, W), W < 500.", "did you mean go?"),
+        (":- occurs(go(D, R), T), connects(D, R, _).", "there is go/1"),
+        (":- do(fel(S)), stuck(S, impossible).", "did you mean feel?"),
+        (":- not occurs(cary(X, P), 0), place(X, P).", "did you mean carry?"),
+    ],
+)
+def test_an_unknown_step_in_a_body_is_refused(tmp_path: Path, rule: str, hint: str) -> None:
+    """A rule about a step that does not exist never applies: it is an error, with what may have been meant."""
+    with pytest.raises(BadInputError) as caught:
+        read_rules([rule_file(tmp_path, rule)])
+    assert [problem.hint for problem in caught.value.problems] == [hint]
