@@ -31,5 +31,9 @@ HOSTILE_HEADS = (  # what attackers put into files of other formats
     b'<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n',
     b'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">\n',
     b"<g>" * 5000, b"P5 99999 99999 255\n", b"P2 8000 8000 1\n", b"a: &a [*a, *a]\n", b"image: /dev/zero\n",
-    b"image: ../../../etc/passwd\n", b"9999(9999(9999(#)))\n", b"9999#|9999#|\n", b"height 4096\nwidth 4096\nmap\n",
+    b"image: ../../../etc/passwd\n",
+    b'<g transform="scale(1e9)">' * 40, b'<g transform="skewX(90) scale(1e9,1e-9)">' * 3,
+    b'viewBox="0 0 1e999 10"', b" A1e9 1e-9 0 0 1 9 9 ", b" a1e5 1e5 0 1 1 0 .1" * 90, b"image: a\x00b.pgm\n",
+    b"resolution: 0.000001\n", b"P2 1 1 9\n" + b"11 " * 9000, b"<!-- a -->\n" * 60,
+    b"9999(9999(9999(#)))\n", b"9999#|9999#|\n", b"height 4096\nwidth 4096\nmap\n",
 )  # fmt: skip

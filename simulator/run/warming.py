@@ -202,11 +202,12 @@ def many_routes() -> None:
 
 
 def rings() -> None:
-    """Call the kernels that follow a skeleton around a wall that stands by itself, and put it into arrays."""
+    """Call the kernels that follow a skeleton that is a ring, and put it into arrays."""
     import numpy as np
 
-    free = np.ones((9, 9), np.bool_)
-    free[3:6, 3:6] = False
+    free = np.zeros((9, 9), np.bool_)
+    free[1:8, 1:8] = True
+    free[2:7, 2:7] = False
     assert geometry.Screen(free).pathgraph_arrays
 
 

@@ -177,3 +177,21 @@ def test_a_terminal_shows_the_progress(tmp_path) -> None:
     os.close(ours)
     assert "once per installation" in said
     assert "kernels compiled so far: 1, in " in said
+
+
+def test_kernels_of_skeletons_that_are_rings_are_warmed() -> None:
+    """Exercises and examples once compiled seven kernels that `utak warm` had left out."""
+    code = """
+import sys
+from simulator.run import warming
+seen = set()
+sys.setprofile(lambda frame, event, _: seen.add(frame.f_code.co_name) if event == "call" else None)
+for use in warming.RARE_USES[-1:]:
+    use()
+sys.setprofile(None)
+left_out = "first_on_ring halt_rings walk_rings fill_adjacency fill_arrays fill_nodes fill_points"
+print(sorted(set(left_out.split()) - seen))
+"""
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert run.stdout.strip() == "[]", run.stdout + run.stderr
