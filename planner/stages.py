@@ -23,11 +23,13 @@ class Stage:
     goals : the goals, at least one; the first argument of each is "utak" for the robot, or the parameter of an object.
     followed : whether another stage comes after it.
     wishes : goals that need not hold, each with the number of commands that it may cost; of the last stage alone.
+    later : goals about two things of which one must be brought elsewhere before: not yet among `goals`.
     """
 
     goals: tuple[Fact, ...]
     followed: bool = False
     wishes: tuple[tuple[Fact, int], ...] = ()
+    later: tuple[Fact, ...] = ()
 
     @property
     def own(self) -> tuple[Fact, ...]:
@@ -43,13 +45,13 @@ class Stage:
     def goes_on(self) -> bool:
         """Whether the robot has more to do when all objects of the stage are where they shall be.
 
-        It has when another stage follows, or when the stage has goals for the robot itself.
+        It has when another stage follows, or when the stage has goals for the robot itself, or goals that come later.
         """
-        return self.followed or len(self.own) > 0
+        return self.followed or len(self.own) > 0 or len(self.later) > 0
 
     def __str__(self) -> str:
         """Return the goals as text, joined by "and"."""
-        return " and ".join(str(goal) for goal in self.goals)
+        return " and ".join(str(goal) for goal in (*self.goals, *self.later))
 
 
 def stages(task: Task) -> tuple[Stage, ...]:

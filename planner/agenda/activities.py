@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from kb.body import Grasp, Release
+from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from planner.agenda.choice import Activity, Agenda, StageEnd
@@ -21,6 +22,7 @@ from planner.deciding.stage_turn import CONSTRAINTS, StageTurn
 from planner.deciding.transport import Transporter
 from planner.deciding.trials import Trials
 from planner.decision import Decision, TaskVerdict, nothing_to_do
+from planner.goals.placement import meets_any_end, to_view_frame
 from planner.goals.robot_goals import destination
 from planner.per_model import PerModel
 from planner.sights.walls import ALL_WALLS
@@ -47,6 +49,19 @@ class Activities:
         self.errands, self.keeper = ErrandRunner(self._transporter, where, pull), ConstraintKeeper(task)
         self._own = OwnGoals(where)
 
+    def holds(self, situation: Situation) -> Callable[[Fact], bool]:
+        """Return the function that tells whether a goal for an object holds in a situation."""
+
+        def is_so(goal: Fact) -> bool:
+            """Return whether the goal holds for what its parameter means; False while nothing is known to be that."""
+            node = situation.object_of(str(goal.args[0]))
+            if node is None or node.polygon is None:
+                return False
+            land = self.errands.intention.where.of(goal, node, situation)
+            return land.holds or meets_any_end(land.loose, to_view_frame(node.polygon, situation))
+
+        return is_so
+
     def decide(self, turn: StageTurn) -> Decision:
         """Return the next command for a stage, or the verdict with which the robot gives up; done when it is attained.
 
@@ -54,6 +69,7 @@ class Activities:
         ----------
         turn : the stage and what is believed; a stage without goals when all are attained.
         """
+        self._own.note(turn)
         about = [f"{name}: {goal}" for name, goal in turn.goals.items()]
         agenda = Agenda(self._facts(turn), turn.situation.rules, about)
         last = proved = nothing_to_do("all goals hold")

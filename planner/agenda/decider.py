@@ -24,6 +24,7 @@ from planner.deciding.pursuit import Pursuer
 from planner.deciding.stage_turn import StageTurn
 from planner.deciding.verification import Verifier
 from planner.decision import Decision, TaskVerdict
+from planner.goals.references import as_meant, is_moved_for_others_only
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.situation import Situation, possible_doors, regions_kept_off
 from planner.stages import Stage, parameters_that_keep_meaning, stages
@@ -85,6 +86,8 @@ class Decider:
         self._intention = self._activities.errands.intention
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
         self._refused: frozenset[tuple[str, str]] = frozenset()  # those that users' rules leave to no plan
+        self._unmoved: frozenset[str] = frozenset()  # parameters of things that cannot be moved, and need not be
+        self._turned: frozenset[Stage] = frozenset()  # stages of which the other of two things is moved
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
     @property
@@ -143,7 +146,7 @@ class Decider:
         ruled = rules_about_doors(situation)
         situation = replace(situation, closed=ruled.closed, door_prices=ruled.prices).within_shut_doors()
         for stage in self.stages[self.attained :]:
-            decision = self._activities.decide(self._turn(stage, situation, reconciled, track))
+            decision = self._for_stage(self._turn(stage, situation, reconciled, track))
             meant = self._intention.meanings
             if any(self.bound.get(parameter) != name for parameter, name in meant.items()):
                 self.bound = {**self.bound, **meant}  # the plan chose what parameters mean
@@ -161,6 +164,26 @@ class Decider:
             self.attained += 1
         ended = self._activities.decide(self._turn(Stage(()), situation, reconciled, track))
         return replace(ended, why=self._done_in_words()) if ended.verdict == TaskVerdict.DONE else ended
+
+    def _for_stage(self, turn: StageTurn) -> Decision:
+        """Return what is decided for a stage, as its goals are met: see planner.goals.references.
+
+        Where that comes to a verdict other than done, of two things the other one is moved.
+        """
+        for other_way in (False, True) if turn.stage not in self._turned else (True,):
+            stage = as_meant(turn.stage, turn.situation, self._activities.holds(turn.situation), other_way)
+            decision = self._activities.decide(replace(turn, stage=stage))
+            if decision.verdict == TaskVerdict.DONE and stage.later:
+                whole = replace(stage, goals=(*stage.goals, *stage.later), later=())
+                decision = self._activities.decide(replace(turn, stage=whole))
+            if decision.verdict in (None, TaskVerdict.DONE):
+                break
+            if stage == turn.stage and not other_way and stage == as_meant(
+                stage, turn.situation, self._activities.holds(turn.situation), True
+            ):
+                break
+            self._turned |= {turn.stage}
+        return decision
 
     def _turn(self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]) -> StageTurn:
         """Return what a decision for a stage is worked out with."""
@@ -254,11 +277,15 @@ class Decider:
         """
         wished = [goal for stage in self.stages for goal, _ in stage.wishes]
         goals = [*(goal for stage in self.stages for goal in stage.carried), *wished]
-        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT})
+        carried = sorted({str(goal.args[0]) for goal in goals} - {ROBOT} - self._unmoved)
         known = costs_to_objects(cost_maps)
         kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
         planned, before, given_up = self._intention.meanings, self.bound, self._given_up
         model, rules = cost_maps.model, self.rules
         reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused)
+        unmoved = {x for x, _ in reconciled.unmovable if is_moved_for_others_only(x, goals, self.task.parameters)}
+        if unmoved:  # the other one of two things is moved
+            self._unmoved |= unmoved
+            return self._reconcile(cost_maps)
         self.bound = reconciled.binding
         return reconciled

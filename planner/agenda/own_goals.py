@@ -1,13 +1,15 @@
 """Goals for the robot itself: the way there, round an object, and the looks that make sure of it."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from geometry.kernels.arrays import XY
 from kb.body import Release
 from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
+from kb.world.model import Node
 from kb.world.rooms import MIN_DOOR_CONFIDENCE
 from planner.carrying.open_facts import NOTHING_LEFT, proof_if_not_found
 from planner.deciding.search import contact_subgoals, subgoals_towards
@@ -16,8 +18,8 @@ from planner.deciding.transport import Transporter, push_to_see
 from planner.deciding.verification import check_elsewhere, look_at_contradiction, robot_square
 from planner.decision import Decision, TaskVerdict, done, impossible, nothing_to_do
 from planner.goals.joint import opposite_corners_reason
-from planner.goals.robot_goals import Destination, robot_stands_on, unknown_destination, unreachable_reason
-from planner.navigation.encircle import encircling_routes, winding_number
+from planner.goals.robot_goals import Destination, jointly, robot_stands_on, unknown_destination, unreachable_reason
+from planner.navigation.encircle import encircled_point, encircling_routes, winding_number
 from planner.screen.moves import next_move
 from planner.sights.viewpoints import TO_REACH
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
@@ -25,6 +27,37 @@ from planner.stages import ORIGIN_GOALS
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention
 from planner.tasking.setting import DestinationFunction
+
+LEAST_ROUND = 330.0  # degrees by which a track winds about a thing that it goes round (the meaning of the goal)
+NO_ROUND = 5.0  # degrees that do not matter for the sense of rotation (convention)
+
+
+@dataclass(frozen=True)
+class Round:
+    """A way round a thing, which is counted anew when the thing was moved.
+
+    Attributes
+    ----------
+    begin : the index of the place of the track at which it begins: where the thing was let go last.
+    before : by how many degrees the track went round the thing before that, counter-clockwise positive.
+    """
+
+    begin: int = 0
+    before: float = 0.0
+
+    @property
+    def sense(self) -> int:
+        """The sense of rotation that adds to what went before: 1 or -1; 0 for any."""
+        return (self.before > NO_ROUND) - (self.before < -NO_ROUND)
+
+    def gone_on(self, track: Sequence[XY], node: Node, held: bool) -> "Round":
+        """Return the round after another place of the track. held : whether the thing was moved to there."""
+        if not held:
+            return self
+        x, y = encircled_point(node)
+        places = np.array(track[self.begin :]) - (x, y)
+        angles = np.unwrap(np.arctan2(places[:, 1], places[:, 0]))
+        return Round(len(track) - 1, self.before + float(np.degrees(angles[-1] - angles[0])))
 
 
 class OwnGoals:
@@ -38,6 +71,13 @@ class OwnGoals:
         self._where = where
         self._into_corner = IntoCorner()
         self._turn = 0  # the sign of the turn that was begun about an object
+        self._round = Round()
+
+    def note(self, turn: StageTurn) -> None:
+        """Note how far the robot has gone round the thing that it shall go round; called after each impression."""
+        about = next((str(goal.args[1]) for goal in turn.stage.own if goal.name in TRACK_GOALS), "")
+        if (node := turn.situation.object_of(about)) is not None:
+            self._round = self._round.gone_on(turn.track, node, turn.situation.model.held == node.name)
 
     def go(self, turn: StageTurn, intention: Intention) -> Decision:
         """Return the next command towards where the robot shall be, or the verdict; done when it is there.
@@ -108,9 +148,9 @@ class OwnGoals:
             node = situation.object_of(str(goals[0].args[1]))
             if node is not None:
                 return self._go_round(node.name, turn)
-            where = [self._where(goals[0], situation)]
+            where: Sequence[Destination] = [self._where(goals[0], situation)]
         else:
-            where = [self._where(goal, situation) for goal in goals]
+            where = jointly([self._where(goal, situation) for goal in goals])
             halt = self._halt(where, turn)
             if halt is not None:
                 return halt
@@ -164,14 +204,16 @@ class OwnGoals:
         name : of the object; the model knows it: else AssertionError.
         turn : the stage, and what is believed; the first point of the track is where the round began.
         """
-        stage, situation, track = turn.stage, turn.situation, turn.track
+        stage, situation, track = turn.stage, turn.situation, turn.track[self._round.begin :]
         model, cost_maps = situation.model, situation.cost_maps
         node = model.object(name)
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
-        if is_home and abs(winding_number(track, node)) == 1:
-            return done(f"{stage} holds")
+        if is_home and abs(winding := winding_number(track, node)) == 1:
+            if abs(self._round.before + 360.0 * winding) >= LEAST_ROUND:
+                return done(f"{stage} holds")
         offered = encircling_routes(cost_maps, track, node)
+        self._turn = self._turn or self._round.sense
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
         route = turn.pursuer.choose_route(begun, situation)
         if route is None:

@@ -4,6 +4,7 @@ Ends and outlines are in squares, view frame.
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ def start_placement(node: Node, situation: Situation) -> Placement:
     The ends are named start_east, start_north, start_west and start_south; a loose one is named start.
     """
     place = to_view_frame(shapely.Point(*situation.model.frame.origin), situation)
-    return _touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
+    return touching(to_view_frame(node.polygon, situation), place.buffer(0.5, cap_style="square"), "start")
 
 
 def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
@@ -43,11 +44,12 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
     if target is None:
         return Placement({}, f"nothing seen so far is {other}")
     squares = mask_to_polygon(situation.model.mask(target.patch))
-    return _touching(to_view_frame(node.polygon, situation), squares, target.name)
+    found = touching(to_view_frame(node.polygon, situation), squares, target.name)
+    return replace(found, must_reach=KnownEnds()) if target.movable else found  # it may be brought elsewhere
 
 
-def _touching(shape: Any, target: Any, name: str) -> Placement:
-    """Return where a shape is within one square of a target; both are shapely Polygons.
+def touching(shape: Any, target: Any, name: str) -> Placement:
+    """Return where a shape is within one square of a target; both are shapely geometries in squares, one frame.
 
     Best are the four sides of the target, with the bounding boxes touching: name_east, name_north, name_west and
     name_south. Where none of them is possible, any place near the target will do. No such place is further away than

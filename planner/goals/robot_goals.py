@@ -5,7 +5,8 @@ The side of a corner is northeast, northwest, southeast or southwest in the robo
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -53,11 +54,21 @@ class Destination:
         where.
     missing : in words, what must be known first; "" when nothing is missing. With squares, it may hold elsewhere, too.
     viewpoints : where just that may be seen; when there are none, any place worth a look may show it.
+    also : all squares where it holds, those included that count only where another goal leaves no better ones; None for
+        no others.
     """
 
     squares: SquareIndices
     missing: str = ""
     viewpoints: tuple[Viewpoint, ...] = ()
+    also: SquareIndices | None = None
+
+
+def jointly(where: Sequence[Destination]) -> Sequence[Destination]:
+    """Return the destinations of goals that shall hold at once: with all squares where the best ones do not meet."""
+    if len(where) < 2 or any(one.missing for one in where) or reduce(np.intersect1d, [d.squares for d in where]).size:
+        return where
+    return [one if one.also is None else replace(one, squares=one.also) for one in where]
 
 
 def unreachable_reason(where: Sequence[Destination]) -> str:
@@ -282,18 +293,22 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     around = dilate(mask, 1)
     near = around & situation.cost_maps.floor
     touching = near & with_edge_neighbours(mask)
-    if touching.any():
-        near = touching
-    squares = np.flatnonzero(near)
+    squares = np.flatnonzero(touching if touching.any() else near)
     if not len(squares):
         what = f"no way is seen yet that leads to {parameter}"
         return unknown_destination(what, (Viewpoint(np.flatnonzero(around & situation.model.space), what),))
-    if node.polygon is not None:
-        rows, columns = np.divmod(squares, near.shape[1])
-        view = situation.model.view
+    if node.polygon is None:
+        return Destination(squares)
+    view = situation.model.view
+
+    def in_reach(found: SquareIndices) -> SquareIndices:
+        """Return those of some squares that are at most one square from the believed outline, or nearest."""
+        rows, columns = np.divmod(found, near.shape[1])
         away = shapely.distance(node.polygon, shapely.points(columns + view.west + 0.5, rows + view.south + 0.5))
-        squares = squares[away <= max(1.0, float(away.min()))]
-    return Destination(squares)
+        kept: SquareIndices = found[away <= max(1.0, float(away.min()))]
+        return kept
+
+    return Destination(in_reach(squares), also=in_reach(np.flatnonzero(near)))
 
 
 def _room(situation: Situation) -> Destination:

@@ -97,6 +97,7 @@ class Intention:
 
     Attributes
     ----------
+    where : tells where goals hold.
     blamed : the places of users' rules because of which the plan that was made last does not attain all goals.
     """
 
@@ -106,7 +107,7 @@ class Intention:
         where : tells where goals hold.
         pull : whether a held object may be pulled.
         """
-        self._where, self._pull = where, pull
+        self.where, self._pull = where, pull
         self._kept: _Kept | None = None
         self._under_way: TaskPlan | None = None  # its first step is done amid a turn, while no plan can be made
         self._settling: TaskPlan | None = None  # the plan that settles something, while that is open
@@ -151,7 +152,7 @@ class Intention:
         """
         stage = self._without_dropped(stage)
         followed = self.followed if stage == self._stage else None
-        self._problem = problem_of(stage, situation, self._where)
+        self._problem = problem_of(stage, situation, self.where)
         if stage != self._stage:
             self._stage, self._tried = stage, []
         is_carried = followed is not None and [one.subject for one in followed.errands[:1]] == [situation.model.held]
@@ -166,7 +167,7 @@ class Intention:
         meant = self.meanings
         if any(situation.binding.get(parameter) != name for parameter, name in meant.items()):
             situation = with_meanings(situation, meant)
-            self._problem = problem_of(stage, situation, self._where)
+            self._problem = problem_of(stage, situation, self.where)
         return situation
 
     def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, tuple[str, ...]]:
@@ -179,7 +180,7 @@ class Intention:
             stops.
         """
         stage = self._without_dropped(stage)
-        problem = problem_of(stage, situation, self._where)
+        problem = problem_of(stage, situation, self.where)
         refuted = () if self._attempt is None else self._attempt.refutations
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
         step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
@@ -233,7 +234,7 @@ class Intention:
         if found is None:
             return None, ""
         name, goal = found
-        land = self._where.of(goal, problem.nodes[errand.subject], situation)
+        land = self.where.of(goal, problem.nodes[errand.subject], situation)
         ends = (*land.ends, *land.loose)
         return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 

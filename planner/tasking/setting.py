@@ -16,7 +16,7 @@ from kb.reasoning.user_rules import rules_reach
 from kb.world.model import Node
 from kb.world.rooms import NO_ROOM
 from planner.goals.placement import CERTAIN_OBJECT, Placement, meets_any_end, to_view_frame
-from planner.goals.robot_goals import Destination, robot_stands_on
+from planner.goals.robot_goals import Destination, jointly, robot_stands_on
 from planner.oracles.problem import HERE, Lying, PlacedGoal, TableState, TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
@@ -208,7 +208,7 @@ def _by_room(squares: Any, situation: Situation) -> dict[str, Any]:
 
 def _common_squares(goals: Sequence[Fact], situation: Situation, where: DestinationFunction) -> Any:
     """Return the squares on which all of some goals hold for the robot, flat indices; None while that is open."""
-    found = [where(goal, situation) for goal in goals]
+    found = jointly([where(goal, situation) for goal in goals])
     if any(one.missing for one in found):
         return None
     squares = found[0].squares
