@@ -77,7 +77,7 @@ class Activities:
             if found.kind == "settle" and (step := self.errands.settle(turn, [*_unknown(turn), *agenda.results])):
                 agenda.plan(step)
                 continue
-            decision = self._allowed(self._do(found, turn, last), turn)
+            decision = self._transporter.led_out(self._allowed(self._do(found, turn, last), turn), turn)
             if decision.command is not None:
                 agenda.record()
                 return decision

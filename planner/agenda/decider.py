@@ -178,8 +178,10 @@ class Decider:
                 decision = self._activities.decide(replace(turn, stage=whole))
             if decision.verdict in (None, TaskVerdict.DONE):
                 break
-            if stage == turn.stage and not other_way and stage == as_meant(
-                stage, turn.situation, self._activities.holds(turn.situation), True
+            if (
+                stage == turn.stage
+                and not other_way
+                and stage == as_meant(stage, turn.situation, self._activities.holds(turn.situation), True)
             ):
                 break
             self._turned |= {turn.stage}

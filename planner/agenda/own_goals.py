@@ -209,9 +209,9 @@ class OwnGoals:
         node = model.object(name)
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
-        if is_home and abs(winding := winding_number(track, node)) == 1:
-            if abs(self._round.before + 360.0 * winding) >= LEAST_ROUND:
-                return done(f"{stage} holds")
+        winding = winding_number(track, node)
+        if is_home and abs(winding) == 1 and abs(self._round.before + 360.0 * winding) >= LEAST_ROUND:
+            return done(f"{stage} holds")
         offered = encircling_routes(cost_maps, track, node)
         self._turn = self._turn or self._round.sense
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())

@@ -13,7 +13,7 @@ import shapely
 
 from geometry.kernels.arrays import XY, Bools
 from geometry.manipulation.goals import End
-from kb.body import Grasp, Move, Push, Turn
+from kb.body import Grasp, Move, Push, Release, Turn
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.advice import Act, Go, See
@@ -339,6 +339,20 @@ class Transporter:
                 return advice
         self._looked_before = looked
         return Infeasibility(not situation.model.shaken, land.missing)
+
+    def led_out(self, decision: Decision, turn: StageTurn) -> Decision:
+        """Return a decision; in place of a release the push after which what is held no longer shuts the robot in.
+
+        Parameters
+        ----------
+        decision : of any activity.
+        turn : the stage, what is believed, and the tools.
+        """
+        held = turn.situation.model.object(turn.situation.model.held or "")
+        if not isinstance(decision.command, Release) or turn.situation.model.lost or held is None or not held.polygon:
+            return decision
+        out = self._lead_out(held, turn)
+        return decision if out is None or out.command is None or turn.closes_loop(out.command) else out
 
     def _press_on(self, node: Node, turn: StageTurn) -> Decision | None:
         """Return the next press of a held object against a wall; when none is left, what leads it out; or None.

@@ -17,7 +17,7 @@ from planner.goals.corner_goal import corner_placement
 from planner.goals.near_goal import beside_placement, pose_placement, start_placement
 from planner.goals.optimistic import UNSEEN_MARGIN, spread_into_unseen
 from planner.goals.placement import Placement, RegionEnds, meets_any_end, to_view_frame
-from planner.goals.references import READY, ready_placement
+from planner.goals.references import READY_GOAL, ready_placement
 from planner.goals.robot_goals import corner_side, door_viewpoints, hidden_from, next_room_missing, room_numbers
 from planner.situation import Situation
 
@@ -90,7 +90,7 @@ def _placement(goal: Fact, node: Node, began: XY, situation: Situation) -> Place
         return _around_corner(began, node, situation)
     if goal.name == "pose":
         return pose_placement(goal, node, situation)
-    if goal.name == READY:
+    if goal.name == READY_GOAL:
         return ready_placement(goal, node, situation)
     raise ValueError(f"not a goal for something carried: {goal}")
 

@@ -4,14 +4,12 @@ That x is beside y is met by moving x or y, whichever no other goal puts in a pl
 and somewhere else at once, and cannot, the thing is brought there.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import reduce
 
 import numpy as np
 
-from geometry.kernels.arrays import Bools
-from geometry.manipulation.goals import At
 from geometry.raster.runs import mask_to_polygon
 from kb.language.terms import Fact, Symbol
 from kb.language.vocabulary import ROBOT, TRACK_GOALS
@@ -25,7 +23,7 @@ from planner.situation import Situation
 from planner.stages import Stage
 
 RELATIONS = ("at", "beside")  # goals whose second argument may be a thing: then the two may change places
-READY = "ready"  # ready(x, G): thing x lies so that goal G of the robot can hold
+READY_GOAL = "ready"  # ready(x, G): thing x lies so that goal G of the robot can hold
 MAX_SPOT_SQUARES = 9  # squares of a place of the robot beside which a thing is brought; of a larger one it is part
 
 
@@ -96,7 +94,7 @@ def _ready_for_robot(own: Sequence[Fact], situation: Situation) -> tuple[Fact, .
 
 def _ready(goal: Fact, place: Fact) -> Fact:
     """Return that the thing of a goal of the robot lies where another goal of it can hold, too."""
-    return Symbol(READY, (goal.args[1], place), goal.span)
+    return Symbol(READY_GOAL, (goal.args[1], place), goal.span)
 
 
 def _meet(places: Iterable[Destination]) -> bool:
