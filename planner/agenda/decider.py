@@ -87,7 +87,7 @@ class Decider:
         self._given_up: frozenset[tuple[str, str]] = frozenset()  # parameters with nodes that left no way
         self._refused: frozenset[tuple[str, str]] = frozenset()  # those that users' rules leave to no plan
         self._unmoved: frozenset[str] = frozenset()  # parameters of things that cannot be moved, and need not be
-        self._turned: frozenset[Stage] = frozenset()  # stages of which the other of two things is moved
+        self._turned: dict[Stage, Decision] = {}  # the verdicts of stages of which the other of two things is moved
         self._lenient = False  # whether regions that the task forbids are taken as small as they surely are
 
     @property
@@ -170,22 +170,26 @@ class Decider:
 
         Where that comes to a verdict other than done, of two things the other one is moved.
         """
-        for other_way in (False, True) if turn.stage not in self._turned else (True,):
-            stage = as_meant(turn.stage, turn.situation, self._activities.holds(turn.situation), other_way)
-            decision = self._activities.decide(replace(turn, stage=stage))
-            if decision.verdict == TaskVerdict.DONE and stage.later:
-                whole = replace(stage, goals=(*stage.goals, *stage.later), later=())
-                decision = self._activities.decide(replace(turn, stage=whole))
-            if decision.verdict in (None, TaskVerdict.DONE):
-                break
-            if (
-                stage == turn.stage
-                and not other_way
-                and stage == as_meant(stage, turn.situation, self._activities.holds(turn.situation), True)
-            ):
-                break
-            self._turned |= {turn.stage}
+        holds = self._activities.holds(turn.situation)
+        stage, other = (as_meant(turn.stage, turn.situation, holds, other_way) for other_way in (False, True))
+        first = self._turned.get(turn.stage)
+        if first is None:
+            decision = self._whole(stage, turn)
+            if stage == other or decision.verdict in (None, TaskVerdict.DONE):
+                return decision
+            first = self._turned.setdefault(turn.stage, decision)
+        decision = self._whole(other, turn)
+        if decision.verdict in PROOFS and first.verdict != TaskVerdict.IMPOSSIBLE:
+            return replace(decision, verdict=first.verdict)  # it is not proved for both
         return decision
+
+    def _whole(self, stage: Stage, turn: StageTurn) -> Decision:
+        """Return what is decided for a stage; for all of its goals where those that come first hold."""
+        decision = self._activities.decide(replace(turn, stage=stage))
+        if decision.verdict != TaskVerdict.DONE or not stage.later:
+            return decision
+        whole = replace(stage, goals=(*stage.goals, *stage.later), later=())
+        return self._activities.decide(replace(turn, stage=whole))
 
     def _turn(self, stage: Stage, situation: Situation, reconciled: Reconciliation, track: Sequence[XY]) -> StageTurn:
         """Return what a decision for a stage is worked out with."""

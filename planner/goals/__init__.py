@@ -11,5 +11,6 @@ corner_goal   the placement in a corner
 near_goal     the placements beside another object, at the start, and at a pose
 optimistic    optimistic planning: floor that is likely to go on unseen
 origins       Origins: where things were at first, and when that knowledge is lost
+references    goals that name two things: which of them is moved, and when
 joint         goals that cannot hold at once
 """

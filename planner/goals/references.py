@@ -81,15 +81,17 @@ def _goals_of(parameter: str, goals: Sequence[Fact]) -> list[Fact]:
 def _ready_for_robot(own: Sequence[Fact], situation: Situation) -> tuple[Fact, ...]:
     """Return goals for things beside which the robot cannot be where else it shall be; () while that is not known."""
     about = [goal for goal in own if is_about_two_things(goal, situation.task.parameters)]
+    fixed = {goal for goal in about if (node := situation.object_of(str(goal.args[1]))) is None or not node.movable}
     found = {goal: destination(goal, situation) for goal in own}
     if not about or len(own) < 2 or any(one.missing for one in found.values()) or _meet(found.values()):
         return ()
     places = [goal for goal in own if goal not in about]
     if not places:
         first, *rest = about
+        rest = [goal for goal in rest if not {goal, first} <= fixed]
         return tuple(replace(goal, args=(goal.args[1], first.args[1])) for goal in rest)
     least = min(places, key=lambda goal: len(found[goal].squares))
-    return tuple(_ready(goal, least) for goal in about if not _meet([found[goal], found[least]]))
+    return tuple(_ready(goal, least) for goal in about if goal not in fixed and not _meet([found[goal], found[least]]))
 
 
 def _ready(goal: Fact, place: Fact) -> Fact:
