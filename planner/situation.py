@@ -32,8 +32,6 @@ from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
 
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
-
-
 SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
 
 
@@ -79,6 +77,7 @@ class Situation:
     task : the task, with its constraints.
     rules : the user's rule files, read by every encoding.
     track : where the robot has been, the present place last: points (x, y) of the map frame, in squares.
+    carried : by object: where its middle has been since it was first moved, as `track`.
     closed : the names of doors that users' rules close to the robot.
     door_prices : by the name of a door: the commands that users' rules add to a pass through it.
     possible_doors : doors that there are if things that were seen and never felt are pieces of wall. They count where a
@@ -97,6 +96,7 @@ class Situation:
     task: Task
     rules: tuple[Path, ...] = ()
     track: tuple[XY, ...] = ()
+    carried: Mapping[str, tuple[XY, ...]] = field(default_factory=dict)
     closed: frozenset[str] = frozenset()
     door_prices: Mapping[str, int] = field(default_factory=dict)
     possible_doors: tuple[Door, ...] = ()
@@ -168,19 +168,36 @@ class Situation:
     def forbidden(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that the constraints of the task forbid to an actor, in the order of `rooms.doors`.
 
-        Nothing tells which door a constraint means. So an object is kept from every likely door. The robot is kept from
-        one sure door that it has not gone through. While no such door is known, it is kept from all possible doors,
-        however unlikely: going through a forbidden one could not be undone.
+        Nothing tells which door a constraint means. So an actor is kept from one sure door that it has not gone
+        through, the narrowest. While no such door is known, an object is kept from every likely door, and the robot
+        from all possible doors, however unlikely: going through a forbidden one could not be undone.
         """
-        goals = constraints(self.task)
-        meant = {str(goal.args[0]) for goal in goals if goal.name == "not_through"}
-        meant = {self.binding.get(name, name) for name in meant}
-        nothing = actor != ROBOT and any(goal.name == CARRY_NOTHING_THROUGH for goal in goals)
-        if actor not in meant and not nothing:
-            return ()
-        if actor == ROBOT:
-            return self.avoided[:1] or self.doors
-        return tuple(door for door in self.rooms.doors if door.likely)
+        avoided = [
+            sorted(self.avoided(fact), key=lambda door: door.width)[:1]
+            for fact, actors in self.kept_from_doors
+            if actor in actors or (not actors and actor != ROBOT)
+        ]
+        if all(avoided):
+            return tuple(dict.fromkeys(door for doors in avoided for door in doors))
+        return self.doors if actor == ROBOT else tuple(door for door in self.rooms.doors if door.likely)
+
+    @property
+    def kept_from_doors(self) -> tuple[tuple[Fact, tuple[str, ...]], ...]:
+        """The constraints that forbid a door, each with the actors that it names: none where it means all objects."""
+        return tuple(
+            (fact, () if fact.name == CARRY_NOTHING_THROUGH else (self.binding.get(name, name),))
+            for fact in constraints(self.task)
+            if fact.name in (CARRY_NOTHING_THROUGH, "not_through")
+            for name in (str(fact.args[0]),)
+        )
+
+    def avoided(self, fact: Fact) -> tuple[Door, ...]:
+        """Return the sure doors through which none went whom a constraint keeps from a door, in order.
+
+        fact : one of `kept_from_doors`.
+        """
+        actors = dict(self.kept_from_doors)[fact] or tuple(self.carried)
+        return tuple(door for door in self.rooms.sure if not any(self._passed(actor, door) for actor in actors))
 
     def shut(self, actor: str) -> tuple[Door, ...]:
         """Return the doors that neither the constraints of the task nor users' rules let an actor pass."""
@@ -208,20 +225,16 @@ class Situation:
         kept_off = self.region_kept_off(ROBOT)
         return replace(self, cost_maps=CostMaps(self.model, kept_off=kept_off if kept_off.any() else None))
 
-    @cached_property
-    def avoided(self) -> tuple[Door, ...]:
-        """The sure doors that the robot has not gone through, by its track, in the order of `rooms.doors`."""
-        return tuple(door for door in self.rooms.sure if not self._passed(door))
-
     @property
-    def closed_doors_passed(self) -> tuple[Door, ...]:
-        """The doors that users' rules close and that the robot went through all the same, by its track."""
-        return tuple(door for door in self.doors if door.name in self.closed and self._passed(door))
+    def closed_doors_passed(self) -> tuple[tuple[str, Door], ...]:
+        """Who went, by the tracks, through which doors that users' rules close: the robot, or objects by name."""
+        closed = [door for door in self.doors if door.name in self.closed]
+        return tuple((actor, door) for actor in (ROBOT, *self.carried) for door in closed if self._passed(actor, door))
 
-    def _passed(self, door: Door) -> bool:
-        """Return whether the robot has gone through a door, by its track."""
-        west, south = self.model.view.west, self.model.view.south
-        return went_through(np.array(self.track).reshape(-1, 2) - (west, south), door)
+    def _passed(self, actor: str, door: Door) -> bool:
+        """Return whether the robot, or an object by name, was ever beyond a door, by its track."""
+        track = self.track if actor == ROBOT else self.carried.get(actor, ())
+        return went_through(np.array(track).reshape(-1, 2) - (self.model.view.west, self.model.view.south), door)
 
     def next_to(self, place: XY, rooms: Rooms, least: int) -> Bools:
         """Compute the squares of the rooms that share a door with the room of a point, (rows, columns) bool.
@@ -248,8 +261,6 @@ def regions_kept_off(
     ----------
     binding : the name of the node that each parameter of the task means.
     actor : "utak" for the robot, or the name of a node.
-    possible_doors : doors that there are if things that were seen and never felt are pieces of wall. They count where a
-        constraint or a rule is about doors: to go through one cannot be undone.
     lenient : whether only squares count that lie wholly within a region, and no distance is kept.
     """
     shape = model.labels.shape

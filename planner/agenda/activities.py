@@ -173,10 +173,9 @@ class Activities:
 
     def _doubt_of_done(self, situation: Situation) -> str:
         """Return why the constraints may not have been kept when all goals hold, in words; "" when they surely were."""
-        if situation.forbidden(ROBOT) and not situation.avoided:
-            return "the robot went through every door that is sure"
-        if passed := situation.closed_doors_passed:
-            return f"the robot went through {passed[0].name}, which users' rules close"
+        for actor, door in situation.closed_doors_passed:
+            who = "the robot" if actor == ROBOT else actor
+            return f"{who} went through {door.name}, which users' rules close"
         return self.keeper.doubt_of_done(situation)
 
 

@@ -27,7 +27,7 @@ from planner.decision import Decision, TaskVerdict
 from planner.goals.references import as_meant, is_moved_for_others_only
 from planner.screen.projection import CostMaps, costs_to_objects
 from planner.situation import Situation, possible_doors, regions_kept_off
-from planner.stages import Stage, parameters_that_keep_meaning, stages
+from planner.stages import Stage, constraints, parameters_that_keep_meaning, stages
 from planner.tasking.proposal import TASK_ENCODING
 from planner.tasking.rule_effects import rules_about_doors
 from planner.tasking.task_plan import TaskPlan
@@ -140,7 +140,8 @@ class Decider:
         self.corners = corners(model, self.rules)
         places = tuple((float(x), float(y)) for x, y in track)
         situation = Situation(model, cost_maps, self.bound, self.rooms, self.corners, self.task, self.rules, places)
-        situation = replace(situation, lenient=self._lenient, as_well=as_well_by_parameter(reconciled))
+        carried, as_well = self._activities.keeper.middles(model), as_well_by_parameter(reconciled)
+        situation = replace(situation, lenient=self._lenient, as_well=as_well, carried=carried)
         if any(goal.name == "not_through" for goal in self.task.goals) or rules_reach(TASK_ENCODING.stem, self.rules):
             situation = replace(situation, possible_doors=possible_doors(model, self.rooms, self.rules))
         ruled = rules_about_doors(situation)
@@ -225,7 +226,7 @@ class Decider:
 
         decision : a verdict, but for `done`. model, track : as for `decide`.
         """
-        ways = [goal for goal in self.task.goals if goal.name in ("avoid", "carry_nothing_through")]
+        ways = list(constraints(self.task))
         if not ways or any(str(goal) in decision.why for goal in ways):
             return decision
         without = self._asked(model, track, ways)

@@ -308,7 +308,8 @@ def _may_use_other_ways(node: Node, situation: Situation) -> bool:
     """
     own = situation.forbidden(node.name)
     kept_off = not situation.lenient and any(situation.region_kept_off(actor).any() for actor in (ROBOT, node.name))
-    return bool(kept_off or len(own) > 1 or (not own and situation.forbidden(ROBOT)))
+    several = len(situation.rooms.doors) > 1
+    return bool(kept_off or (own and several) or (not own and situation.forbidden(ROBOT)))
 
 
 def _with_clearance(free: Bools, shape: Any) -> tuple[Bools, Any]:

@@ -19,8 +19,7 @@ from kb.language.terms import Fact
 from kb.language.vocabulary import ROBOT
 from kb.task.task import Task
 from kb.world.model import Node, WorldModel
-from kb.world.rooms import went_through
-from planner.constraints import CARRY_NOTHING_THROUGH, SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
+from planner.constraints import SAME_PLACE, avoidances, in_robot_frame, region_of, swept_region
 from planner.decision import Decision, TaskVerdict, impossible, nothing_to_do
 from planner.situation import Situation
 
@@ -61,13 +60,17 @@ class ConstraintKeeper:
     _tracks: dict[str, ThingTrack] = field(default_factory=dict)
 
     def note(self, model: WorldModel) -> None:
-        """Remember where all things are believed to be now; nothing when no constraint is about things."""
-        about_things = [name for name, _ in avoidances(self.task) if name != ROBOT]
-        if not about_things and not self._nothing_through:
-            return
+        """Remember where all things are believed to be now."""
         for node in model.objects:
             if node.polygon is not None:
                 self._tracks[node.name] = _continued(self._tracks.get(node.name), node, model)
+
+    def middles(self, model: WorldModel) -> dict[str, tuple[XY, ...]]:
+        """Return where the middle of each thing has been, by its name: points (x, y) in squares, map frame."""
+        return {
+            name: tuple(model.frame.place_from_utak(*middle) for middle in track.middles)
+            for name, track in self._tracks.items()
+        }
 
     def broken_at_start(self, situation: Situation) -> Decision:
         """Return the verdict that a region was touched from the beginning; nothing when no such thing is known."""
@@ -110,13 +113,10 @@ class ConstraintKeeper:
             doubt = _robot_doubt(fact, situation) if name == ROBOT else self._thing_doubt(fact, name, situation)
             if doubt:
                 yield doubt
-        if self._nothing_through:
-            yield from self._carried_through(situation)
-
-    @property
-    def _nothing_through(self) -> bool:
-        """Whether the task has carry_nothing_through(d)."""
-        return any(goal.name == CARRY_NOTHING_THROUGH for goal in self.task.goals)
+        for fact, actors in situation.kept_from_doors:
+            if not situation.avoided(fact):
+                who = " and ".join("the robot" if actor == ROBOT else actor for actor in actors) or "some thing"
+                yield f"it cannot be told whether {fact} holds: {who} went through every door that is sure"
 
     def _thing_doubt(self, fact: Fact, name: str, situation: Situation) -> str:
         """Return why the thing of avoid(x, "WKT") may have touched the region; "" when it surely did not."""
@@ -138,17 +138,6 @@ class ConstraintKeeper:
         if covered.distance(region) <= _doubt(model, region):
             return f"it cannot be told whether {fact} holds: {node.name} came close to that region"
         return ""
-
-    def _carried_through(self, situation: Situation) -> Iterator[str]:
-        """Yield a reason for each thing that was carried through a likely door."""
-        model = situation.model
-        west, south = model.view.west, model.view.south
-        for name, track in self._tracks.items():
-            points = [model.frame.place_from_utak(*middle) for middle in track.middles]
-            line = np.array([(x - west, y - south) for x, y in points]).reshape(-1, 2)
-            doors = [door.name for door in situation.rooms.doors if door.likely and went_through(line, door)]
-            if doors:
-                yield f"{name} was carried through {doors[0]}, and nothing tells which door is forbidden"
 
 
 def _continued(known: ThingTrack | None, node: Node, model: WorldModel) -> ThingTrack:

@@ -8,6 +8,8 @@ import pytest
 
 from kb.task.task import Task
 from kb.world.rooms import Door, count_crossings, went_through
+from planner.deciding.keeping import ConstraintKeeper
+from planner.screen.projection import UNSEEN_LEVEL
 from planner.situation import Situation
 from tests.kb.drawings import known_model
 from tests.planner.carrying.test_carrying import run, scene
@@ -69,10 +71,11 @@ def test_a_door_that_the_robot_went_through_is_not_the_forbidden_one() -> None:
     model = situation(ONE_DOOR, 99).model
     there = (x + model.view.west + 4.0, y + model.view.south)
     here = (x + model.view.west - 4.0, y + model.view.south)
-    assert situation(ONE_DOOR, 99, here, there).avoided == ()
-    assert names(situation(ONE_DOOR, 99, here).avoided) == ["d1"]
+    assert situation(ONE_DOOR, 99, here, there).avoided(NEVER.goals[0]) == ()
+    assert names(situation(ONE_DOOR, 99, here).avoided(NEVER.goals[0])) == ["d1"]
     two = situation(TWO_DOORS, 99, here, there)
-    assert len(two.avoided) == 1 and two.forbidden("utak") == two.avoided
+    left = two.avoided(NEVER.goals[0])
+    assert len(left) == 1 and two.forbidden("utak") == left
 
 
 def test_without_a_constraint_every_door_may_be_used() -> None:
@@ -106,5 +109,48 @@ def two_rooms(door: tuple[int, int], mirrored: bool) -> str:
 def test_the_robot_never_goes_through_the_only_door(door: tuple[int, int], mirrored: bool, tmp_path: Path) -> None:
     goals = "in(utak, room(next)). not_through(utak, d)."
     found = run(scene(tmp_path, two_rooms(door, mirrored), "door(d).", goals))
-    assert found.result.verdict == "possible_if" and "forbidden" in found.result.reason
+    assert found.result.verdict == "possible_if" and "not_through(utak,d) leaves no way" in found.result.reason
     assert found.session.table.utak[1] > 22.0
+
+
+def test_no_way_leads_through_a_closed_door() -> None:
+    found = replace(situation(ONE_DOOR, 99), task=Task({}, (), ()))
+    (door,) = found.rooms.doors
+    after = found.with_closed(frozenset({door.name}))
+    beyond = found.rooms.beyond(1)
+    assert (beyond & found.cost_maps.floor).any() and names(after.shut("utak")) == ["d1"]
+    assert not (beyond & (after.cost_maps.distances[UNSEEN_LEVEL] >= 0)).any()
+
+
+def test_a_thing_is_kept_from_one_door_too_and_from_done_when_it_went_through_all() -> None:
+    task = Task({}, (), facts_from_text("not_through(x, d)."))
+    found = replace(situation(ONE_DOOR, 99), task=task, binding={"x": "o1"})
+    (door,) = found.rooms.doors
+    x, y = door.place[0] + found.model.view.west, door.place[1] + found.model.view.south
+    through = replace(found, carried={"o1": ((x - 4.0, y), (x + 4.0, y))})
+    keeper = ConstraintKeeper(task)
+    assert names(found.forbidden("o1")) == ["d1"] and found.forbidden("utak") == ()
+    assert keeper.doubt_of_done(found) == ""
+    assert "not_through(x,d)" in keeper.doubt_of_done(through) and "o1 went through" in keeper.doubt_of_done(through)
+
+
+def test_who_went_through_a_door_that_rules_close_is_told_of_the_robot_and_of_things() -> None:
+    found = replace(situation(ONE_DOOR, 99), task=Task({}, (), ()), closed=frozenset({"d1"}))
+    (door,) = found.rooms.doors
+    x, y = door.place[0] + found.model.view.west, door.place[1] + found.model.view.south
+    assert found.closed_doors_passed == ()
+    through = ((x - 4.0, y), (x + 4.0, y))
+    assert replace(found, track=through).closed_doors_passed == (("utak", door),)
+    assert replace(found, carried={"o1": through}).closed_doors_passed == (("o1", door),)
+    assert replace(found, carried={"o1": through}, closed=frozenset()).closed_doors_passed == ()
+
+
+def test_of_two_doors_the_narrower_one_is_left_alone_by_a_thing() -> None:
+    task = Task({}, (), facts_from_text("not_through(x, d)."))
+    found = replace(situation(TWO_DOORS, 99), task=task, binding={"x": "o1"})
+    first, second = found.rooms.doors
+    narrow = replace(
+        second, b=(second.a[0] + (second.b[0] - second.a[0]) / 2, second.a[1] + (second.b[1] - second.a[1]) / 2)
+    )
+    found = replace(found, rooms=replace(found.rooms, doors=(first, narrow)))
+    assert found.forbidden("o1") == (narrow,) and narrow.width < first.width
