@@ -91,11 +91,14 @@ def fact_argument(name: str, vocabulary: Vocabulary) -> ArgumentType:
 WKT_ANY_SHAPE = wkt_argument("a place", "POINT", "LINESTRING", "POLYGON", "MULTIPOLYGON")  # a shape of any kind
 VERDICT_WORDS = ("done", "impossible", "possible_if", "limit")  # the ends of a run (docs/files.md)
 MAX_WEIGHT_POINTS = 1_000_000  # points of one expectation; a convention
+# What the order of a run's visits is stated about.
+VISITS: Vocabulary = {"visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON"))}
 # What expect.lp expects of a run.
 EXPECTATIONS: Vocabulary = {
     "inside": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
     "near": (NAME_ARGUMENT, WKT_ANY_SHAPE, decimal_argument("a distance in squares", 0, MAX_TABLE_SIDE)),
-    "visits": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
+    **VISITS,
+    "before": (fact_argument("what comes first", VISITS), fact_argument("what comes after it", VISITS)),
     "avoids": (NAME_ARGUMENT, wkt_argument("a region", "POLYGON", "MULTIPOLYGON")),
     "circles": (word_argument("walker", ["utak"]), NAME_ARGUMENT),
     "unmoved": (NAME_ARGUMENT,),

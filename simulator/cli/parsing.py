@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
+from kb.language.diagnostics import did_you_mean
 from simulator.cli.commands import explain, plan, query, repl, replay, routes, run, schema, sweep, test, warm
 from simulator.cli.commands.files import check, import_scenario, new, show
 
@@ -36,7 +37,29 @@ EXIT_CODES = (
 )
 
 
-class IntermixedParser(argparse.ArgumentParser):
+class HintingParser(argparse.ArgumentParser):
+    """A parser that names the most similar word or option where it knows none."""
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Raise ArgumentError when a value is not among the choices of an action."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError:
+            hint = did_you_mean(str(value), map(str, action.choices or ()))
+            if not hint:
+                raise
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}: {hint}") from None
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Return the options and the arguments that are left, as argparse does; a misspelt option ends the program."""
+        found, left = super().parse_known_args(args, namespace)
+        for option in (word.split("=")[0] for word in left if word.startswith("--")):
+            if hint := did_you_mean(option, self._option_string_actions):
+                self.error(f"unrecognized arguments: {option}: {hint}")
+        return found, left
+
+
+class IntermixedParser(HintingParser):
     """A parser that takes options also between positional arguments, which argparse takes in one piece only."""
 
     _within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
@@ -50,6 +73,17 @@ class IntermixedParser(argparse.ArgumentParser):
             return super().parse_known_intermixed_args(points_joined(sys.argv[1:] if args is None else args), namespace)
         finally:
             self._within = False
+
+
+class VersionAction(argparse.Action):
+    """Prints the version of the installed program, which is looked up only then, and ends it."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Print the version and exit."""
+        from importlib.metadata import version
+
+        print(f"utak {version('utak')}")
+        parser.exit()
 
 
 def points_joined(arguments: Sequence[str]) -> list[str]:
@@ -71,11 +105,12 @@ def points_joined(arguments: Sequence[str]) -> list[str]:
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
-    top = argparse.ArgumentParser(
+    top = HintingParser(
         prog="utak",
         description="Utak, a simulated robot that sees coarsely, believes with confidence and solves spatial tasks.",
         epilog=EXIT_CODES,
     )
+    top.add_argument("--version", action=VersionAction, nargs=0, help="print the version and exit")
     parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=IntermixedParser)
     for command in COMMANDS:
         command.add(parts)

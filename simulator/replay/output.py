@@ -92,7 +92,7 @@ def write_gif(path: Path | str, episode: Episode, force: bool = False) -> None:
     try:
         from simulator.replay.gif import animation
     except ImportError:
-        what = "moving pictures need pillow, which is not installed: pip install 'utak[gif]'"
+        what = "moving pictures need pillow, which is not installed: pip install pillow"
         raise CannotOpenError(str(path), what) from None
     check_path(path, is_gif, GIF_KIND, force)  # before the pictures are drawn, which takes long
     write_whole(path, animation(episode), is_gif, GIF_KIND, force)

@@ -16,6 +16,7 @@ from simulator.scenario.points import ExpectationOutcome, PointScore, score
 from simulator.scenario.scenario import Scenario, read_scenario
 from simulator.scenario.settings import Settings, kb_files_named
 from simulator.scenario.trialfile import TRIAL_FILE, TrialPlan, answers_as_wanted, query_of, read_trial_plan
+from simulator.scenario.untrusted import refuse_outside_links
 
 LAST_STEPS = 5  # the number of steps before the end that a trial keeps, for reports; a convention
 NO_PLAN = TrialPlan({}, (), {})  # what holds without trial.lp
@@ -112,14 +113,20 @@ class PromisedPoints(NamedTuple):
     weighed: bool
 
 
-def promised_points(folder: Path | str) -> PromisedPoints | None:
+def promised_points(folder: Path | str, root: Path | str | None = None) -> PromisedPoints | None:
     """Return the points that expect.lp and trial.lp of a scenario promise; None where these cannot be read.
 
     So what a scenario is worth does not depend on whether the other files can be read, such as those of a pupil.
+
+    folder : the scenario. root : the folder in which it was found, where links out of it are not followed; None to
+    follow them.
     """
+    expect, trial = Path(folder) / "expect.lp", Path(folder) / TRIAL_FILE
     try:
-        facts = read_expectations(Path(folder) / "expect.lp", None)
-        plan = read_trial_plan(Path(folder) / TRIAL_FILE) if (Path(folder) / TRIAL_FILE).exists() else NO_PLAN
+        for file in (expect, trial) if root is not None else ():
+            refuse_outside_links(file, root)
+        facts = read_expectations(expect, None)
+        plan = read_trial_plan(trial) if trial.exists() else NO_PLAN
     except (BadInputError, CannotOpenError):
         return None
     possible = sum(weights_of(facts).values()) + sum(plan.asks.values())

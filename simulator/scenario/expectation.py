@@ -13,7 +13,7 @@ from kb.language.arguments import abbreviated, decimal_value
 from kb.language.diagnostics import BadInputError, Problem, did_you_mean
 from kb.language.reader import parse_facts
 from kb.language.source_text import Source, read_source
-from kb.language.terms import Fact, Number, Symbol, Text
+from kb.language.terms import Fact, Number, Symbol, Term, Text
 from kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
 from kb.language.wkt import parse_wkt
 from simulator.world.world import World, outer_ring
@@ -23,6 +23,7 @@ MIN_CIRCLING_DEGREES = 330.0  # degrees of winding that count as once around (do
 # By the name of an expectation: the index of the argument that names a thing.
 THING_ARGUMENT_INDEX = {"inside": 0, "near": 0, "visits": 0, "avoids": 0, "circles": 1, "unmoved": 0, "pose": 0}
 WALKER_EXPECTATIONS = ("inside", "near", "visits", "avoids")  # those whose thing may be the robot itself
+MAX_NAMES_SHOWN = 12  # names of things that a hint lists; a convention
 NOT_ABOUT_THE_TRUTH = ("fails", "weight")  # facts of expect.lp that the truth at the end does not decide
 
 
@@ -126,24 +127,25 @@ def weights_of(facts: Sequence[Fact]) -> dict[Fact, int]:
     }
 
 
+def about_things(stated: Term) -> Iterator[tuple[Symbol, Term]]:
+    """Yield each expectation about a thing that a fact states or is about, with the name of the thing."""
+    if isinstance(stated, Symbol):
+        if stated.name in THING_ARGUMENT_INDEX:
+            yield stated, stated.args[THING_ARGUMENT_INDEX[stated.name]]
+        for inner in stated.args if stated.name in ("weight", "before") else ():
+            yield from about_things(inner)
+
+
 def _unknown_names(source: Source, facts: Sequence[Fact], world: World) -> Iterator[Problem]:
     """Yield a problem for each name of a thing that the world does not have."""
     movable = {thing.name for thing in world.movable}
-    known = movable | {thing.name for thing in world.fixed}
-    for stated in facts:
-        fact = stated.args[0] if stated.name == "weight" else stated
-        assert isinstance(fact, Symbol)
-        if fact.name not in THING_ARGUMENT_INDEX:
-            continue
-        term = fact.args[THING_ARGUMENT_INDEX[fact.name]]
-        walker = str(term) == "utak" and fact.name in WALKER_EXPECTATIONS
-        if not walker and str(term) not in known:
-            walkers = ["utak"] * (fact.name in WALKER_EXPECTATIONS)
-            hint = (
-                did_you_mean(str(term), [*sorted(known), *walkers])
-                or f"there are {', '.join([*sorted(known), *walkers])}"
-            )
-            yield source.problem(term.span, f"the world has no object {term}", hint if known or walkers else "")
+    known = sorted(movable | {thing.name for thing in world.fixed})
+    for fact, term in (named for stated in facts for named in about_things(stated)):
+        names = [*known, "utak"] if fact.name in WALKER_EXPECTATIONS else known
+        if str(term) not in names:
+            shown = ", ".join(names[:MAX_NAMES_SHOWN]) + " ..." * (len(names) > MAX_NAMES_SHOWN)
+            hint = did_you_mean(str(term), names) or f"there are {shown}"
+            yield source.problem(term.span, f"the world has no object {term}", hint if names else "")
         elif fact.name == "pose" and str(term) not in movable:
             yield source.problem(term.span, f"{term} is fixed: a pose is expected of things that can be moved")
 
@@ -251,10 +253,25 @@ def _near(fact: Fact, track: Sequence[Snapshot]) -> str:
     return f"{_place(fact, track[-1])} at the end, {away:.2f} squares away from it"
 
 
+def _ways(fact: Fact, track: Sequence[Snapshot]) -> list[float]:
+    """Return how far the thing's centre was from the region at each step; 0 within it."""
+    region = region_of(fact)
+    return [float(region.distance(_thing(fact, snapshot).centroid)) for snapshot in track]
+
+
+def _before(fact: Fact, track: Sequence[Snapshot]) -> str:
+    """Return '' when the first visit came before the first of the second kind, else when each came."""
+    ways = [_ways(visit, track) for visit in fact.args if isinstance(visit, Symbol)]
+    first, second = (track[away.index(0.0)].step if 0.0 in away else None for away in ways)
+    if first is not None and second is not None and first < second:
+        return ""
+    came = ("never" if step is None else f"at step {step}" for step in (first, second))
+    return "the first of the two came {}, the second {}".format(*came)
+
+
 def _visits(fact: Fact, track: Sequence[Snapshot]) -> str:
     """Return '' when the thing's centre was in the region at some step, else how near it came."""
-    region = region_of(fact)
-    away = [float(region.distance(_thing(fact, snapshot).centroid)) for snapshot in track]
+    away = _ways(fact, track)
     if not min(away):
         return ""
     nearest = away.index(min(away))
@@ -336,6 +353,7 @@ _CHECKS = {
     "inside": _inside,
     "near": _near,
     "visits": _visits,
+    "before": _before,
     "avoids": _avoids,
     "circles": _circles,
     "unmoved": _unmoved,

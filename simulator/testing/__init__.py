@@ -8,6 +8,7 @@ worker   the process that tries scenarios for another one
 handle   the handle of such a process
 wording  records as text: lines, summaries and reports of failures
 junit    records as JUnit XML
+grades   records as a table, comma-separated values
 
 Public names: `Wish`, `try_scenario`, `WorkerHandle`, `failure_report`, `as_junit`.
 """

@@ -99,8 +99,7 @@ def without_run(wish: Wish, code: int, error: str) -> TrialRecord:
 
 def broken_off(wish: Wish, code: int, error: str) -> TrialRecord:
     """Return the record of a scenario that is there and was not run to its end: it earned none of its points."""
-    refused = wish.untrusted and code == exits.CANNOT_OPEN  # perhaps a link, which is not followed
-    promised = None if refused else promised_points(wish.folder)
+    promised = promised_points(wish.folder, wish.root if wish.untrusted else None)
     earned = {} if promised is None else {"points": promised.score._asdict(), "weighed": promised.weighed}
     return without_run(wish, code, error) | earned
 

@@ -1,4 +1,4 @@
-"""TABLETOP as a Gymnasium environment, for other minds. Needs the extra `gym`: `pip install 'utak[gym]'`.
+"""TABLETOP as a Gymnasium environment, for other minds. Needs the extra `gym`: `pip install gymnasium`.
 
     import gymnasium
     import utak.gym                                                             # registers utak/Tabletop-v0

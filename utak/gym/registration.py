@@ -1,7 +1,7 @@
 """Registration with Gymnasium: which environments there are, and where their classes lie."""
 
 ENVIRONMENT_ID = "utak/Tabletop-v0"
-WANTED = "the environment needs Gymnasium: pip install 'utak[gym]'"
+WANTED = "the environment needs Gymnasium: pip install gymnasium"
 
 
 def register_environments() -> None:

@@ -17,7 +17,7 @@ def add(parts: Any) -> None:
     part.add_argument("episode", metavar="EP.jsonl", help="an episode that `utak run --log` wrote")
     form = part.add_mutually_exclusive_group()
     form.add_argument("--html", metavar="FILE", help="write one page of HTML that plays it in any browser")
-    form.add_argument("--gif", metavar="FILE", help="write a moving picture (needs pillow: pip install 'utak[gif]')")
+    form.add_argument("--gif", metavar="FILE", help="write a moving picture (needs pillow: pip install pillow)")
     form.add_argument("--text", action="store_true", help="print actions, reasons, tables and changed facts (default)")
     part.add_argument(
         "--kb", action="append", metavar="FILE", default=[], help="with --html: a file of rules of the run; repeatable"

@@ -11,9 +11,11 @@ from simulator.terminal.numbers import parse_whole
 from simulator.terminal.printing import as_json
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from simulator.episode.output_files import Kind
     from simulator.testing.record import TrialRecord
 
-JUNIT_KIND = "JUnit XML"  # what messages call the file of --junit
 MAX_JOBS = 256  # scenarios at once; a convention
 
 
@@ -26,20 +28,23 @@ def add(parts: Any) -> None:
     part.add_argument("--jobs", type=_jobs, metavar="N", default=1, help="run so many at once (default 1)")
     part.add_argument("--json", action="store_true", help="print all outcomes as one JSON object")
     part.add_argument("--junit", metavar="FILE", help="write all outcomes to this file as JUnit XML")
+    part.add_argument("--csv", metavar="FILE", help="write the points of all scenarios to this file as a table")
     part.add_argument("--times", action="store_true", help="say in --json and --junit how long each scenario took")
-    part.add_argument("--force", action="store_true", help="let --junit overwrite a file that is no JUnit XML")
+    part.add_argument("--force", action="store_true", help="let --junit and --csv overwrite files of other kinds")
     part.set_defaults(execute=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Run every scenario, print one line each and the number that passed; return the most severe exit code."""
+    from simulator.episode.output_files import check_path, write_whole
     from simulator.scenario.settings import kb_files_named
     from simulator.testing.record import Wish
     from simulator.testing.suite import find_scenarios, try_all
     from simulator.testing.wording import as_object, outcome_line, summary_line
 
     kb_files = kb_files_named(options.kb)
-    _open_junit(options)
+    for path, _, kind, name in _files(options):  # before anything is run
+        check_path(path, kind, name, options.force)
     found, absent = find_scenarios(options.folders, options.name)
     given, untrusted, timed = given_settings(options), options.untrusted, options.times
     wishes = [Wish(str(one.folder), str(one.root), given, kb_files, untrusted, timed) for one in found]
@@ -50,28 +55,24 @@ def execute(options: argparse.Namespace) -> int:
             print(record["error"], file=sys.stderr, flush=True)
         if not options.json:
             print(outcome_line(record), flush=True)
-    _write_junit(options, records)
+    for path, text, kind, name in _files(options):
+        write_whole(path, text(records).encode(), kind, name, options.force)
     if options.json:
         print(as_json(as_object(records)))
     print(summary_line(records), file=sys.stderr)
     return exits.worst(record["exit_code"] for record in records)
 
 
-def _open_junit(options: argparse.Namespace) -> None:
-    """Make sure, before anything is run, that the file of `--junit` can be written."""
-    from simulator.episode.output_files import check_path, is_junit
-
-    if options.junit is not None:
-        check_path(options.junit, is_junit, JUNIT_KIND, options.force)
-
-
-def _write_junit(options: argparse.Namespace, records: "list[TrialRecord]") -> None:
-    """Write the file of `--junit`."""
-    from simulator.episode.output_files import is_junit, write_whole
+def _files(options: argparse.Namespace) -> "Iterator[tuple[str, Callable[[Sequence[TrialRecord]], str], Kind, str]]":
+    """Yield each file that is to be written: its path, what makes its text, and which files it may overwrite."""
+    from simulator.episode.output_files import is_junit
+    from simulator.testing.grades import as_csv, is_csv
     from simulator.testing.junit import as_junit
 
     if options.junit is not None:
-        write_whole(options.junit, as_junit(records).encode("utf-8"), is_junit, JUNIT_KIND, options.force)
+        yield options.junit, as_junit, is_junit, "JUnit XML"
+    if options.csv is not None:
+        yield options.csv, as_csv, is_csv, "table of grades"
 
 
 def _jobs(text: str) -> int:

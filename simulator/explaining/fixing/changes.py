@@ -13,7 +13,7 @@ from kb.language.vocabulary import CONSTRAINT_GOALS
 from kb.task.task import WRAPPING_GOALS, Task
 from simulator.explaining.fixing.gaps import WIDTH_STEP, Gap, GapSide, widened
 from simulator.explaining.fixing.recorded import facts_of, start_text, task_from_texts
-from simulator.scenario.expectation import should_fail
+from simulator.scenario.expectation import about_things, should_fail
 from simulator.scenario.scenario import Scenario
 from simulator.scenario.settings import Settings
 from simulator.world.world import World
@@ -188,8 +188,10 @@ def _is_constraint(goal: Fact) -> bool:
 def _is_wanted(expectations: tuple[Fact, ...] | None, away: set[str]) -> bool:
     """Return whether expect.lp says where one of some things must be."""
     return any(
-        fact.name in PLACE_EXPECTATIONS and str(fact.args[1 if fact.name == "circles" else 0]) in away
+        named.name in PLACE_EXPECTATIONS and str(thing) in away
         for fact in expectations or ()
+        if fact.name != "weight"
+        for named, thing in about_things(fact)
     )
 
 

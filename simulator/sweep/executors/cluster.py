@@ -24,7 +24,7 @@ MAX_WORKERLESS_SECONDS = 60.0  # seconds without any worker after which a sweep 
 POLL_SECONDS = 0.5  # between two looks at whether scheduler and workers are still there; a convention
 TASKS_PER_THREAD = 2  # sent ahead for each thread of the workers, so that none of them waits; a convention
 MAX_CLOSING_SECONDS = 5.0  # seconds for telling the workers that the sweep has ended; a convention
-INSTALL_HINT = "the library distributed is not installed: pip install 'utak[dask]'"
+INSTALL_HINT = "the library distributed is not installed: pip install distributed"
 
 
 def run_on_dask(

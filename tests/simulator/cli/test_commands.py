@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -246,3 +247,25 @@ def test_routes_on_a_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     err = capsys.readouterr().err
     assert "lies in a blocked square" in err
     assert f"{path}:6:2-2: error: unknown square '?'" in err
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("rnu x", "did you mean run?"),
+        ("repaly x", "did you mean replay?"),
+        ("run x --paths gird", "did you mean grid?"),
+        ("run x --nosie 0.1", "--nosie: did you mean --noise?"),
+        ("test x --cvs=FILE", "--cvs: did you mean --csv?"),
+        ("zzz", "choose from"),
+    ],
+)
+def test_misspelt_words_of_the_shell_are_mended(line: str, hint: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(line.split()) == 2
+    assert hint in capsys.readouterr().err
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    stated = re.findall(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out.split() == ["utak", *stated]

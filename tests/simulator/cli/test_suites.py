@@ -1,5 +1,6 @@
 """Many scenarios at once, and scenarios from elsewhere: a bad one is reported and the others are still run."""
 
+import csv
 import json
 import os
 import re
@@ -18,6 +19,8 @@ from simulator.cli.main import main
 from simulator.episode.forms import complaints
 from simulator.episode.output_forms import NAMED_FORMS
 from simulator.terminal import exits
+from simulator.testing.grades import as_csv
+from simulator.testing.record import Wish, without_run
 
 SECRET = "root_x17(toor_x18).\nand nonsense_x19 :- so(0n_x20.\n"
 
@@ -100,6 +103,38 @@ def test_outcomes_are_one_json_object_and_junit_xml(
     assert main([*arguments, "--times"]) == 66
     assert all(one["seconds"] >= 0 for one in json.loads(capsys.readouterr().out)["scenarios"][1:])
     assert "time" in ElementTree.parse(junit).getroot()[0].attrib or "seconds" not in found["scenarios"][0]
+
+
+def test_grades_are_a_table_for_spreadsheets(scene: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root, table = suite(scene), tmp_path / "grades.csv"
+    (scene / "expect.lp").write_text("fails. within(3). weight(fails, 2). weight(within(3), 3).")
+    for _ in range(2):  # its own file is overwritten
+        assert main(["test", str(root), "--csv", str(table), "-k", "o"]) == 66
+        rows = list(csv.DictReader(table.read_text().splitlines()))
+        assert {Path(row["scenario"]).name: (row["outcome"], row["earned"], row["possible"]) for row in rows} == {
+            "a_failed": ("failed", "0", "1"),
+            "b_bad": ("bad", "", ""),
+            "c_absent": ("absent", "0", "1"),
+            "good": ("failed", "2", "5"),
+        }
+    assert rows[-1]["why"] == "not met: within(3): 30 commands were given"
+    table.write_text("a,b\n1,2\n")
+    assert main(["test", str(root), "--csv", str(table)]) == 66
+    assert table.read_text() == "a,b\n1,2\n"
+    assert "it is no table of grades" in capsys.readouterr().err
+    formula = without_run(Wish("=1+1", "=1+1", {}), 66, "\x1b[2J")
+    assert as_csv([formula]).splitlines()[1] == "'=1+1,absent,,,,,\\u001b[2J"
+
+
+@pytest.mark.parametrize("missing", ["goal.lp", "start.lp", "world.lp"])
+def test_a_scenario_without_one_of_its_files_earns_nothing_of_what_is_promised(
+    missing: str, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (scene / "expect.lp").write_text("fails. weight(fails, 4).")
+    (scene / missing).unlink()
+    for more in ([], ["--untrusted"]):
+        assert main(["test", str(scene.parent), "--json", *more]) == 66
+        assert json.loads(capsys.readouterr().out)["points"] == {"earned": 0, "possible": 4}
 
 
 def test_junit_overwrites_no_other_file_and_says_so_before_anything_runs(

@@ -32,6 +32,8 @@ def way_round(turns: float) -> list[Snapshot]:
 
 
 STAY = track((5, 1), (5, 3))
+SOUTH = 'visits(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))")'
+NORTH = 'visits(utak, "POLYGON ((4 2, 6 2, 6 4, 4 4, 4 2))")'
 CASES = [
     ('inside(utak, "POLYGON ((4 2, 6 2, 6 3, 4 3, 4 2))").', STAY, True),
     ('inside(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").', STAY, False),
@@ -43,6 +45,12 @@ CASES = [
     ('visits(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").', STAY, True),
     ('visits(t1, "POLYGON ((7 4, 9 4, 9 6, 7 6, 7 4))").', track((5, 1), (5, 1), pushed=3), True),
     ('visits(t1, "POLYGON ((7 4, 9 4, 9 6, 7 6, 7 4))").', STAY, False),
+    (f"before({SOUTH}, {NORTH}).", STAY, True),
+    (f"before({NORTH}, {SOUTH}).", STAY, False),
+    (f"before({SOUTH}, {SOUTH}).", STAY, False),
+    (f"before({NORTH}, {SOUTH}).", track((5, 5), (5, 3), (5, 1), (5, 3)), True),
+    (f"before({SOUTH}, {NORTH}).", track((5, 3), (5, 1), (5, 3)), False),
+    (f"before({NORTH.replace('utak', 't1')}, {SOUTH}).", STAY, False),
     ("circles(utak, t1).", way_round(1), True),
     ("circles(utak, t1).", way_round(-1), True),
     ("circles(utak, t1).", way_round(0.9), False),
@@ -75,6 +83,10 @@ def test_expectations(text: str, steps: list[Snapshot], met: bool, tmp_path: Pat
 
 BAD = {
     "unmoved(t2).": "the world has no object t2",
+    "unmoved(block).": "there are p1, t1",
+    f"before({SOUTH}, {NORTH.replace('utak', 't2')}).": "the world has no object t2",
+    f"before({SOUTH}, within(3)).": "unknown predicate within/1",
+    f"before(utak, {NORTH}).": "unknown predicate utak/0",
     "unmoved(utak).": "the world has no object utak",
     "circles(t1, p1).": "unknown walker t1",
     "within(-1).": "from 0 to",
@@ -114,6 +126,8 @@ CAME = {
     'near(utak, "POINT (5 6)", 2).': "utak is at POINT (5.00 3.00) at the end, 3.00 squares away from it",
     'visits(utak, "POLYGON ((4 4, 6 4, 6 6, 4 6, 4 4))").': "it was at no step there; the nearest was step 1",
     'avoids(utak, "POLYGON ((4 0, 6 0, 6 2, 4 2, 4 0))").': "it was there at step 0: utak is at POINT (5.00 1.00)",
+    f"before({NORTH}, {SOUTH}).": "the first of the two came at step 1, the second at step 0",
+    f"before({SOUTH}, {NORTH.replace('2', '6')}).": "at step 0, the second never",
     "circles(utak, p1).": "the track winds about it by",
     "within(0).": "1 command was given",
     "verdict(done).": "the verdict is limit",

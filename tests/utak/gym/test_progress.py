@@ -26,6 +26,8 @@ EXPECTED = """
     avoids(utak, "POLYGON ((1 1, 3 1, 3 13, 1 13, 1 1))"). avoids(a, "POLYGON ((1 1, 6 1, 6 13, 1 13, 1 1))").
     circles(utak, a). circles(utak, p). unmoved(a). unmoved(d). unmoved(p). within(6).
     pose(a, "POINT (9 7)", 90, "1.5").
+    before(visits(utak, "POLYGON ((10 1, 15 1, 15 13, 10 13, 10 1))"),
+           visits(a, "POLYGON ((9 1, 15 1, 15 13, 9 13, 9 1))")).
 """
 FACTS = facts_from_text(EXPECTED, "expect.lp")
 amount = st.integers(-6, 6).map(float)

@@ -136,5 +136,5 @@ def test_an_address_without_a_scheduler_is_refused_soon(address: str, reason: st
 
 def test_without_the_library_it_is_said_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(CannotOpenError, match=r"pip install 'utak\[dask\]'"):
+    with pytest.raises(CannotOpenError, match=r"pip install distributed"):
         list(run_on_dask([TASK], "tcp://127.0.0.1:1"))
