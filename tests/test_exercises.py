@@ -1,4 +1,4 @@
-"""The exercises: as they are given they earn some points and do not pass; with their solutions they earn all."""
+"""The exercises: as they are given they earn nothing and do not pass; with their solutions they earn all."""
 
 import re
 import shutil
@@ -58,11 +58,11 @@ def _possible(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda folder: folder.name)
-def test_an_exercise_earns_all_points_when_it_is_solved_and_fewer_before(folder: Path, tmp_path: Path) -> None:
+def test_an_exercise_earns_all_points_when_it_is_solved_and_none_before(folder: Path, tmp_path: Path) -> None:
     given = run_trial(shutil.copytree(folder, tmp_path / "given"))
     assert not given.passed
     assert given.weighed
-    assert given.score.earned < given.score.possible
+    assert given.score == (0, _possible(folder))
     solved = shutil.copytree(folder, tmp_path / "solved")
     shutil.copytree(folder / "solution", solved, dirs_exist_ok=True)
     trial = run_trial(solved)

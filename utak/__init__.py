@@ -17,7 +17,6 @@ episode     the record of a run, and its steps
 beliefs     what is believed after a step, and the answers to questions about it
 errors      what is raised besides ValueError and TypeError
 explaining  why something is believed or was done
-drawing     pictures of the table and of what is believed, as SVG
 markup      tables and captions for notebooks, as HTML
 gym         TABLETOP as a Gymnasium environment (extra `gym`)
 """

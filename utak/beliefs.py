@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from kb.reasoning.query import QueryEngine
-from utak.drawing import belief_svg
+from simulator.replay.drawing import belief_svg
 from utak.markup import framed, table
 
 MAX_ROWS_SHOWN = 100  # rows of an answer that a notebook shows; a convention

@@ -1,23 +1,19 @@
 """The record of a run: its steps, what was believed after each, and how it ended."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import Any, overload
 
-import shapely
-
 from kb.body import Impression
 from simulator.episode.episode import Episode as EpisodeRecord
 from simulator.episode.episode import encode, read_episode
 from simulator.episode.output_files import is_episode, write_whole
-from simulator.episode.record import recorded_world
 from simulator.explaining.questions import Questions
+from simulator.replay.drawing import step_svg
 from simulator.terminal.action_in_words import describe
 from utak.beliefs import World, world_of
-from utak.drawing import table_svg
 from utak.explaining import ReasonTree, questions
 from utak.markup import framed, table
 
@@ -105,11 +101,7 @@ class Step:
 
     def _repr_svg_(self) -> str:
         """Return the table and what is sensed and believed, as a picture for notebooks."""
-        polygons = {name: shapely.Polygon(ring) for name, ring in self.line["objects"].items()}
-        steps = self._record.steps[: self.number + 1]
-        x, y = steps[0]["utak"]
-        world = replace(recorded_world(self._record.header), utak=(float(x), float(y)))
-        return table_svg(world, polygons, self.utak, self.held, self.line, [line["utak"] for line in steps])
+        return step_svg(self._record, self.line)
 
     def _repr_html_(self) -> str:
         """Return the picture with the command and its reason for notebooks."""

@@ -97,7 +97,7 @@ class Run:
 
     def __init__(
         self,
-        scenario: Scenario,
+        scenario: Scenario | Path | str,
         seed: int = 1,
         noise: float = 0.0,
         *,
@@ -111,8 +111,8 @@ class Run:
 
         Parameters
         ----------
-        scenario : Scenario
-            The world and the task.
+        scenario : Scenario, Path or str
+            The world and the task, or the folder that holds them.
         seed : int
             The seed of all randomness, from 0.
         noise : float
@@ -133,10 +133,12 @@ class Run:
         ValueError
             An option is out of its range.
         BadInputError
-            Rules have errors.
+            Rules, or files of the folder, have errors.
         CannotOpenError
-            A file with rules cannot be read.
+            A file with rules, or the folder, cannot be read.
         """
+        if not isinstance(scenario, Scenario):
+            scenario = Scenario.read(scenario)
         files = kb_files_named([str(file) for file in rules])
         settings = Settings(int(seed), float(noise), paths, max_steps, files, pull)
         _check(settings)

@@ -11,10 +11,10 @@ from typing import Any
 
 from kb.language.diagnostics import BadInputError
 from kb.task.task import Task, read_task
+from simulator.replay.drawing import table_svg
 from simulator.scenario import scenario as files
 from simulator.scenario.expectation import read_expectations
 from simulator.scenario.picture import draw
-from utak.drawing import table_svg
 from utak.markup import framed
 
 

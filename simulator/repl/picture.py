@@ -6,11 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from geometry.kernels.arrays import Bools, Floats
 from kb.world.model import FACT_UNITS_PER_SQUARE
-from simulator.scenario.picture import FLOOR_MARK, UTAK_MARK
+from simulator.scenario.picture import FLOOR_MARK, UTAK_MARK, labelled
 
 VERGE_MARK, DOOR_MARK, UNSEEN_MARK = "#", "=", " "
 OBJECT_MARKS = "ABCDEFGHIJKLMNOPQRSTVWXYZ"  # without U, which is Utak; further objects have the last mark
@@ -18,7 +17,6 @@ OTHER_MARK = "*"
 MIN_THING_CONFIDENCE = 50  # percent: below it an object is more likely a wall, and drawn by a small letter
 MAX_PICTURE_COLUMNS = 512  # characters in a row where no terminal bounds it; a convention
 MAX_PICTURE_CELLS = 400_000  # characters of a picture; a convention
-LABEL_EVERY = 5  # rows and columns between two labels of the axes
 # Styles of the characters, in the words of `rich`.
 STYLES: Mapping[str, str] = {
     UTAK_MARK: "bold white on blue", VERGE_MARK: "bright_black", FLOOR_MARK: "green", DOOR_MARK: "bold cyan",
@@ -122,7 +120,9 @@ def draw_belief(facts: Iterable[str], width: int | None = None) -> BeliefPicture
     place = next((ends for (node,), ends in known.numbers("offset", 3, 1) if node == "org"), None)
     if place is not None and (cell := grid.cell(*place)) is not None:
         cells[cell] = UTAK_MARK
-    return BeliefPicture(tuple(_labelled(cells, grid)), tuple(_legend(known, marks, place, grid)))
+    west, south, unit = ((n + grid.unit / 2) / FACT_UNITS_PER_SQUARE for n in (grid.west, grid.south, grid.unit / 2))
+    rows = labelled(["".join(row) for row in cells], west, south, unit)
+    return BeliefPicture(tuple(rows), tuple(_legend(known, marks, place, grid)))
 
 
 def _number(node: str) -> tuple[int, str]:
@@ -189,20 +189,6 @@ def _line(ends: Sequence[int], grid: _Grid) -> Iterator[tuple[int, int]]:
         cell = grid.cell(e1 + share * (e2 - e1), n1 + share * (n2 - n1))
         if cell is not None:
             yield cell
-
-
-def _labelled(cells: npt.NDArray[np.str_], grid: _Grid) -> Iterator[str]:
-    """Yield the lines of a picture, the north first, each with the north of its middle; then the axis to the east."""
-    for row in reversed(range(grid.rows)):
-        north = (grid.south + grid.unit * (row + 0.5)) / FACT_UNITS_PER_SQUARE
-        label = f"{north:6.10g} " if row % LABEL_EVERY == 0 else " " * 7
-        yield (f"{label[:7]}" + "".join(cells[row])).rstrip()
-    ticks, axis = [" "] * (grid.columns + 12), " " * 7
-    for column in range(0, grid.columns, 2 * LABEL_EVERY):
-        east = (grid.west + grid.unit * (column + 0.5)) / FACT_UNITS_PER_SQUARE
-        text = f"|{east:.10g}"[: 2 * LABEL_EVERY - 1]
-        ticks[column : column + len(text)] = text
-    yield (axis + "".join(ticks)).rstrip()
 
 
 def _legend(known: _Facts, marks: Mapping[str, str], place: Sequence[int] | None, grid: _Grid) -> Iterator[str]:

@@ -6,6 +6,7 @@ changes     the facts that changed from step to step
 transcript  an episode as text
 packed      episodes packed for a page, and their events
 page        the page of an episode; its parts for the browser lie in the folder page_parts
+drawing     pictures of the table and of what is believed, as SVG
 gif         an episode as a moving picture
 output      reading episodes and writing pages and pictures
 watching    the table in a terminal while a run goes on

@@ -16,6 +16,7 @@ from kb.language.source_text import Source, read_source
 from kb.language.terms import Fact, Number, Symbol, Term, Text
 from kb.language.vocabulary import EXPECTATION_VOCABULARY, check_facts
 from kb.language.wkt import parse_wkt
+from simulator.scenario.trialfile import TRIAL_FILE
 from simulator.world.world import World, outer_ring
 
 EXPECTATION_TOLERANCE = 1e-3  # squares; `inside` and `near` hold within it; a convention
@@ -67,7 +68,8 @@ def read_expectations(path: Path | str, world: World | None) -> tuple[Fact, ...]
         what = "expect.lp is empty" if not facts else "there are weights alone"
         problems = problems or [source.problem(source.start(), f"nothing is expected: {what}", hint)]
     if not problems:
-        problems = [*_contradictions(source, facts), *_bad_weights(source, facts)]
+        asked = Path(path).with_name(TRIAL_FILE).exists()  # questions may be worth points, too
+        problems = [*_contradictions(source, facts), *_bad_weights(source, facts, asked)]
     if world is not None and not problems:
         problems = list(_unknown_names(source, facts, world))
     if problems:
@@ -92,7 +94,7 @@ def _contradictions(source: Source, facts: Sequence[Fact]) -> Iterator[Problem]:
                 yield source.problem(fact.span, "verdict(done) contradicts fails, which the file states, too")
 
 
-def _bad_weights(source: Source, facts: Sequence[Fact]) -> Iterator[Problem]:
+def _bad_weights(source: Source, facts: Sequence[Fact], asked: bool) -> Iterator[Problem]:
     """Yield a problem for each weight of a fact that is not expected or has one already, and when all points are 0."""
     expected = [fact for fact in facts if fact.name != "weight"]
     seen: dict[str, int] = {}
@@ -107,7 +109,7 @@ def _bad_weights(source: Source, facts: Sequence[Fact]) -> Iterator[Problem]:
             hint = f"the first is on line {seen[str(weighed)]}"
             yield source.problem(weight.span, f"a second weight of {abbreviated(weighed)}", hint)
         seen.setdefault(str(weighed), weight.span.line)
-    if seen and not any(weights_of(facts).values()):
+    if seen and not asked and not any(weights_of(facts).values()):
         last = next(fact for fact in reversed(facts) if fact.name == "weight")
         hint = "give at least one expectation a weight of 1 or more"
         yield source.problem(last.args[1].span, "all weights are 0: there is no point to be earned", hint)

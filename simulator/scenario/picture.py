@@ -5,7 +5,7 @@ is the south. Edge-connected equal letters are one object. Objects are named by 
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from simulator.world.world import VERGE_COLOUR, Thing, World
 
 FLOOR_MARK, UTAK_MARK = ".", "U"  # the characters for floor and for Utak in pictures
 MAX_PICTURE_SIDE = 512  # squares along each side of a picture (docs/files.md); world.lp can state greater tables
+LABEL_EVERY = 5  # rows of a picture between two labels of its axes; columns between two have twice as many
 _Square = tuple[int, int]
 
 
@@ -147,6 +148,40 @@ def _ring_corners(ring: Any) -> npt.NDArray[np.float64]:
     turns = np.any(points - np.roll(points, 1, axis=0) != np.roll(points, -1, axis=0) - points, axis=1)
     corners: npt.NDArray[np.float64] = points[turns]
     return corners
+
+
+def labelled(rows: Sequence[str], west: float, south: float, unit: float = 1.0) -> Iterator[str]:
+    """Yield the lines of a picture with labels on the left, the north row first, and an axis with labels below.
+
+    rows : the lines from the south. west, south : the labels of the first column and row. unit : what labels grow by
+    from one to the next.
+    """
+    for row in reversed(range(len(rows))):
+        label = f"{south + unit * row:6.10g} " if row % LABEL_EVERY == 0 else ""
+        yield f"{label[:7]:7}{rows[row]}".rstrip()
+    columns = max(map(len, rows), default=0)
+    ticks = [" "] * (columns + 12)
+    for column in range(0, columns, 2 * LABEL_EVERY):
+        text = f"|{west + unit * column:.10g}"[: 2 * LABEL_EVERY - 1]
+        ticks[column : column + len(text)] = text
+    yield (" " * 7 + "".join(ticks)).rstrip()
+
+
+def names_and_places(
+    world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None
+) -> Iterator[str]:
+    """Yield a line about each thing and about Utak: the name, the colour and the squares between which it lies.
+
+    polygons, utak : as for `draw`.
+    """
+    x, y = utak or world.utak
+    facing = "" if utak else f", facing {world.heading} degrees from the table's north" if world.heading else ""
+    yield f"{UTAK_MARK} utak: POINT ({x:.10g} {y:.10g}){facing}"
+    now = {thing.name: thing.polygon for thing in world.movable} | dict(polygons or {})
+    for thing in (*world.movable, *world.fixed):
+        west, south, east, north = (f"{value:.6g}" for value in now.get(thing.name, thing.polygon).bounds)
+        fixed = "" if thing.name in now else ", fixed"
+        yield f"{thing.colour} {thing.name}: x {west} to {east}, y {south} to {north}{fixed}"
 
 
 def draw(world: World, polygons: Mapping[str, Any] | None = None, utak: tuple[float, float] | None = None) -> str:

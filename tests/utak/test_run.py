@@ -26,6 +26,10 @@ def test_a_run_is_that_of_the_command(tmp_path: Path) -> None:
     assert utak.Episode.read(log).record == episode.record
 
 
+def test_a_run_takes_a_folder() -> None:
+    assert utak.Run(str(EXAMPLES / "go_next_room")).episode.record == utak.Run(NEXT_ROOM).episode.record
+
+
 def test_a_run_is_followed_step_by_step() -> None:
     run = utak.Run(NEXT_ROOM)
     assert (run.verdict, run.reason, run.finished, len(run.episode)) == (None, "", False, 1)

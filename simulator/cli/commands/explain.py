@@ -5,6 +5,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from simulator.cli.commands.query import go_to, step_number
+from simulator.cli.commands.run import add_settings, settings_of
+from simulator.scenario.untrusted import refuse_links
 from simulator.terminal import exits
 from simulator.terminal.numbers import parse_decimal, parse_whole
 from simulator.terminal.printing import as_json
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb.evidence.reason import Reason
+    from simulator.episode.episode import Episode
     from simulator.explaining.fixing.changes import WorldChange
     from simulator.explaining.fixing.proving import Budget, Outcome
     from simulator.explaining.fixing.recorded import RecordedRun
@@ -24,13 +28,13 @@ if TYPE_CHECKING:
 def add(parts: Any) -> None:
     """Declare the subcommand."""
     part = parts.add_parser("explain", help="tell why: a fact, a command, a verdict, a cell of an impression")
-    part.add_argument("episode", metavar="EP.jsonl", help="an episode")
+    part.add_argument("story", metavar="SCENARIO|EP.jsonl", help="a scenario folder, which is run, or an episode")
     part.add_argument(
         "fact", metavar="FACT", nargs="?", help="a fact, a goal or verdict(V); without it the command of the step"
     )
     part.add_argument("--whynot", metavar="FACT", help="why a fact is not believed: what is missing or in the way")
     part.add_argument("--cell", type=_cell, metavar="N", help="a cell of the impression of the step, 0 to 159")
-    part.add_argument("--at", type=_step, metavar="STEP", help="the step (default: the last)")
+    part.add_argument("--at", type=step_number, metavar="STEP", help="the step (default: the last)")
     part.add_argument(
         "--depth",
         choices=("short", "mid", "long"),  # kb.evidence.reason.Depth, which every command would load here
@@ -38,9 +42,7 @@ def add(parts: Any) -> None:
         help="how much of the tree is printed (default mid)",
     )
     part.add_argument("--json", action="store_true", help="print the whole tree as one JSON object")
-    part.add_argument(
-        "--kb", action="append", metavar="FILE", default=[], help="a file of rules of the run; repeatable"
-    )
+    add_settings(part)
     fixing = part.add_argument_group("fixing", "what would have made a run work that failed")
     fixing.add_argument(
         "--fix", action="store_true", help="the smallest changes with which the run works, each proved by running again"
@@ -56,8 +58,6 @@ def add(parts: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Answer the question and print the tree of reasons, or the changes."""
-    from simulator.episode.episode import read_begun_episode
-
     wrong = _usage_problem(options)
     if wrong:
         print(f"utak explain: {wrong}", file=sys.stderr)
@@ -66,7 +66,7 @@ def execute(options: argparse.Namespace) -> int:
         return _fix(options)
     from simulator.explaining.questions import questions_of_episode, rule_paths
 
-    questions = questions_of_episode(read_begun_episode(options.episode), rule_paths(options.kb))
+    questions = questions_of_episode(_episode(options), rule_paths(options.kb))
     if questions.lacking:
         print(f"utak: {questions.lacking}; give rules with --kb FILE", file=sys.stderr)
     reason = _answer(questions, options)
@@ -75,6 +75,20 @@ def execute(options: argparse.Namespace) -> int:
     else:
         print(escape_controls(_text(reason, options.depth)))
     return exits.SUCCESS
+
+
+def _episode(options: argparse.Namespace) -> "Episode":
+    """Return the episode that was named, or that of a run of the scenario, up to the step in question."""
+    from simulator.episode.episode import Episode, read_begun_episode
+
+    refuse_links(options, options.story)
+    if not Path(options.story).is_dir():
+        return read_begun_episode(options.story)
+    from simulator.run.story import open_story
+
+    story = open_story(options.story, settings_of(options))
+    go_to(story, options.story, options.at)
+    return Episode(story.header, tuple(story.lines), story.result)
 
 
 def _answer(questions: "Questions", options: argparse.Namespace) -> "Reason":
@@ -118,7 +132,6 @@ def _usage_problem(options: argparse.Namespace) -> str:
 def _fix(options: argparse.Namespace) -> int:
     """Print the smallest changes with which the run works; return whether there are any."""
     from kb.evidence.reason import Depth
-    from simulator.episode.episode import read_begun_episode
     from simulator.explaining.fixing.proving import DEFAULT_RUNS, Budget
     from simulator.explaining.fixing.recorded import recorded_run
     from simulator.explaining.fixing.report import is_repeated, report_text, report_values
@@ -127,7 +140,7 @@ def _fix(options: argparse.Namespace) -> int:
     from simulator.scenario.folder_writer import check_folder
 
     rules = rule_paths(options.kb)
-    run = recorded_run(options.episode, read_begun_episode(options.episode), rules)
+    run = recorded_run(options.story, _episode(options), rules)
     if options.write is not None:
         check_folder(Path(options.write))
     budget = Budget(DEFAULT_RUNS if options.runs is None else options.runs, options.seconds)
@@ -196,8 +209,3 @@ def _place(text: str) -> int:
 def _cell(text: str) -> int:
     """Return the number for `--cell`."""
     return parse_whole(text, 0, 159)
-
-
-def _step(text: str) -> int:
-    """Return the step for `--at`."""
-    return parse_whole(text, 0, 1_000_000)

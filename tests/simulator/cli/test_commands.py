@@ -269,3 +269,15 @@ def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     stated = re.findall(r'^version = "(.*)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
     assert main(["--version"]) == 0
     assert capsys.readouterr().out.split() == ["utak", *stated]
+
+
+def test_a_scenario_is_explained_as_its_episode_is_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, episode = ROOT / "examples" / "go_next_room", tmp_path / "ep.jsonl"
+    assert main(["run", str(folder), "--seed", "3", "--noise", "0.02", "--log", str(episode)]) == 0
+    for more in ([], ["verdict(done)"], ["--at", "1"], ["--cell", "3", "--at", "0"]):
+        capsys.readouterr()
+        assert main(["explain", str(episode), *more]) == 0
+        told = capsys.readouterr().out
+        assert main(["explain", str(folder), "--seed", "3", "--noise", "0.02", *more]) == 0
+        assert capsys.readouterr().out == told
+    assert main(["explain", str(folder), "--at", "99"]) == 65

@@ -5,12 +5,17 @@ Points are (x, y) in squares, x to the east and y to the north.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from html import escape
 from typing import Any, NamedTuple
+
+import shapely
 
 from geometry.motion.se2 import direction
 from kb.perception.retina import FIELDS, MAX_GRAY_LEVEL
 from kb.world.model import FACT_UNITS_PER_SQUARE
+from simulator.episode.episode import Episode
+from simulator.episode.record import recorded_world
 from simulator.world.world import VERGE_COLOUR, World
 
 PIXELS_PER_SQUARE = 10  # of a picture of a small table; a convention
@@ -123,6 +128,7 @@ def table_svg(
     for thing in world.movable:
         edge = "stroke:#000;stroke-width:2" if thing.name == held else "stroke:#777"
         canvas.polygons(_rings(now[thing.name]), f"fill:{letter_fill(thing.colour)};{edge}", thing.name)
+        canvas.word(now[thing.name].centroid.x, now[thing.name].centroid.y, thing.name)
     x, y = world.utak if utak is None else (utak[0], utak[1])
     if step is not None:
         _draw_retina(canvas, (x, y), world.heading, step["retina"])
@@ -131,6 +137,17 @@ def table_svg(
         canvas.lines(track, "stroke:#2a7;stroke-width:1.5;stroke-dasharray:3 3")
     canvas.disc(x, y, 0.45, "fill:#2a7;stroke:#fff")
     return canvas.svg()
+
+
+def step_svg(episode: Episode, line: Mapping[str, Any]) -> str:
+    """Return a picture of the table at a step of an episode, and upon it what is sensed and believed.
+
+    episode : the run, up to the step at least. line : that of the step.
+    """
+    polygons = {name: shapely.Polygon(ring) for name, ring in line["objects"].items()}
+    track = [step["utak"] for step in episode.steps[: line["step"] + 1]]
+    world = replace(recorded_world(episode.header), utak=(float(track[0][0]), float(track[0][1])))
+    return table_svg(world, polygons, track[-1], line["held"], line, track)
 
 
 def belief_svg(facts: Sequence[str], place: Point) -> str:
