@@ -37,7 +37,9 @@ def _is_shallow(value: Any) -> bool:
     return False
 
 
-def write_page(path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = ()) -> str:
+def write_page(
+    path: Path | str, episode: Episode, force: bool = False, rule_files: Sequence[str] = (), name: str = ""
+) -> str:
     """Write the page of an episode, with trees of reasons.
 
     Parameters
@@ -46,6 +48,7 @@ def write_page(path: Path | str, episode: Episode, force: bool = False, rule_fil
     episode : the episode.
     force : whether to overwrite what is no page.
     rule_files : the paths of the files with users' rules that took part, for the reasons.
+    name : of the scenario, for the title.
 
     Returns
     -------
@@ -61,7 +64,7 @@ def write_page(path: Path | str, episode: Episode, force: bool = False, rule_fil
 
     try:
         lacking = missing_rules(episode.header, rule_files)
-        page = replay_page(episode, trees_of_episode(episode, rule_files), lacking)
+        page = replay_page(episode, trees_of_episode(episode, rule_files), lacking, name)
     except ModuleNotFoundError as error:
         if error.name not in ("lzma", "_lzma"):
             raise

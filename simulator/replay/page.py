@@ -27,7 +27,9 @@ PLAYER = ("decode.js", "facts.js", "svg.js", "maps.js", "retina.js", "panels.js"
 MAX_TITLE_CHARACTERS = 300  # of a title made from an episode's goals; a convention
 
 
-def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None, lacking: str = "") -> str:
+def replay_page(
+    episode: Episode, trees: Mapping[int, Sequence[Any]] | None = None, lacking: str = "", name: str = ""
+) -> str:
     """Return an episode as a page of HTML that plays it.
 
     Parameters
@@ -36,6 +38,7 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
     trees : explanations to be shown with steps, by step: lists of `{"text": str, "children": [...]}`, whose children
         are of the same form.
     lacking : what the explanations lack, in a line; "" for nothing.
+    name : of the scenario, for the title; "" where it is not known.
 
     Returns
     -------
@@ -50,13 +53,13 @@ def replay_page(episode: Episode, trees: Mapping[int, Sequence[Any]] | None = No
     loader, player = (_script(names) for names in (LOADER, PLAYER))
     style, shell = _part("style.css"), Template(_part("body.html"))
     body = shell.substitute(
-        heading=html.escape(_goals(episode)) or "no goal",
+        heading=html.escape(": ".join(filter(None, (_clipped(name), _goals(episode))))) or "no goal",
         about=html.escape("; ".join(filter(None, (_about(episode), _clipped(lacking))))),
         legend=_part("legend.html"),
         help=_part("help.html"),
     )
     return Template(_part("page.html")).substitute(
-        title=html.escape(f"Utak: {_goals(episode)}"),
+        title=html.escape(f"{_clipped(name) or 'Utak'}: {_goals(episode)}"),
         style_hash=_hash(style),
         loader=loader,
         script_hashes=f"'{_hash(loader)}' '{_hash(player)}'",

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
 from simulator.terminal import exits
@@ -37,7 +38,8 @@ def execute(options: argparse.Namespace) -> int:
     if options.html is not None:
         from simulator.explaining.questions import rule_paths
 
-        if lacking := write_page(options.html, episode, options.force, rule_paths(options.kb)):
+        name = Path(options.episode).stem
+        if lacking := write_page(options.html, episode, options.force, rule_paths(options.kb), name):
             print(f"utak: {lacking}; give rules with --kb FILE", file=sys.stderr)
     elif options.gif is not None:
         write_gif(options.gif, episode, options.force)

@@ -104,7 +104,7 @@ def execute(options: argparse.Namespace) -> int:
         from simulator.replay.output import write_page
 
         rule_files = rule_paths((*options.kb, *options.from_kb))
-        write_page(options.html, _recorded(lines), options.force, rule_files)
+        write_page(options.html, _recorded(lines), options.force, rule_files, Path(options.scenario).resolve().name)
     _print(result, options.json, sys.stderr if options.log == STANDARD_OUTPUT else sys.stdout)
     return exit_code(result)
 

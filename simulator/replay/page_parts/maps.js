@@ -4,6 +4,7 @@ const RETINA_REACH = 16; // squares: the retina covers 32 x 32 squares about the
 const MARGIN = 2; // squares about what is believed to be floor or a thing
 const OUTSIDE_SHARE = 0.25; // of the table's greater side: how far beyond the table is shown at most
 const LABEL_SIZE = 11; // pixels
+const MIN_SQUARE = 6; // pixels of a square's side: a table that has no room for them is scrolled
 
 // The area that both maps show, in squares of the picture: the table, and what is believed a little beyond it.
 function areaOf(episode, places) {
@@ -109,7 +110,7 @@ function drawBelief(at) {
     group.append(svg("rect", { class: "corner", x: x - size, y: y - size, width: 2 * size, height: 2 * size }, svg("title", {}, shown(`corner ${name}`))));
   }
   if (at.layers.has("pathgraph")) group.append(drawPathgraph(at));
-  if (at.layers.has("routes")) group.append(drawRoutes(at));
+  if (at.layers.has("routes")) group.append(drawWeighed(at));
   if (at.layers.has("track")) {
     const track = at.episode.seen(at.step).filter(isPoint);
     group.append(svg("path", { class: "track", d: trackOf(track, place) }));
@@ -200,12 +201,19 @@ function drawPathgraph(at) {
   return group;
 }
 
-// The routes that were weighed for the next command: the chosen one is drawn solid.
-function drawRoutes(at) {
-  const group = svg("g", { class: "routes" }), routes = Array.isArray(at.line.belief.routes) ? at.line.belief.routes : [];
-  for (const route of [...routes].sort((a, b) => Boolean(a.chosen) - Boolean(b.chosen))) {
-    const points = Array.isArray(route.points) ? route.points.filter(isPoint) : [];
-    group.append(svg("path", { class: route.chosen ? "route chosen" : "route", d: pathOf([points], at.places.robot, false) }));
+// What was weighed for the decisions of the step, as far as it has a place: routes, and lines at which there may be a door.
+// What was chosen is drawn solid.
+function drawWeighed(at) {
+  const group = svg("g", { class: "routes" }), { routes } = at.line.belief, lines = Array.isArray(routes) ? routes.map((route) => [route.points, route.chosen]) : [];
+  for (const entry of at.episode.solved(at.step) || []) {
+    const [name, , answer, about] = wholeDecision(at, entry);
+    if (name === "routes" || !Array.isArray(answer) || !Array.isArray(about)) continue;
+    const chosen = new Set(answer.map((atom) => (/^\w+\((\d{1,9})[,)]/.exec(atom) || [])[1]));
+    about.forEach((points, number) => lines.push([points, chosen.has(String(number))]));
+  }
+  for (const [points, chosen] of lines.sort((a, b) => Boolean(a[1]) - Boolean(b[1]))) {
+    if (!Array.isArray(points) || points.length < 2 || !points.every(isPoint)) continue;
+    group.append(svg("path", { class: chosen ? "route chosen" : "route", d: pathOf([points], at.places.robot, false) }));
   }
   return group;
 }

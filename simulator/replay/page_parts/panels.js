@@ -131,12 +131,36 @@ function treeOf(tree, depth) {
   return folded(text, () => children.map((child) => treeOf(child, depth + 1)));
 }
 
+// Step and number of the decision that an entry repeats; null where it repeats none.
+const formerPlace = (entry) => (entry.length === 2 && Array.isArray(entry[1]) ? entry[1] : null);
+
+// A decision with all that it states, looked up where it was taken before.
+function wholeDecision(at, entry) {
+  if (!Array.isArray(entry)) return [];
+  const again = formerPlace(entry), whole = again && again[0] < at.step ? (at.episode.solved(again[0]) || [])[again[1]] || entry : entry;
+  return whole.length > 2 ? whole : [entry[0], [], [], []];
+}
+
+// The confidence of a statement at each step as a curve; gaps where it is not believed.
+function coursePanel(at, statement) {
+  const wanted = statement.replace(/\s/g, "").replace(/\)?\.?$/, ""), { steps } = at.episode, values = [];
+  if (!wanted) return [html("p", { class: "quiet" }, "A statement without its confidence, such as shape(o1,square) or kind(o1,object).")];
+  for (let step = 0; step < steps; step += 1) {
+    const fact = at.episode.line(step).belief.facts.find((one) => one.startsWith(`${wanted},`) && /^\d{1,3}\)\.?$/.test(one.slice(wanted.length + 1)));
+    values.push(fact === undefined ? null : parseInt(fact.slice(wanted.length + 1), 10));
+  }
+  const known = values.filter((value) => value !== null), now = values[at.step];
+  if (!known.length) return [html("p", {}, `${shown(statement)} is believed at no step.`)];
+  const line = values.map((value, step) => (value === null ? "" : `${step && values[step - 1] !== null ? "L" : "M"}${step} ${100 - value}h0.4`)).join("");
+  const picture = svg("svg", { class: "course", viewBox: `0 0 ${steps} 100`, preserveAspectRatio: "none", role: "img", "aria-label": `confidence of ${shown(statement)}: ${Math.min(...known)} to ${Math.max(...known)} percent` },
+    svg("path", { class: "grid", d: `M0 0H${steps}M0 50H${steps}M0 100H${steps}` }), svg("path", { class: "now", d: `M${at.step + 0.2} 0V100` }), svg("path", { d: line }));
+  return [html("p", {}, `${now === null ? "not believed" : `${now} percent`} at step ${at.step}; ${Math.min(...known)} to ${Math.max(...known)} percent in all. Lines: 0, 50 and 100 percent.`), picture];
+}
+
 // A decision: the encoding, what it was given, what it answered. One that was taken before is looked up.
 function decision(at, number, entry) {
   if (!Array.isArray(entry)) return html("p", {}, shown(entry));
-  const [name] = entry, again = entry.length === 2 && Array.isArray(entry[1]) ? entry[1] : null;
-  const whole = again && again[0] < at.step ? (at.episode.solved(again[0]) || [])[again[1]] || entry : entry;
-  const [, facts, answer, about, left] = whole.length > 2 ? whole : [name, [], [], []];
+  const [name] = entry, again = formerPlace(entry), [, facts, answer, about, left] = wholeDecision(at, entry);
   const named = (atom) => {
     const number = /\((\d{1,9})\)$/.exec(atom), text = number && Array.isArray(about) ? about[Number(number[1])] : undefined;
     return shown(atom) + (typeof text === "string" ? ` (${shown(text)})` : "");

@@ -1,7 +1,7 @@
 // The player: which step is shown, and how one gets to another one.
 
 const SPEEDS = [0.5, 1, 2, 5, 10, 30]; // steps a second
-const LAYERS = { unseen: "unseen", track: "tracks", pathgraph: "pathgraph", routes: "routes", impression: "retina on the table" };
+const LAYERS = { unseen: "unseen", track: "tracks", pathgraph: "pathgraph", routes: "what was weighed", impression: "retina on the table" };
 const VIEWS = { side: "side by side", overlay: "overlay", truth: "table alone", belief: "belief alone" };
 
 function startPlayer(episode) {
@@ -49,6 +49,10 @@ function startPlayer(episode) {
     const at = { ...state.at, unit: unit() };
     panel("table-map", () => [mapOf(at, "truth")]);
     panel("belief-map", () => [mapOf(at, "belief")]);
+    for (const map of [byId("table-map"), byId("belief-map")]) { // a large map is scrolled to the robot
+      const [x, y] = places.table(at.line.utak);
+      map.scrollTo((x - area.west) / at.unit - map.clientWidth / 2, (y - area.north) / at.unit - map.clientHeight / 2);
+    }
     panel("retina-states", () => {
       const found = drawRetinas(retina, at.line, options);
       fields = found.fields;
@@ -59,6 +63,7 @@ function startPlayer(episode) {
   }
   // Fills the long lists, as far as they are open.
   function list() {
+    if (byId("course").open) panel("course-panel", () => coursePanel(state.at, byId("statement").value));
     if (byId("world").open) panel("world-panel", () => worldPanel(state.at));
     if (byId("facts").open) panel("facts-panel", () => factsPanel(state.at, byId("word").value));
   }
@@ -75,12 +80,16 @@ function startPlayer(episode) {
   // How many squares a pixel of the maps stands for.
   function unit() {
     const wide = Math.max(byId("table-map").clientWidth, byId("belief-map").clientWidth) || 400;
-    return area.width / wide;
+    return area.width / Math.max(wide, area.width * MIN_SQUARE);
   }
   function mapOf(at, which) {
     const overlay = state.view === "overlay", both = overlay && which === "truth";
     const name = which === "truth" ? "The table as it is" : "What the robot believes";
     const picture = svg("svg", { viewBox: `${rounded(area.west)} ${rounded(area.north)} ${rounded(area.width)} ${rounded(area.height)}`, role: "img", "aria-label": both ? "The table as it is, and what the robot believes" : name });
+    if (area.width * MIN_SQUARE > byId("table-map").clientWidth) {
+      picture.setAttribute("class", "large");
+      picture.style.minWidth = `${area.width * MIN_SQUARE}px`;
+    }
     if (which === "truth") picture.append(drawTruth(at));
     if (which === "truth" && at.layers.has("impression")) picture.append(drawImpression(at));
     if (which === "belief" || both) picture.append(drawBelief(at));
@@ -186,6 +195,8 @@ function startPlayer(episode) {
   on("facts", "toggle", list);
   on("world", "toggle", list);
   on("word", "input", list);
+  on("course", "toggle", list);
+  on("statement", "change", list);
   for (const [id, name] of [["marks-shown", "marks"], ["digits", "digits"], ["inner", "inner"]]) {
     on(id, "change", () => { options[name] = byId(id).checked; draw(); });
   }

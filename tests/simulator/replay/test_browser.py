@@ -221,6 +221,85 @@ def test_theme_view_and_help(browser: Browser, page: Path) -> None:
     browser.run("localStorage.removeItem('utak-theme')")
 
 
+def test_greys_of_the_retina_are_the_same_in_the_dark(browser: Browser, page: Path) -> None:
+    browser.open(page)
+    seen = []
+    for theme in ("light", "dark"):
+        browser.run(f"document.documentElement.dataset.theme = '{theme}'")
+        seen.append(
+            browser.run(
+                "['#observed svg', '#observed .level'].map((one) => getComputedStyle(document.querySelector(one)))"
+                ".flatMap((style) => [style.backgroundColor, style.fill])"
+            )
+        )
+    assert seen[0] == seen[1]
+
+
+def test_the_confidence_of_a_statement_is_a_curve(browser: Browser, page: Path, carried: tuple[Path, Episode]) -> None:
+    steps = carried[1].steps
+    found = [next((f for f in line["belief"]["facts"] if f.startswith("kind(o1,object,")), None) for line in steps]
+    shares = [int(fact.removesuffix(").").rpartition(",")[2]) for fact in found if fact is not None]
+    assert shares
+    browser.open(page)
+    browser.run("document.getElementById('course').open = true")
+    for statement in ("kind(o1, object)", "kind(o1,object", "kind(o1,object)."):
+        browser.run(
+            f"(() => {{ const field = document.getElementById('statement'); field.value = {statement!r};"
+            "field.dispatchEvent(new Event('change')); })()"
+        )
+        text = browser.run("document.getElementById('course-panel').innerText")
+        assert f"{min(shares)} to {max(shares)} percent in all" in text
+        curve = browser.run("document.querySelector('.course path:last-child').getAttribute('d')")
+        assert curve.count("h0.4") == len(shares)
+    assert browser.complaints() == []
+
+
+def test_a_large_table_is_scrolled_to_the_robot(
+    browser: Browser, carried: tuple[Path, Episode], tmp_path: Path
+) -> None:
+    episode = carried[1]
+    x, y = episode.steps[0]["utak"]
+    world = {**episode.header["world"], "table": [400, 300]}
+    path = tmp_path / "large.html"
+    path.write_text(replay_page(Episode({**episode.header, "world": world}, episode.steps, episode.result)))
+    browser.open(path)
+    wide, seen, left, top, high, whole = browser.run(
+        "(({ scrollWidth, clientWidth, scrollLeft, scrollTop, clientHeight, scrollHeight }) =>"
+        " [scrollWidth, clientWidth, scrollLeft, scrollTop, clientHeight, scrollHeight])"
+        "(document.getElementById('table-map'))"
+    )
+    assert wide > 2 * seen
+    box = browser.run(
+        "(({ x, y, width, height }) => [x, y, width, height])(document.querySelector('#table-map svg').viewBox.baseVal)"
+    )
+    at = (x - box[0]) / box[2] * wide, (300 - y - box[1]) / box[3] * whole
+    assert left <= at[0] <= left + seen
+    assert top <= at[1] <= top + high
+
+
+def test_the_title_is_the_scenario(browser: Browser, carried: tuple[Path, Episode], tmp_path: Path) -> None:
+    path = tmp_path / "named.html"
+    path.write_text(replay_page(carried[1], name="my <room>"))
+    browser.open(path)
+    assert browser.run("document.title").startswith("my <room>: ")
+    assert browser.run("document.querySelector('h1').textContent").startswith("my <room>: ")
+
+
+def test_lines_of_doors_that_were_weighed_are_drawn(
+    browser: Browser, page: Path, carried: tuple[Path, Episode]
+) -> None:
+    browser.open(page)
+    drawn = 0
+    for line in carried[1].steps:
+        browser.run(f"utak.player.show({line['step']})")
+        count = browser.run("document.querySelectorAll('#belief-map .route').length")
+        routes = len(line["belief"].get("routes", ()))
+        assert count >= routes
+        drawn += count - routes
+    assert drawn > 0
+    assert browser.complaints() == []
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 def test_nothing_is_wider_than_the_window(browser: Browser, page: Path, width: int) -> None:
     browser.resize(width, 844)
