@@ -227,7 +227,7 @@ class Situation:
 
     @property
     def closed_doors_passed(self) -> tuple[tuple[str, Door], ...]:
-        """Passes through doors that users' rules close, by the tracks: the robot or the name of an object, and the door."""
+        """Passes through doors that users' rules close, by tracks: `utak` or the name of an object, and the door."""
         closed = [door for door in self.doors if door.name in self.closed]
         return tuple((actor, door) for actor in (ROBOT, *self.carried) for door in closed if self._passed(actor, door))
 

@@ -122,9 +122,10 @@ class AbsenceExplainer:
         Where there is none, one to which nothing was given: what is missing is the same then.
         """
         for number in range(step, -1, -1):
-            for call in reversed(self._facts.record.decisions(number)):
-                if call.encoding == encoding and any(fact.startswith(needs) for fact in call.facts):
-                    return call
+            calls: Sequence[SolverCall] = self._facts.record.decisions(number)
+            told = [one for one in calls if one.encoding == encoding and any(f.startswith(needs) for f in one.facts)]
+            if told:
+                return told[-1]
         return SolverCall(encoding, (), (), ())
 
     def _opening(self, step: int) -> Iterator[tuple[SolverCall, str]]:

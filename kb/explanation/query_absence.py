@@ -8,7 +8,7 @@ from kb.explanation.programs import BELIEF, ExplanationError, canonical, decisio
 from kb.explanation.values import Absence, Proof
 from kb.explanation.whynot import change_in_words, is_sensible
 from kb.language.diagnostics import SourceSpan
-from kb.language.terms import Number, Symbol
+from kb.language.terms import Number, Symbol, Term
 from kb.language.vocabulary import BELIEF_PREDICATES, CORNER_NAMES, SHAPE_CLASSES
 
 NUMBERED_LETTERS = "odrjl"  # of objects, doors, rooms, junctions and links, which have a number behind them
@@ -69,7 +69,7 @@ def _possible_atoms(given: Sequence[str]) -> list[str]:
     told = " ".join(given)
     numbered = [next(f"{letter}{n}" for n in count(1) if f"{letter}{n}" not in told) for letter in NUMBERED_LETTERS]
     nowhere, words = SourceSpan(1, 1, 1), [*numbered, *SHAPE_CLASSES, *CORNER_NAMES, "object"]
-    terms = [*(Symbol(word, (), nowhere) for word in words), Number(100, nowhere)]
+    terms: list[Term] = [*(Symbol(word, (), nowhere) for word in words), Number(100, nowhere)]
     unfit = Symbol("any_other_name", (), nowhere)
     found = []
     for (name, _), predicate in BELIEF_PREDICATES.items():

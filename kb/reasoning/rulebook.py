@@ -37,6 +37,7 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("unlikely", 2): ("accommodation",), ("odd", 1): ("accommodation",), ("crooked", 2): ("accommodation",),
     ("stands", 0): ("accommodation",), ("met", 1): ("accommodation",), ("off_middle", 0): ("accommodation",),
     ("trust", 1): ("accommodation",), ("slips", 0): ("accommodation",), ("proven", 0): ("accommodation",),
+    ("contradicted", 1): ("accommodation",), ("cramped", 1): ("accommodation",),
     ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
 }  # fmt: skip
 # The predicates that rules may use, by encoding.

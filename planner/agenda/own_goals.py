@@ -135,7 +135,10 @@ class OwnGoals:
                 pushed = push_to_see(node, doubt, situation.next_to(began, situation.rooms, MIN_DOOR_CONFIDENCE), turn)
                 if pushed is not None:
                     return pushed
-        return turn.look(doubt) or nothing_to_do("nothing is left to look at")
+        found = turn.look(doubt) or nothing_to_do("nothing is left to look at")
+        if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
+            return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
+        return found
 
     def _go(self, turn: StageTurn) -> Decision:
         """Return the next command towards where the robot itself shall be, or the verdict; done when it is there."""

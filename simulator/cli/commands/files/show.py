@@ -38,7 +38,7 @@ def execute(options: argparse.Namespace) -> int:
     if options.svg is not None:
         from simulator.episode.output_files import is_svg, write_whole
 
-        write_whole(options.svg, picture, is_svg, "SVG picture", options.force)
+        write_whole(options.svg, picture.encode(), is_svg, "SVG picture", options.force)
         return exits.SUCCESS
     rows = draw(world, polygons, utak)
     if options.plain:
