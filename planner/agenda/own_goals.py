@@ -125,7 +125,7 @@ class OwnGoals:
         transporter : knows where things lay at first.
         """
         situation, model = turn.situation, turn.situation.model
-        doubt = look_at_contradiction(situation)
+        doubt = contradiction = look_at_contradiction(situation)
         for goal in (goal for goal in turn.stage.goals if goal.name in ORIGIN_GOALS):
             x = str(goal.args[0])
             node = situation.object_of(x)
@@ -138,6 +138,8 @@ class OwnGoals:
         found = turn.look(doubt) or nothing_to_do("nothing is left to look at")
         if found.verdict is not None and model.held is not None:  # what is in hand may shut the robot in
             return Decision(Release(), f"{model.held} is released, because the robot must walk: {found.why}")
+        if found.verdict is not None and contradiction is None:  # as for pieces that no floor is beside
+            return nothing_to_do(f"what the goals rest on cannot be looked at any better; {found.why}")
         return found
 
     def _go(self, turn: StageTurn) -> Decision:
@@ -177,7 +179,7 @@ class OwnGoals:
                 return found
             unknown = unknown_destination("every way that is known leads through a forbidden door")
             others = subgoals_towards([unknown], situation, reconciled, TO_REACH)
-            return turn.seek(others, lambda: unknown.missing)
+            return turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT))
 
         decision = turn.feel_before_verdict(ask)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))

@@ -4,6 +4,7 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -40,6 +41,12 @@ EXIT_CODES = (
 class HintingParser(argparse.ArgumentParser):
     """A parser that names the most similar word or option where it knows none."""
 
+    def __init__(self, *arguments: Any, intermixed: bool = False, **options: Any) -> None:
+        """Make a parser; with `intermixed` one that takes options also between positional arguments."""
+        super().__init__(*arguments, **options)
+        self._intermixed = intermixed
+        self._within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
+
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Raise ArgumentError when a value is not among the choices of an action."""
         try:
@@ -52,6 +59,13 @@ class HintingParser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Return the options and the arguments that are left, as argparse does; a misspelt option ends the program."""
+        if self._intermixed and not self._within:
+            self._within = True
+            try:
+                given = points_joined(sys.argv[1:] if args is None else args)
+                return super().parse_known_intermixed_args(given, namespace)
+            finally:
+                self._within = False
         found, left = super().parse_known_args(args, namespace)
         for option in (word.split("=")[0] for word in left if word.startswith("--")):
             if hint := did_you_mean(option, self._option_string_actions):
@@ -59,20 +73,7 @@ class HintingParser(argparse.ArgumentParser):
         return found, left
 
 
-class IntermixedParser(HintingParser):
-    """A parser that takes options also between positional arguments, which argparse takes in one piece only."""
-
-    _within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
-
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Return the options and the arguments that are left, as argparse does."""
-        if self._within:
-            return super().parse_known_args(args, namespace)
-        self._within = True
-        try:
-            return super().parse_known_intermixed_args(points_joined(sys.argv[1:] if args is None else args), namespace)
-        finally:
-            self._within = False
+INTERMIXED = partial(HintingParser, intermixed=True)
 
 
 class VersionAction(argparse.Action):
@@ -111,7 +112,7 @@ def build_parser() -> argparse.ArgumentParser:
         epilog=EXIT_CODES,
     )
     top.add_argument("--version", action=VersionAction, nargs=0, help="print the version and exit")
-    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=IntermixedParser)
+    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=INTERMIXED)
     for command in COMMANDS:
         command.add(parts)
     return top

@@ -23,7 +23,7 @@ MAX_PICTURE_PIXELS = 640  # of the longer side of a picture; a convention
 LETTER_HUES = {"r": 0, "o": 30, "y": 55, "g": 120, "c": 180, "t": 175, "a": 210, "p": 285, "v": 270, "m": 315}
 BELIEVED_COLOUR, BELIEVED_THING_COLOUR = "#1f6fc4", "#c8322b"  # of floor and verge, and of objects
 
-Point = Sequence[float]
+DrawnPoint = Sequence[float]
 
 
 class PlacedFrame(NamedTuple):
@@ -60,14 +60,14 @@ class Canvas:
         self._size = width * self._scale, height * self._scale
         self._parts: list[str] = []
 
-    def polygons(self, rings: Iterable[Sequence[Point]], style: str, title: str = "") -> None:
+    def polygons(self, rings: Iterable[Sequence[DrawnPoint]], style: str, title: str = "") -> None:
         """Draw closed rings as one area; what lies in an even number of them is left out."""
         data = " ".join("M" + " L".join(self._text(x, y) for x, y in ring) + "Z" for ring in rings)
         tip = f"<title>{escape(title)}</title>" if title else ""
         if data:
             self._parts.append(f'<path fill-rule="evenodd" style="{style}" d="{data}">{tip}</path>')
 
-    def lines(self, points: Sequence[Point], style: str) -> None:
+    def lines(self, points: Sequence[DrawnPoint], style: str) -> None:
         """Draw a line through points."""
         data = " ".join(self._text(x, y).replace(" ", ",") for x, y in points)
         self._parts.append(f'<polyline style="fill:none;{style}" points="{data}"/>')
@@ -98,10 +98,10 @@ class Canvas:
 def table_svg(
     world: World,
     polygons: Mapping[str, Any] | None = None,
-    utak: Point | None = None,
+    utak: DrawnPoint | None = None,
     held: str | None = None,
     step: Mapping[str, Any] | None = None,
-    track: Sequence[Point] = (),
+    track: Sequence[DrawnPoint] = (),
 ) -> str:
     """Return a picture of the table as it is, and upon it what is sensed and believed.
 
@@ -150,7 +150,7 @@ def step_svg(episode: Episode, line: Mapping[str, Any]) -> str:
     return table_svg(world, polygons, track[-1], line["held"], line, track)
 
 
-def belief_svg(facts: Sequence[str], place: Point) -> str:
+def belief_svg(facts: Sequence[str], place: DrawnPoint) -> str:
     """Return a picture of what is believed alone, in the robot frame.
 
     Parameters
@@ -201,13 +201,13 @@ def rectangles(facts: Iterable[str]) -> dict[str, tuple[float, float, float, flo
     return found
 
 
-def _rings(shape: Any) -> list[Sequence[Point]]:
+def _rings(shape: Any) -> list[Sequence[DrawnPoint]]:
     """Return all rings of a shapely Polygon or MultiPolygon."""
     parts = [part for part in getattr(shape, "geoms", [shape]) if not part.is_empty]
     return [list(ring.coords)[:-1] for part in parts for ring in (part.exterior, *part.interiors)]
 
 
-def _draw_retina(canvas: Canvas, utak: Point, heading: float, levels: Sequence[int]) -> None:
+def _draw_retina(canvas: Canvas, utak: DrawnPoint, heading: float, levels: Sequence[int]) -> None:
     """Draw the fields of the retina that show something; the darker, the more of them is occupied."""
     pose = PlacedFrame(math.floor(utak[0]) + 0.5, math.floor(utak[1]) + 0.5, heading)
     for (east, north, side), level in zip(FIELDS, levels, strict=True):

@@ -22,7 +22,7 @@ FROM_ELSEWHERE |= {
     "unclear/1",
     "waits/1",
 }
-FROM_ELSEWHERE |= {"stuck/2", "came_to/2", "holds/1"}
+FROM_ELSEWHERE |= {"stuck/2", "came_to/2", "holds/1", "price/2"}
 
 
 def test_each_input_of_the_encoding_comes_from_one_place() -> None:

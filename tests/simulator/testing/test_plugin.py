@@ -65,10 +65,10 @@ def test_reports_say_what_was_expected_what_came_and_how_to_repeat_it(
             "utak: *broken: cannot open: there is neither world.lp nor world.txt in it",
             "repeat it: utak test *broken --seed 3",
             "*scenario unsolved*",
-            "the scenario did not end as expected, 2 of 6 points",
-            "  NOT MET: inside(utak,*  (4 points)",
+            "the scenario did not end as expected, 0 of 6 points",
+            "  NOT MET: inside(utak,*  (6 points)",
             "    what came: utak is at POINT (* at the end, * squares away from the region",
-            "  met: verdict(done)  (1 point)",
+            "  met: verdict(done)  (0 points)",
             "the robot's verdict: done after 2 steps: at(utak,corner(northeast)) holds",
             "its last steps:",
             "  step 2: move(*",
@@ -78,7 +78,7 @@ def test_reports_say_what_was_expected_what_came_and_how_to_repeat_it(
     )
     found.stdout.no_fnmatch_line("*Traceback*")
     found.stdout.no_fnmatch_line("*utak_pytest.py*")
-    assert '<property name="points_earned" value="2" />' in junit.read_text()
+    assert '<property name="points_earned" value="0" />' in junit.read_text()
 
 
 @pytest.mark.parametrize("option", ["--utak-seed=-1", "--utak-noise=2", "--utak-noise=x", "--utak-noise=nan"])
