@@ -52,7 +52,7 @@ CASES = [
     ("check bad", "2>/dev/full", 65),
     ("check bad", "2>&-", 65),
     ("run scene --watch --max-steps 2", "2>/dev/full", 75),
-    ("show scene", "2>/dev/full", 74),  # the message about the heading was lost
+    ("show scene --plain", "2>/dev/full", 74),  # the message about the heading was lost
     ("check scene", "2>/dev/full", 0),
     ("show scene", "2>&- <&-", 0),
     ("repl ep.jsonl", "<&-", 74),
