@@ -29,7 +29,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str], Pat
     rules = [folder / "big.lp", folder / "small.lp"]
     rules[0].write_text("big(X) :- object(X), rect(X, W, S, E, N), E - W > 300.\n")
     rules[1].write_text("small(X) :- object(X), not big(X).\n")
-    log, page = folder / "ep.jsonl", folder / "run.html"
+    log, page = folder / f"{folder.name}.jsonl", folder / "run.html"
     given = [word for path in rules for word in ("--kb", str(path))]
     assert main(["run", str(folder), *given, "--log", str(log), "--html", str(page)]) == 0
     return log, list(map(str, rules)), page
