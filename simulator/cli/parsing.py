@@ -4,7 +4,6 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -41,11 +40,8 @@ EXIT_CODES = (
 class HintingParser(argparse.ArgumentParser):
     """A parser that names the most similar word or option where it knows none."""
 
-    def __init__(self, *arguments: Any, intermixed: bool = False, **options: Any) -> None:
-        """Make a parser; with `intermixed` one that takes options also between positional arguments."""
-        super().__init__(*arguments, **options)
-        self._intermixed = intermixed
-        self._within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
+    intermixed = False  # whether options are taken between positional arguments, too
+    _within = False  # whether parse_known_intermixed_args is at work, which calls parse_known_args itself
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Raise ArgumentError when a value is not among the choices of an action."""
@@ -59,7 +55,7 @@ class HintingParser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Return the options and the arguments that are left, as argparse does; a misspelt option ends the program."""
-        if self._intermixed and not self._within:
+        if self.intermixed and not self._within:
             self._within = True
             try:
                 given = points_joined(sys.argv[1:] if args is None else args)
@@ -71,9 +67,6 @@ class HintingParser(argparse.ArgumentParser):
             if hint := did_you_mean(option, self._option_string_actions):
                 self.error(f"unrecognized arguments: {option}: {hint}")
         return found, left
-
-
-INTERMIXED = partial(HintingParser, intermixed=True)
 
 
 class VersionAction(argparse.Action):
@@ -112,7 +105,9 @@ def build_parser() -> argparse.ArgumentParser:
         epilog=EXIT_CODES,
     )
     top.add_argument("--version", action=VersionAction, nargs=0, help="print the version and exit")
-    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=INTERMIXED)
+    parts = top.add_subparsers(title="commands", metavar="COMMAND", required=True, parser_class=HintingParser)
     for command in COMMANDS:
         command.add(parts)
+    for part in parts.choices.values():
+        part.intermixed = True
     return top
