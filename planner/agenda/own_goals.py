@@ -179,7 +179,7 @@ class OwnGoals:
                 return found
             unknown = unknown_destination("every way that is known leads through a forbidden door")
             others = subgoals_towards([unknown], situation, reconciled, TO_REACH)
-            return turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT))
+            return turn.seek(others, lambda: unknown.missing, (unknown.missing, NOTHING_LEFT) if proof else ())
 
         decision = turn.feel_before_verdict(ask)
         return replace(decision, command=halt_beside_walls(decision.command, stage, situation))
