@@ -38,6 +38,8 @@ from simulator.sweep.executors.in_process import run_in_this_process
 from simulator.sweep.executors.tasks import DIED, TOO_LONG, TaskOutcome, WorkerTask
 from tests.scripted import Scripted
 
+ENOUGH_SECONDS = 300  # of the processor, also where kernels are compiled first; searches end when they find a way
+
 BOUNDS = RunBounds(max_steps=20, seconds=20, search=10)
 PLUG = AskedRun("plug", "0")
 
@@ -54,12 +56,12 @@ def obedient(commands: Sequence[Command], verdict: str) -> RobotMaker:
 def found_commands(kind: str, seed: int) -> list[Command]:
     """Return commands that do the task of a world."""
     world = several_world(kind, seed)
-    return commands_of(world, search(world, 20).way)
+    return commands_of(world, search(world, ENOUGH_SECONDS).way)
 
 
 def numbers(world: SeveralWorld, pull: bool = True) -> list[int]:
     """Return the numbers of the things that are carried, in order; the way found does the task."""
-    found = search(world, 20, pull)
+    found = search(world, ENOUGH_SECONDS, pull)
     assert found.answer == FOUND
     assert does_task(world, found.way)
     return [part.thing for part in found.way if isinstance(part, Carry)]
@@ -88,7 +90,7 @@ def test_the_search_takes_the_steps_of_a_sequence_in_turn() -> None:
 
 def test_without_pulling_every_push_leads_away_from_the_robot() -> None:
     world = several_world("corners", 1)
-    found = search(world, 20, pull=False)
+    found = search(world, ENOUGH_SECONDS, pull=False)
     assert does_task(world, found.way)
     shapes = {number: thing.polygon for number, thing in enumerate(world.things)}
     for part in found.way:
@@ -140,7 +142,7 @@ def test_a_sequence_whose_end_alone_is_so_is_not_achieved(tmp_path: Path) -> Non
     # Its last step ends where the sequence ends, but the steps before are left out.
     world = several_world("sequence", 2)
     last = replace(world, stages=world.stages[-1:])
-    commands = commands_of(last, search(last, 20).way)
+    commands = commands_of(last, search(last, ENOUGH_SECONDS).way)
     row = run_order(AskedRun("sequence", "2"), BOUNDS, tmp_path, obedient(commands, "done"))
     assert row.false_done
     assert (row.met, row.wanted) == (0, 4)
