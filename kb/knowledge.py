@@ -223,8 +223,11 @@ class Knowledge:
         counted = memory.occupancy.view(memory.track[: len(memory.been)])
         self._completions = summarise_completions(counted, self._completions)
         self.tracker.keep_completions(self._completions.pictures)
+        probability = self._completions.probability(counted.probability)
+        for x, y in memory.passed:
+            probability[counted.locate(x, y)] = 0.0
         return counted._replace(
-            probability=self._completions.probability(counted.probability),
+            probability=probability,
             by_counts=counted.probability,
             sure=memory.sure,
         )

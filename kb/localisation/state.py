@@ -6,6 +6,7 @@ Whatever proposes or scores explanations reads this value. kb.localisation.track
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from kb.body import Command
 from kb.localisation.hypotheses.frames import (
@@ -16,7 +17,7 @@ from kb.localisation.hypotheses.frames import (
     Position,
     origin_leeway,
 )
-from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis
+from kb.localisation.hypotheses.walk_outcomes import LINE_DISTANCE, MotionHypothesis, squares_passed
 from kb.localisation.hypotheses.what_if import Surprise
 from kb.mapping.completions import Completions
 from kb.mapping.occupancy import FREE, OPEN, OccupancyMap
@@ -123,6 +124,15 @@ class TrackerState:
     def looked_from(self) -> frozenset[Square]:
         """Return the squares from which the observations of the present map were made: (column, row), map frame."""
         return frozenset((math.floor(x), math.floor(y)) for x, y in self.track[len(self.been) :])
+
+    @property
+    def passed(self) -> frozenset[Square]:
+        """Return the squares through which the robot went on the present map: (column, row), map frame.
+
+        They let it pass, also where a wall covers them in part.
+        """
+        track = self.track[len(self.been) :]
+        return frozenset(square for way in pairwise(track) for square in squares_passed(*way))
 
     @property
     def leeway(self) -> tuple[float, float, float, float]:

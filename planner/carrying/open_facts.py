@@ -12,13 +12,12 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.kernels.arrays import XY, Bools
-from geometry.raster.components import components, with_edge_neighbours
+from geometry.raster.components import with_edge_neighbours
 from kb.world.model import WorldModel
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.screen.moves import orientation_is_settled
-from planner.sights.frontiers import MIN_UNREACHED_SQUARES
 from planner.sights.things import things_in_question
-from planner.sights.walls import ALL_WALLS, FeelingScope, walls_in_question
+from planner.sights.walls import ALL_WALLS, FeelingScope, floor_apart, walls_in_question
 from planner.situation import Situation
 
 NOTHING_LEFT = "nothing is left to look at"  # a fact that proofs name: all floor that can be reached was seen
@@ -75,7 +74,7 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
     unseen = _nearest_square(with_edge_neighbours(model.space & reached) & ~model.view.seen, near)
     if unseen is not None:
         return f"the floor goes on at {model.point_in_words(unseen)}, which was never seen"
-    hidden = None if scope.parting else _hidden_passage(situation, near)
+    hidden = None if scope.parting else _nearest_square(floor_apart(model, reached), near)
     if hidden is not None:
         return f"a passage that fills no whole square leads to the floor at {model.point_in_words(hidden)}"
     several = things_in_question(situation.cost_maps, scope)
@@ -83,20 +82,6 @@ def nearest_open_fact(situation: Situation, near: XY, scope: FeelingScope = ALL_
         return ""
     seen = "was not seen to move as one thing" if several[0].moved else "was never moved"
     return f"{several[0].name}, which {seen}, is more than one thing"
-
-
-def _hidden_passage(situation: Situation, near: XY) -> XY | None:
-    """Return the nearest place (x, y) of floor that was seen and that nothing but wall parts from it; else None.
-
-    All floor is connected, and what a wall covers in part looks like wall. In squares, view frame, as `near`.
-    """
-    model = situation.model
-    under = np.any([model.mask(node.patch) for node in model.objects], axis=0)
-    parts = components(model.space | situation.cost_maps.floor | under)
-    large = np.bincount(parts.labels.ravel()) >= MIN_UNREACHED_SQUARES
-    column, row = situation.cost_maps.here
-    apart = large[parts.labels] & model.space & (parts.labels != parts.labels[row, column])
-    return _nearest_square(apart, near)
 
 
 def possible_width(width: float, missing: float, sides: tuple[XY, XY], where: str) -> str:

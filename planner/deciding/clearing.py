@@ -11,6 +11,7 @@ from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end, carry_on
 from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
+from planner.deciding.passages import Passages
 from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.embedded import Supposition, suppose
@@ -32,6 +33,7 @@ class ObstacleClearer:
         self._moving = ""
         self._supposed: Supposition | None = None  # how the object that is being moved is supposed to lie in a wall
         self._stays: frozenset[str] = frozenset()
+        self._passages = Passages()
         self._feeling = False  # whether the robot is feeling walls, because nothing else was left to do
 
     def begun(self, situation: Situation) -> tuple[str, ...]:
@@ -100,6 +102,8 @@ class ObstacleClearer:
     def feel(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to feel walls that may be things; nothing when none is left that can be reached.
 
+        Where the robot must get on, it then walks against walls that may have an opening.
+
         Parameters
         ----------
         goals, turn : as for `clear`.
@@ -107,6 +111,8 @@ class ObstacleClearer:
         self._let_stay(goals, turn.situation)
         felt = feel_walls(turn)
         self._feeling |= felt is not None
+        if felt is None and not feeling_scope(turn.stage, turn.situation).parting:
+            felt = self._passages.next(turn)
         return felt or nothing_to_do("nothing is left to feel")
 
     def bare(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:

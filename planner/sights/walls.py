@@ -21,6 +21,7 @@ from kb.perception.interpretation import LONGEST_OBJECT
 from kb.perception.protrusions import VERGE_TOUCH_COLOUR
 from kb.world.model import WorldModel
 from planner.screen.projection import CostMaps, dilate, shift_mask
+from planner.sights.frontiers import MIN_UNREACHED_SQUARES
 
 EDGE_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))  # map frame: east, north, west, south
 DOORWAY_WIDTH = 3  # squares in a row that are felt at once; a thing as wide as a usual doorway covers so many (derived)
@@ -104,6 +105,20 @@ def unfelt_walls(model: WorldModel) -> Bools:
     felt = model.squares(square for square, colour in model.felt.items() if colour == VERGE_TOUCH_COLOUR)
     mask: Bools = with_edge_neighbours(_ground(model)) & model.view.seen & ~model.space & ~felt & ~_things(model)
     return mask
+
+
+def floor_apart(model: WorldModel, reached: Bools) -> Bools:
+    """Return the floor that was seen and that nothing but wall parts from where the robot is, (rows, columns) bool.
+
+    All floor is connected, and what a wall covers in part looks like wall: so one of these walls has an opening.
+    reached : the floor that the robot reaches.
+    """
+    under = np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    labels = components(model.space | reached | under).labels
+    large = np.bincount(labels.ravel()) >= MIN_UNREACHED_SQUARES
+    row, column = model.view.locate(*model.place)
+    apart: Bools = large[labels] & model.space & (labels != labels[row, column])
+    return apart
 
 
 def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = ALL_WALLS) -> dict[WallKind, Bools]:

@@ -7,13 +7,19 @@ without the other. What the first observation after a motion leaves open a later
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
+
+import numpy as np
 
 from kb.localisation.hypotheses.frames import FrameHypothesis, Position
 from kb.objects.held_object import Square
 
 MAX_WALK_SLIP = 2  # squares from the predicted end within which a slipped walk is looked for; tuned
 LINE_DISTANCE = 1e-6  # squares from a grid line to a place right beside it: contacts of the physics are that exact
+MIN_PASSED = 0.1  # squares of way through a square that tell that it was passed; less may be an error of the place
+GRID_LINE_TOLERANCE = 1e-3  # squares from a grid line that count as on it (convention)
+MAX_KEPT_WAYS = 1024  # ways whose squares are kept: bounds memory
 
 
 class Crossing(NamedTuple):
@@ -132,6 +138,22 @@ def line_crossings(start: Position, shift: Position) -> tuple[Crossing, ...]:
                     found.append((when, 2, _crossing(line, other + signs[0], axis, signs[1])))
             found.append((when, axis, _crossing(line, across, axis, signs[axis])))
     return tuple(crossing for *_, crossing in sorted(found))
+
+
+@lru_cache(MAX_KEPT_WAYS)
+def squares_passed(start: Position, end: Position) -> tuple[Square, ...]:
+    """Return the squares (column, row) that a straight way leads through by at least MIN_PASSED squares of its length.
+
+    A way along a grid line is in neither of the squares beside it. start, end : (x, y) in squares, map frame.
+    """
+    way, begin = np.subtract(end, start), np.array(start)
+    lines = (np.arange(np.floor(min(ab)) + 1, np.ceil(max(ab))) for ab in zip(start, end, strict=True))
+    parts = [(line - begin[axis]) / way[axis] for axis, line in enumerate(lines) if way[axis]]
+    cuts = np.unique(np.concatenate([[0.0, 1.0], *parts]))
+    middles = begin + way * ((cuts[1:] + cuts[:-1]) / 2)[:, None]
+    off_lines = (abs(middles - np.round(middles)) > GRID_LINE_TOLERANCE).all(axis=1)
+    inside = off_lines & (np.diff(cuts) * math.hypot(*way) >= MIN_PASSED)
+    return tuple((int(x), int(y)) for x, y in np.floor(middles[inside]))
 
 
 def snap_to_line(place: Position) -> Position:
