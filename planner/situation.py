@@ -191,6 +191,11 @@ class Situation:
             for name in (str(fact.args[0]),)
         )
 
+    def minds_doors(self, name: str) -> bool:
+        """Return whether it matters through which doors an object goes, by constraints of the task or users' rules."""
+        kept = any(not actors or name in actors for _, actors in self.kept_from_doors)
+        return kept or bool(self.closed or self.door_prices)
+
     def avoided(self, fact: Fact) -> tuple[Door, ...]:
         """Return the sure doors through which none went whom a constraint keeps from a door, in order.
 

@@ -1,7 +1,9 @@
 """Goals for the robot itself: the way there, round an object, and the looks that make sure of it."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -45,19 +47,19 @@ class Round:
     begin: int = 0
     before: float = 0.0
 
-    @property
-    def sense(self) -> int:
-        """The sense of rotation that adds to what went before: 1 or -1; 0 for any."""
-        return (self.before > NO_ROUND) - (self.before < -NO_ROUND)
+    def besides(self, track: Sequence[XY], node: Node, back: bool) -> float:
+        """Return by how many degrees the whole track goes round the thing besides the way round, shortest way back.
+
+        track : where the robot has been, (x, y) in squares, map frame. back : whether it goes back to where it woke.
+        """
+        return self.before + (_turned(track[self.begin], track[0], node) if back else 0.0)
 
     def gone_on(self, track: Sequence[XY], node: Node, held: bool) -> "Round":
         """Return the round after another place of the track. held : whether the thing was moved to there."""
         if not held:
             return self
-        x, y = encircled_point(node)
-        places = np.array(track[self.begin :]) - (x, y)
-        angles = np.unwrap(np.arctan2(places[:, 1], places[:, 0]))
-        return Round(len(track) - 1, self.before + float(np.degrees(angles[-1] - angles[0])))
+        ways = pairwise(track[self.begin :])
+        return Round(len(track) - 1, self.before + sum(_turned(start, end, node) for start, end in ways))
 
 
 class OwnGoals:
@@ -215,10 +217,11 @@ class OwnGoals:
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
         winding = winding_number(track, node)
-        if is_home and abs(winding) == 1 and abs(self._round.before + 360.0 * winding) >= LEAST_ROUND:
+        besides = self._round.besides(turn.track, node, back=any(map(is_back_at_start, situation.task.goals)))
+        if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) >= LEAST_ROUND:
             return done(f"{stage} holds")
         offered = encircling_routes(cost_maps, track, node)
-        self._turn = self._turn or self._round.sense
+        self._turn = self._turn or (besides > NO_ROUND) - (besides < -NO_ROUND)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
         route = turn.pursuer.choose_route(begun, situation)
         if route is None:
@@ -229,6 +232,18 @@ class OwnGoals:
         kind = SubgoalKind.ATTAIN if route.level == 0 else SubgoalKind.EXPLORE
         move = next_move(cost_maps, route.squares, route.level, kind, off_centre=False)
         return Decision(move, f"the way round {name}; {stage}")
+
+
+def is_back_at_start(goal: Fact) -> bool:
+    """Return whether a goal is that the robot is where it woke."""
+    return goal.name == "at" and str(goal.args[0]) == ROBOT and str(goal.args[1]) == "start"
+
+
+def _turned(start: XY, end: XY, node: Node) -> float:
+    """Return by how many degrees a straight way turns about an object's middle, counter-clockwise positive, to 180."""
+    x, y = encircled_point(node) if node.polygon is None else (node.polygon.centroid.x, node.polygon.centroid.y)
+    before, after = (math.atan2(place[1] - y, place[0] - x) for place in (start, end))
+    return math.degrees(math.remainder(after - before, math.tau))
 
 
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:

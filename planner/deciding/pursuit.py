@@ -6,6 +6,7 @@ A route is kept while it holds: its subgoal is still wanted, and the squares ahe
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from geometry.raster.geodesic import GEODESIC_UNREACHED
 from kb.body import Command, Release
 from kb.language.vocabulary import ROBOT
 from kb.world.model import WorldModel
@@ -226,7 +227,8 @@ class Pursuer:
 def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[Subgoal]:
     """Return subgoals, in order, with what a pass through doors costs that users' rules price, or the way round them.
 
-    Of several priced doors the least price counts.
+    Of several priced doors the least price counts. Where the way round costs no more, only the squares are left to
+    which it leads.
     """
     priced = [door for door in situation.doors if door.name in situation.door_prices]
     if not priced:
@@ -237,8 +239,11 @@ def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[
     for subgoal in subgoals:
         through, otherwise = maps.nearest(subgoal.squares), round_them.nearest(subgoal.squares)
         if through is not None:
-            more = most if otherwise is None else min(most, otherwise.cost - through.cost)
-            subgoal = subgoal._replace(price=subgoal.price + max(0.0, more))
+            more = most if otherwise is None else max(0.0, otherwise.cost - through.cost)
+            if otherwise is not None and more <= most:  # the way round is meant, and so are squares that it leads to
+                reached = round_them.distances[otherwise.level].ravel()[subgoal.squares] != GEODESIC_UNREACHED
+                subgoal = subgoal._replace(squares=subgoal.squares[reached])
+            subgoal = subgoal._replace(price=subgoal.price + min(most, more))
         found.append(subgoal)
     return found
 

@@ -141,9 +141,6 @@ class Transporter:
             if lost and goal.name in ORIGIN_GOALS:
                 why = f"it cannot be told whether {turn.stage} holds: {lost} since {node.name} was grasped"
                 return Decision(None, why, TaskVerdict.LIMIT)
-            if self._origins.left(x, node, turn.situation) and turn.situation.forbidden(node.name):
-                why = f"{turn.stage} holds, but {node.name} went through a door that is forbidden to it"
-                return Decision(None, why, TaskVerdict.LIMIT)
             self._presser.begin(goal, node, land, turn.situation)
             return self._press_on(node, turn) or done(f"{goal} holds")
         advice = self._advice(node, land, turn)
@@ -165,7 +162,7 @@ class Transporter:
             advice = Infeasibility(False, f"no place from which {node.name} can be grasped can be reached")
         turn = turn.within(turn.situation.along_with(node.patch)) if land.shut_in else turn
         if isinstance(advice, See):
-            along = partial(_take_along, node, turn)
+            along = None if turn.situation.minds_doors(node.name) else partial(_take_along, node, turn)
             subgoal = Subgoal(SubgoalKind.INSPECT, *advice.viewpoint)
             return turn.seek([subgoal], along=along)
         unknown = unknown_destination(land.missing or "no way is known to carry it there", land.viewpoints)
@@ -262,17 +259,19 @@ class Transporter:
 
         Where a door may be is looked at from places where the object would be in the way, and another way is looked for
         without it. An object that is grasped while the frame is open keeps the outline that it seems to have then. In
-        these cases it is not fetched. An object that shuts the robot in is taken along.
+        these cases it is not fetched. What must keep to some doors stays where it is, until these are known. An object
+        that shuts the robot in is taken along.
 
         refused : why the object cannot be carried there now; the verdict is `impossible` only if this is proved.
         land : where the goal holds: ends by name (squares, view frame), and what must be known first.
         subgoals : what is worth a look.
         turn : the stage, what is believed, and the tools.
         """
+        stays = turn.situation.minds_doors(node.name) and not land.shut_in
         fetch = land.shut_in or not (land.viewpoints or land.ends or orientation_is_uncertain(turn.situation.model))
         again = land.shut_in and self._has_taken_along  # it was taken along before, and brought back
         along = partial(_take_along, node, turn, fetch=fetch)
-        brought = None if land.there or again else along
+        brought = None if land.there or again or stays else along
         decision = turn.feel_before_verdict(partial(turn.seek, subgoals, refused.reason, refused.proof(), brought))
         self._has_taken_along |= land.shut_in and isinstance(decision.command, Push)
         if land.shut_in and not isinstance(decision.command, Push | Turn):
@@ -333,7 +332,7 @@ class Transporter:
         onward = executor.continue_plan(node, situation)
         if onward is not None:
             return onward
-        for name, end in land.approach.items():
+        for name, end in land.approach.items() if not situation.minds_doors(node.name) else ():
             advice = executor.advise(node, {name: end}, situation, land.hoped.ends)
             if isinstance(advice, Act | Go):
                 return advice

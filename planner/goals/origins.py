@@ -38,7 +38,7 @@ class Origin(NamedTuple):
 class Origins:
     """Remembers for each parameter of the task where the thing that it means was at first (see `Origin`).
 
-    The outline of a thing is known. `lost` and `left` raise KeyError unless `at` was asked about the parameter before.
+    The outline of a thing is known. `lost` raises KeyError unless `at` was asked about the parameter before.
     """
 
     def __init__(self) -> None:
@@ -73,16 +73,6 @@ class Origins:
         now = [model.place_to_utak(*door.place) for door in situation.rooms.sure]
         gone = any(all(math.dist(was, door) > DOOR_TOLERANCE for door in now) for was in known.doors)
         return "a door of its room was lost" if gone and node.moved and model.shaken else ""
-
-    def left(self, parameter: str, node: Node, situation: Situation) -> bool:
-        """Return whether a thing is in another room now than at first.
-
-        Compared are the rooms of the origin and of the middle of the outline, as the rooms are believed now.
-        """
-        rooms, view = situation.rooms.labels, situation.model.view
-        began = situation.model.frame.place_from_utak(*self._known[parameter].place)
-        now = node.polygon.centroid.x, node.polygon.centroid.y
-        return bool(rooms[view.locate(*began)] != rooms[view.locate(*now)])
 
 
 def _doors_of_its_room(place: XY, situation: Situation) -> tuple[XY, ...]:

@@ -104,14 +104,3 @@ def test_an_origin_noted_before_a_localisation_failure_is_lost(before: bool, los
     assert not said("x", anew=False)
     assert said("x", anew=True) == lost
     assert not said("y", anew=True)
-
-
-def test_an_object_in_another_room_has_left_its_own() -> None:
-    origins, before = Origins(), now(shaken=False, moved=False)
-    (node,) = before.model.objects
-    origins.at("x", node, before)
-    assert not origins.left("x", node, before)
-    there = replace(node, polygon=shapely.affinity.translate(node.polygon, 16.0))
-    assert origins.left("x", there, before)
-    here = replace(node, polygon=shapely.affinity.translate(node.polygon, 2.0))
-    assert not origins.left("x", here, before)
