@@ -9,9 +9,8 @@ from geometry.manipulation.goals import End
 from kb.language.terms import Fact
 from kb.world.model import Node
 from planner.deciding.bringing import bring_to_end, carry_on
-from planner.deciding.feeling import feel_rim, feel_walls, feeling_scope, walls_to_feel
+from planner.deciding.feeling import Passages, feel_rim, feel_walls, feeling_scope, walls_to_feel
 from planner.deciding.obstacles import Obstacle, before_walls, hidden_in_walls, obstacles
-from planner.deciding.passages import Passages
 from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.embedded import Supposition, suppose

@@ -3,6 +3,7 @@
 planner.sights.walls says what is felt from where; planner/asp/feel.lp chooses where to halt next.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,18 +14,21 @@ from kb.language.vocabulary import ROBOT, TRACK_GOALS
 from kb.reasoning.solver import solve
 from kb.world.model import Node
 from kb.world.rooms import Door
+from planner.advice import Go
 from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, with_command
 from planner.navigation.subgoals import PLANNER_ASP, TENTHS_PER_SQUARE, Subgoal
-from planner.screen.moves import one_move_squares
+from planner.screen.moves import move_to, one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
 from planner.sights.frontiers import Viewpoint
+from planner.sights.passages import SAME_LINE, WallLine, passages
 from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
 from planner.situation import Situation, neck_squares
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
 
 MAX_HALTS_OF_KIND = 16  # nearest halts of each kind of wall that are offered; a bound on time
+PASSAGE_REASON = "floor is seen beyond the wall, so an opening that fills no whole square may be here"
 FEELING_REASON = "what seems to be wall may be a thing that can be moved, so it is felt"
 
 
@@ -141,3 +145,33 @@ def choose_halt(places: list[FeelingPlace], cost_maps: CostMaps) -> Subgoal | No
         return None
     chosen = places[answer[0].arguments[0].number]
     return Subgoal(SubgoalKind.FEEL, np.array([chosen.square]), FEELING_REASON)
+
+
+class Passages:
+    """Walks against walls behind which floor is seen, and remembers the lines on which it did."""
+
+    def __init__(self) -> None:
+        """Make one that tried nothing."""
+        self._tried: set[WallLine] = set()
+
+    def next(self, turn: StageTurn) -> Decision | None:
+        """Return the next command to walk through wall to floor beyond it; None when no line is left.
+
+        turn : the stage, what is believed, and the tools.
+        """
+        situation = turn.situation
+        model, far = situation.model, situation.cost_maps.distances[0].ravel()
+        left = [one for one in passages(situation.cost_maps) if not self._is_tried(one.line)]
+        for passage in sorted(left, key=lambda one: (int(far[one.square]), math.dist(one.start, model.place))):
+            if math.dist(passage.start, model.place) < SAME_LINE / 2:
+                self._tried.add(passage.line)
+                return Decision(move_to(passage.end, model), f"{PASSAGE_REASON}; {turn.stage}")
+            go = Go(np.array([passage.square]), passage.start, PASSAGE_REASON)
+            walk = with_command(turn.pursuer.go(go, turn.stage, situation))
+            if walk is not None:
+                return walk
+        return None
+
+    def _is_tried(self, line: WallLine) -> bool:
+        """Return whether a walk on a line, or right beside it, was tried."""
+        return any(line[0] == number and abs(line[1] - across) <= SAME_LINE for number, across in self._tried)

@@ -14,7 +14,7 @@ from geometry.kernels.arrays import XY, Bools, Square
 from geometry.raster.line_of_sight import straight
 from geometry.raster.winding import crossings_by_step
 from kb.body import Command, Move
-from kb.localisation.hypotheses.walk_outcomes import snap_to_line
+from kb.localisation.hypotheses.walk_outcomes import GRID_LINE_TOLERANCE, snap_to_line
 from kb.perception.frame import turned
 from kb.world.model import WorldModel
 from planner.screen.projection import CostMaps, dilate
@@ -27,7 +27,6 @@ OFF_CENTRE_KINDS = (SubgoalKind.EXPLORE, SubgoalKind.INSPECT, SubgoalKind.SETTLE
 EDGE_OFFSET = 0.4618  # squares from a centre to a place just inside the edge of the same square (convention)
 LEEWAY_TOLERANCE = 0.1  # squares by which the origin may still lie elsewhere before the robot tests it (tuned)
 COMMAND_DIGITS = 12  # decimals of a command
-GRID_LINE_TOLERANCE = 1e-3  # squares from the line between two squares that count as on it (convention)
 UNAMBIGUOUS_OFFSET = (0.0618, 0.0341)  # squares from a centre, from where no whole-degree turn leads to a grid line
 
 

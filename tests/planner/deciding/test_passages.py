@@ -10,8 +10,9 @@ import utak
 from kb.body import Move
 from kb.language.reader import facts_from_text
 from kb.localisation.hypotheses.walk_outcomes import squares_passed
-from planner.deciding.passages import SAME_LINE, Passages
+from planner.deciding.feeling import Passages
 from planner.screen.moves import EDGE_OFFSET
+from planner.sights.passages import SAME_LINE
 from planner.situation import Situation
 from planner.stages import Stage
 from tests.planner.situations import all_felt, known_situation, situation_of, tools_with, turn_of
