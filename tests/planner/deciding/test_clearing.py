@@ -149,11 +149,12 @@ def test_an_object_that_the_goal_is_about_stays() -> None:
     assert Clearing().before(UTAK, situation).result == "command"
 
 
-@pytest.mark.parametrize(("rows", "result"), [(BEFORE, "limit"), (WITHIN, "limit"), (ELSEWHERE, "idle")])
+@pytest.mark.parametrize(("rows", "result"), [(BEFORE, "limit"), (WITHIN, "command"), (ELSEWHERE, "idle")])
 def test_an_obstacle_that_did_not_move_may_be_wedged_in(rows: list[str], result: str) -> None:
     decided = Clearing().before(UTAK, felt(known(rows, movable=0)))
     assert decided.result == result
     assert ("g blocks the robot's way" in decided.why) == (result == "limit")
+    assert ("an opening that fills no whole square" in decided.why) == (result == "command")  # the wall behind it
 
 
 @pytest.mark.parametrize(("rows", "depths"), [(WITHIN, (0, 3, 3, 3)), (AGAINST, (0, 3, 6, 6)), (BEFORE, (0, 0, 0, 0))])
