@@ -95,10 +95,18 @@ class Pursuer:
                 return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
-            decision = self._walk(subgoal, stage, situation, fewest)
+            decision = self._walk(subgoal, stage, *self._way_round(subgoal, situation, fewest))
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(to_map_squares(subgoal.squares, model))
+
+    @staticmethod
+    def _way_round(
+        subgoal: Subgoal, situation: Situation, fewest: FewestMoves | None
+    ) -> tuple[Situation, FewestMoves | None]:
+        """Return the situation in which the way to a subgoal leads, and what finds routes of few moves, if any."""
+        _, within = _priced(subgoal, situation, without_priced_doors(situation))
+        return within, fewest if fewest is None or within is situation else FewestMoves(within.cost_maps)
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
@@ -230,22 +238,31 @@ def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[
     Of several priced doors the least price counts. Where the way round costs no more, only the squares are left to
     which it leads.
     """
+    within = without_priced_doors(situation)
+    return [_priced(subgoal, situation, within)[0] for subgoal in subgoals]
+
+
+def without_priced_doors(situation: Situation) -> Situation:
+    """Return the situation in which the doors that users' rules price are shut; the same one where there are none."""
     priced = [door for door in situation.doors if door.name in situation.door_prices]
-    if not priced:
-        return list(subgoals)
-    most = MOVE_COST * min(situation.door_prices[door.name] for door in priced)
-    maps, round_them = situation.cost_maps, situation.within_shut_doors(priced).cost_maps
-    found = []
-    for subgoal in subgoals:
-        through, otherwise = maps.nearest(subgoal.squares), round_them.nearest(subgoal.squares)
-        if through is not None:
-            more = most if otherwise is None else max(0.0, otherwise.cost - through.cost)
-            if otherwise is not None and more <= most:  # the way round is meant, and so are squares that it leads to
-                reached = round_them.distances[otherwise.level].ravel()[subgoal.squares] != GEODESIC_UNREACHED
-                subgoal = subgoal._replace(squares=subgoal.squares[reached])
-            subgoal = subgoal._replace(price=subgoal.price + min(most, more))
-        found.append(subgoal)
-    return found
+    return situation.within_shut_doors(priced) if priced else situation
+
+
+def _priced(subgoal: Subgoal, situation: Situation, within: Situation) -> tuple[Subgoal, Situation]:
+    """Return a subgoal with what its way costs by the prices of doors, and the situation in which that way leads.
+
+    within : the situation in which the priced doors are shut.
+    """
+    through = None if within is situation else situation.cost_maps.nearest(subgoal.squares)
+    if through is None:
+        return subgoal, situation
+    most = MOVE_COST * min(situation.door_prices.values())
+    otherwise = within.cost_maps.nearest(subgoal.squares)
+    if otherwise is None or otherwise.cost - through.cost > most:
+        return subgoal._replace(price=subgoal.price + most), situation
+    reached = within.cost_maps.distances[otherwise.level].ravel()[subgoal.squares] != GEODESIC_UNREACHED
+    price = subgoal.price + max(0.0, otherwise.cost - through.cost)
+    return subgoal._replace(squares=subgoal.squares[reached], price=price), within
 
 
 def _given_up(stage: Stage, missing: str, proof: Sequence[str], in_circles: bool) -> Decision:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import utak
 from kb.task.task import Task
 from kb.world.rooms import Door, count_crossings, went_through
 from planner.deciding.keeping import ConstraintKeeper
@@ -154,3 +155,24 @@ def test_of_two_doors_the_narrower_one_is_left_alone_by_a_thing() -> None:
     )
     found = replace(found, rooms=replace(found.rooms, doors=(first, narrow)))
     assert found.forbidden("o1") == (narrow,) and narrow.width < first.width
+
+
+def test_what_must_not_go_through_one_of_two_doors_is_carried_through_the_other() -> None:
+    """The thing stays where it is until the doors are known; the narrower one is kept shut to it."""
+    world = (
+        """table(42, 26).
+verge("MULTIPOLYGON (((0 0, 0 26, 42 26, 42 0, 0 0), (22 6, 24 6, 24 2, 41 2, 41 25, 24 25, 24 22, 22 22, 22 25, """
+        """2 25, 2 2, 22 2, 22 6)), ((22 10, 22 16, 24 16, 24 10, 22 10)))").
+utak("POINT (28.5 6.5)", 0).
+object(t1, n, "POLYGON ((29 16, 29 18, 31 18, 31 16, 29 16))").
+"""
+    )
+    scenario = utak.Scenario.from_text(
+        world=world,
+        start="object(x). shape(x, square). door(d).",
+        goal="in(x, room(next)). not_through(x, d).",
+        expect='inside(t1, "POLYGON ((2 2, 22 2, 22 25, 2 25, 2 2))").'
+        ' avoids(t1, "POLYGON ((22 6, 24 6, 24 10, 22 10, 22 6))").',
+    )
+    episode = utak.Run(scenario).finish()
+    assert (episode.verdict, episode.achieved) == ("done", True)

@@ -86,3 +86,15 @@ def test_the_thing_that_a_goal_refers_to_is_brought(goal: str) -> None:
         world = HALL.replace("b....cccc", "bcccc....").replace("dd", "..")
     episode = utak.Run(utak.Scenario.from_text(world=world, start=start, goal=goal), seed=1).finish()
     assert episode.verdict == "done"
+
+
+def test_the_whole_track_winds_about_what_was_drawn_off_a_wall_also_after_the_way_back() -> None:
+    world = """table(21, 24).
+verge("POLYGON ((0 0, 0 24, 21 24, 21 0, 0 0), (20 2, 20 23, 2 23, 2 2, 20 2))").
+utak("POINT (11.5 7.5)", 180).
+object(t1, l, "POLYGON ((2 2, 2 6, 6 6, 6 2, 2 2))").
+"""
+    start, goal = "object(x). shape(x, square).", "circled(utak, x). at(utak, start)."
+    scenario = utak.Scenario.from_text(world=world, start=start, goal=goal, expect="circles(utak, t1).")
+    episode = utak.Run(scenario).finish()
+    assert (episode.verdict, episode.achieved) == ("done", True)

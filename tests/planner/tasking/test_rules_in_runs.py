@@ -61,3 +61,24 @@ def test_an_unknown_step_in_a_body_is_refused(tmp_path: Path, rule: str, hint: s
     with pytest.raises(BadInputError) as caught:
         read_rules([rule_file(tmp_path, rule)])
     assert [problem.hint for problem in caught.value.problems] == [hint]
+
+
+def test_a_priced_door_is_not_passed_while_the_robot_looks_about(tmp_path: Path) -> None:
+    """Of two doors the narrow one has a price: neither the robot nor what it carries goes through."""
+    world = (
+        """table(27, 39).
+verge("MULTIPOLYGON (((0 0, 0 39, 27 39, 27 0, 0 0), (21.3 20.5, 21.3 21.5, 25.55 21.5, 25.55 37.75, 2.25 37.75, """
+        """2.25 21.5, 6.25 21.5, 6.25 20.5, 2.25 20.5, 2.25 2.25, 25.55 2.25, 25.55 20.5, 21.3 20.5)), """
+        """((17.9 20.5, 12.65 20.5, 12.65 21.5, 17.9 21.5, 17.9 20.5)))").
+utak("POINT (16.5 12.5)", 0).
+object(t1, t, "POLYGON ((6 9, 6 11, 8 11, 8 9, 6 9))").
+"""
+    )
+    narrow = '"POLYGON ((17.9 20.6, 21.3 20.6, 21.3 21.4, 17.9 21.4, 17.9 20.6))"'
+    expected = f"avoids(utak, {narrow}). avoids(t1, {narrow})."
+    scenario = utak.Scenario.from_text(
+        world=world, start="object(x). shape(x, square).", goal="in(x, room(next)).", expect=expected
+    )
+    rules = rule_file(tmp_path, ":~ occurs(go(D), T), width(D, W), W < 500. [20@1, narrow(D, T)]")
+    episode = utak.Run(scenario, rules=[rules]).finish()
+    assert (episode.verdict, episode.achieved) == ("done", True)
