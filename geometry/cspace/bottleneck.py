@@ -20,9 +20,10 @@ from geometry.kernels.arrays import Bools, Floats
 from geometry.kernels.jit import compiled
 from geometry.motion.obstacle_field import ObstacleField, cheapest_path_costs
 
-StatusQuery = Callable[[Any, bool], str]  # the status of planning among obstacles; whether to search with all cells
+StatusQuery = Callable[[Any, int], tuple[str, int]]  # status and cells used, of obstacles and the cells allowed
 WIDTH_PRECISION = 0.02  # squares: the bisection for the missing width ends at this; a convention
-LONG_SEARCH_PRECISION = 0.25  # squares: while the bisection's interval is wider, undecided questions get all cells
+WIDENING_CELLS = 45_000  # cells of configuration space for one missing width, and for whether widening helps
+WIDENING_CELLS_PER_QUESTION = 12_000  # of these, for one width; both bound time, about 20 microseconds a cell
 MIN_WALL_COPIES = 9  # translated copies of the free space that stand for moving a wall, at least; a convention
 MAX_WALL_COPIES = 129  # at most; in a slit the copies lie as close as it is wide, lest bars are left between them
 NARROWER_PIXEL_COST = 1000.0  # cost of entering a pixel narrower than the widest path is, against at most 1 for others
@@ -297,65 +298,62 @@ def widen_bottleneck(obstacles: Any, bottleneck: Bottleneck, extra: float, reach
     return obstacles.difference(shapely.union_all(copies).intersection(window))
 
 
-def widening_suffices(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> bool:
-    """Return whether a body would get through if one bottleneck alone were as wide as the body however it is turned.
+def status_when_wide(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> str:
+    """Return the status of planning if one bottleneck alone were as wide as the body however it is turned.
 
-    False also if planning stays undecided. The bottleneck is widened to 2.2 radii.
+    "found", "impossible" or "limit" (undecided). The bottleneck is widened to 2.2 radii.
 
     Parameters
     ----------
     obstacles : shapely geometry, squares, table frame.
     bottleneck : the place to widen.
     radius : of the body, squares.
-    status_with : status_with(walls, all_cells) returns the status of a MotionPlan ("found", "impossible" or "limit")
-        for the motion among other obstacles (shapely geometry); all_cells says whether to search with all cells or with
-        few.
+    status_with : status_with(walls, cells) returns the status of a MotionPlan ("found", "impossible" or "limit") for
+        the motion among other obstacles (shapely geometry), and how many cells the search took, of those allowed.
     """
     extra, reach = _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
-    return _decided_status(widen_bottleneck(obstacles, bottleneck, extra, reach), status_with) == "found"
+    return status_with(widen_bottleneck(obstacles, bottleneck, extra, reach), WIDENING_CELLS)[0]
 
 
-def missing_width(obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery) -> float:
-    """Return how much wider a bottleneck must be for a body to pass, in squares, provided that widening it suffices.
+def missing_width(
+    obstacles: Any, bottleneck: Bottleneck, radius: float, status_with: StatusQuery
+) -> tuple[float, float, float]:
+    """Return how much wider a bottleneck must be for a body to pass, provided that widening it suffices.
 
-    The middle of the last interval of the bisection; where planning stays undecided, the width tried then.
+    By more than the first number, by about the second and by no more than the third, in squares: with the first the
+    motion is proved impossible, with the third a motion was found.
 
-    Method: bisection, to WIDTH_PRECISION. What is not decided lies within the resolution of the very width that is
-    sought, unless it is hard otherwise: so undecided questions are asked with all cells only above
-    LONG_SEARCH_PRECISION.
+    Method: bisection, to WIDTH_PRECISION or until WIDENING_CELLS cells are used up. A width for which planning stays
+    undecided lies near the one that is sought: the bisection goes on in the larger of the gaps below and above those.
 
     Parameters
     ----------
-    obstacles : shapely geometry, squares, table frame.
-    bottleneck : the place to widen.
-    radius : of the body, squares.
-    status_with : status_with(walls, all_cells) returns the status of a MotionPlan ("found", "impossible" or "limit")
-        for the motion among other obstacles (shapely geometry); all_cells says whether to search with all cells or with
-        few.
+    obstacles, bottleneck, radius, status_with : as for `status_when_wide`.
     """
     low, high, reach = 0.0, _max_widening(bottleneck, radius), _window_radius(bottleneck, radius)
-    while high - low > WIDTH_PRECISION:
-        middle = (low + high) / 2
-        walls = widen_bottleneck(obstacles, bottleneck, middle, reach)
-        few_cells = high - low <= LONG_SEARCH_PRECISION
-        status = status_with(walls, False) if few_cells else _decided_status(walls, status_with)
+    undecided: list[float] = []  # the least and the greatest width for which planning stayed undecided
+    left = WIDENING_CELLS
+    while left > 0:
+        below, above = (undecided[0], undecided[-1]) if undecided else (high, low)
+        if not undecided:
+            gap, middle = high - low, (low + high) / 2
+        else:
+            gap, middle = max((below - low, (low + below) / 2), (high - above, (above + high) / 2))
+        if gap <= WIDTH_PRECISION:
+            break
+        status, used = status_with(
+            widen_bottleneck(obstacles, bottleneck, middle, reach), min(left, WIDENING_CELLS_PER_QUESTION)
+        )
+        left -= used
         if status == "limit":
-            return middle
-        if status == "found":
+            undecided = [min(below, middle), max(above, middle)] if undecided else [middle]
+        elif status == "found":
             high = middle
         else:
             low = middle
-    return (low + high) / 2
-
-
-def _decided_status(walls: Any, status_with: StatusQuery) -> str:
-    """Return the status among other obstacles, asked again with all cells if a few do not decide it.
-
-    "found", "impossible" or "limit" (undecided even so). `walls` : shapely geometry. `status_with` : called with the
-    walls and whether to search with all cells; returns such a status.
-    """
-    status = status_with(walls, False)
-    return status_with(walls, True) if status == "limit" else status
+        undecided = [width for width in undecided if low < width < high]
+    middle = (undecided[0] + undecided[-1]) / 2 if undecided else high
+    return low, (low + middle) / 2, high
 
 
 def _max_widening(bottleneck: Bottleneck, radius: float) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, widening_suffices
+from geometry.cspace.bottleneck import Bottleneck, find_bottleneck, missing_width, status_when_wide
 from geometry.cspace.solver import Inside, MotionSolver
 from geometry.kernels.arrays import Floats
 from geometry.motion.body import new_moving_body
@@ -29,11 +29,11 @@ from geometry.motion.validation import require_bounded
 
 __all__ = ["Inside", "MotionPlan", "plan_motion"]
 
-# All four are tuned on random worlds (benchmarks.campaign).
+# All are tuned on random worlds (benchmarks.campaign).
 FIRST_CELLS = 100_000  # cells of the first search: enough for margins of a few times the resolution
 MAX_CELLS = 400_000  # cells of the second search: enough for wide rooms
 RETRY_RESOLUTION = 0.25  # resolution of the second search as a part of the first's
-WIDENING_RESOLUTION, WIDENING_CELLS = 4e-4, 40_000  # resolution and cells of the searches for the missing width
+WIDENING_RESOLUTION = 4e-4  # resolution of the searches for the missing width
 
 
 @dataclass(frozen=True)
@@ -63,22 +63,23 @@ class MotionQuery:
         """Return all obstacles as one shapely geometry, squares, table frame. Computed at first use."""
         return shapely.union_all(self.field.polygons)
 
-    def status_among(self, walls: Any, all_cells: bool) -> str:
-        """Return the status of the same question among other, smaller obstacles: "found", "impossible" or "limit".
+    def status_among(self, walls: Any, cells: int) -> tuple[str, int]:
+        """Return the status of the same question among other, smaller obstacles, and the number of cells it took.
 
-        What was an obstacle becomes part of a goal region that it borders on.
+        The status is "found", "impossible" or "limit". What was an obstacle becomes part of a goal region that it
+        borders on.
 
         Parameters
         ----------
         walls : shapely geometry, squares, table frame: the obstacles instead.
-        all_cells : whether to search with as many cells as the question itself, rather than with WIDENING_CELLS.
+        cells : how many cells the search may take.
         """
         field, goal = ObstacleField(walls, self.field.bounds.tolist()), self.goal
         if isinstance(goal, Inside):
             opened = self.solid.difference(walls)
             goal = Inside([shapely.union_all([part, opened]) for part in shapely.get_parts(goal.polygon)])
-        cells = MAX_CELLS if all_cells else WIDENING_CELLS
-        return plan_motion(self.shape, field, self.start, goal, None, WIDENING_RESOLUTION, self.points, cells).status
+        plan = plan_motion(self.shape, field, self.start, goal, None, WIDENING_RESOLUTION, self.points, cells)
+        return plan.status, plan.cells
 
 
 @dataclass(frozen=True)
@@ -122,28 +123,42 @@ class MotionPlan:
         return None if query is None else find_bottleneck(query.field, query.goals, query.reached, query.radius)
 
     @cached_property
-    def opens(self) -> bool:
-        """Return whether widening the passage alone would make the motion possible. Computed at first use.
+    def when_wide(self) -> str:
+        """Return the status if the passage alone were wide: "found", "impossible", or "limit" where that is undecided.
 
-        False without a passage.
-        """
-        query, bottleneck = self.question, self.passage
-        return (
-            query is not None
-            and bottleneck is not None
-            and widening_suffices(query.solid, bottleneck, query.radius, query.status_among)
-        )
-
-    @cached_property
-    def missing(self) -> float:
-        """Return how much wider the passage must be, in squares, to about 0.03. Takes a second or so at first use.
-
-        nan if there is no passage; inf if widening that passage alone does not suffice.
+        "impossible" without a passage, too. Computed at first use.
         """
         query, bottleneck = self.question, self.passage
         if query is None or bottleneck is None:
-            return math.nan
-        return missing_width(query.solid, bottleneck, query.radius, query.status_among) if self.opens else math.inf
+            return "impossible"
+        return status_when_wide(query.solid, bottleneck, query.radius, query.status_among)
+
+    @property
+    def opens(self) -> bool:
+        """Return whether widening the passage alone surely makes the motion possible. Computed at first use."""
+        return self.when_wide == "found"
+
+    @property
+    def missing(self) -> float:
+        """Return about how much wider the passage must be, in squares, as `missing_between` holds it.
+
+        inf if widening that passage alone does not suffice; nan if that is undecided, or there is no passage.
+        """
+        return self.missing_between[1]
+
+    @cached_property
+    def missing_between(self) -> tuple[float, float, float]:
+        """Return how much wider the passage must be: more than the first number, about the second, at most the third.
+
+        In squares. They differ by about 0.02 where the search decides that. All nan if there is no passage, all inf if
+        widening that passage alone does not suffice, (0, nan, inf) where that is undecided. Computed at first use.
+        """
+        query, bottleneck = self.question, self.passage
+        if query is None or bottleneck is None:
+            return (math.nan,) * 3
+        if not self.opens:
+            return (0.0, math.nan, math.inf) if self.when_wide == "limit" else (math.inf,) * 3
+        return missing_width(query.solid, bottleneck, query.radius, query.status_among)
 
     @cached_property
     def length(self) -> float:

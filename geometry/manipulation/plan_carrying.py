@@ -102,7 +102,7 @@ class CarryingPlan:
 
     @cached_property
     def opens(self) -> bool:
-        """Return whether widening the passage alone would let the body through by itself.
+        """Return whether widening the passage alone surely lets the body through by itself.
 
         False without one. Computed on first access.
         """
@@ -110,11 +110,20 @@ class CarryingPlan:
 
     @cached_property
     def missing(self) -> float:
-        """Return the width that the passage lacks, in squares; nan without a passage.
+        """Return the width that the passage lacks, in squares; inf if widening it would not be enough.
 
-        inf if widening it would not be enough. Computed on first access, to about 0.03 squares.
+        nan without a passage, or if that is undecided. Computed on first access.
         """
         return math.nan if self.body is None else self.body.missing
+
+    @property
+    def missing_between(self) -> tuple[float, float, float]:
+        """Return the width that the passage lacks: more than the first number, about the second, at most the third.
+
+        In squares. All nan without a passage, all inf if widening it would not be enough, (0, nan, inf) where that is
+        undecided.
+        """
+        return (math.nan,) * 3 if self.body is None else self.body.missing_between
 
 
 def plan_carrying(

@@ -1,5 +1,6 @@
 """Infeasibility certificates: why an object cannot be carried to where it should be, and how far that is proved."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,6 +10,8 @@ from kb.objects.held_object import is_grid_aligned
 from kb.world.model import Node, WorldModel
 from planner.carrying.open_facts import possible_width
 from planner.goals.placement import is_off_quarter_turn
+
+ONE_NUMBER = 0.05  # squares: a missing width that is known this well is told as one number; a convention
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,10 +51,9 @@ class Refutation:
         if passage is None:
             return f"{self.name} cannot be carried there"
         where = f"{passage.width:.2f} squares wide at {self.model.point_in_words(passage.place)}"
-        if _is_blocked_elsewhere(closest):
-            why = f"the passage, {where}, is too narrow, and a wider one would not help"
-            return f"{self.name} cannot be carried there: {why}"
-        return f"the passage for {self.name}, {where}, is too narrow by {closest.missing:.2f} squares"
+        if not closest.opens:
+            return f"{self.name} cannot be carried there: the passage, {where}, {how_narrow(closest)}"
+        return f"the passage for {self.name}, {where}, {how_narrow(closest)}"
 
     def unless(self) -> str:
         """Return the open fact by which the passage may be wide enough, in words; "" for none.
@@ -63,7 +65,9 @@ class Refutation:
         passage = closest.passage
         if passage is None or _is_blocked_elsewhere(closest):
             return ""
-        return possible_width(passage.width, closest.missing, passage.sides, self.model.point_in_words(passage.place))
+        return possible_width(
+            passage.width, closest.missing_between[0], passage.sides, self.model.point_in_words(passage.place)
+        )
 
 
 @dataclass(frozen=True)
@@ -136,9 +140,10 @@ def _doubt(node: Node, plans: Sequence[tuple[int, CarryingPlan]], model: WorldMo
     # After a restart it is forgotten which objects were moved. One that lies askew may have been turned, against walls.
     if model.anew and node.polygon is not None and not is_grid_aligned(node.polygon):
         return "it lies askew, and may have been turned before all was forgotten"
-    # The robot has brought it there. When no wider passage would let it go on, it is more likely elsewhere.
-    off_grid = node.moved and not is_grid_aligned(node.polygon)
-    return "it was stopped on its way there" if off_grid and _is_blocked_elsewhere(closest_refuted(plans)) else ""
+    # The robot has brought it there. When no wider passage surely lets it go on, it is more likely elsewhere.
+    off_grid, closest = node.moved and not is_grid_aligned(node.polygon), closest_refuted(plans)
+    is_stopped = off_grid and closest.passage is not None and not closest.opens
+    return "it was stopped on its way there" if is_stopped else ""
 
 
 def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
@@ -152,9 +157,19 @@ def closest_refuted(plans: Sequence[tuple[int, CarryingPlan]]) -> CarryingPlan:
     return next((plan for plan in asked if plan.opens), asked[0])
 
 
-def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
-    """Return whether a passage is too narrow for a refuted plan, and to widen it alone would not help.
+def how_narrow(plan: CarryingPlan) -> str:
+    """Return by how much the passage of a refuted plan is too narrow, in words, as far as that is proved.
 
-    False when no passage is too narrow.
+    A verb and its complements: "is too narrow by 0.51 squares", with the bounds of that number where they lie apart by
+    more than ONE_NUMBER.
     """
-    return plan.passage is not None and not plan.opens
+    if not plan.opens:
+        return "is too narrow" + ", and a wider one would not help" * _is_blocked_elsewhere(plan)
+    least, _, most = plan.missing_between
+    between = f" (between {least:.2f} and {most:.2f})" if most - least > ONE_NUMBER else ""
+    return f"is too narrow by {plan.missing:.2f} squares{between}"
+
+
+def _is_blocked_elsewhere(plan: CarryingPlan) -> bool:
+    """Return whether a passage is too narrow for a refuted plan, and to widen it alone surely would not help."""
+    return plan.missing == math.inf

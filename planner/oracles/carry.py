@@ -20,6 +20,7 @@ from geometry.raster.geodesic import GEODESIC_UNREACHED, reach
 from geometry.raster.rasterize import squares
 from kb.language.vocabulary import ROBOT
 from kb.world.model import Node
+from planner.carrying.infeasibility import how_narrow
 from planner.carrying.manipulation_oracle import swept_squares
 from planner.goals.optimistic import UNSEEN_MARGIN, optimistic_floor
 from planner.oracles.problem import Lying, TableState, TaskProblem
@@ -185,9 +186,7 @@ class CarryOracle:
         (x, y), margin = refused.passage.place, self.floors.margin
         where = self._situation.model.point_in_words((x - margin, y - margin))
         wide = f"{by}the passage at {where}, {refused.passage.width:.2f} squares wide,"
-        if not refused.opens:
-            return f"{wide} does not let it through, and a wider one would not help"
-        return f"{wide} is too narrow by {refused.missing:.2f} squares"
+        return f"{wide} {how_narrow(refused)}"
 
     def is_refuted(self, state: TableState, name: str, end: End, place: str, shut: frozenset[str]) -> bool:
         """Return whether an object cannot be brought to an end in a state, as `bring` would say; this asks for less.

@@ -9,6 +9,7 @@ from simulator.repl.asking import names_word
 from simulator.repl.dialogue import Dialogue
 from simulator.run.interrupts import defer_interrupt
 from simulator.terminal.action_in_words import describe
+from simulator.terminal.progress import StepProgress
 from simulator.terminal.streams import escape_controls
 
 MAX_GOTO_STEP = 1_000_000  # the greatest number of steps that a command takes; a convention
@@ -79,7 +80,8 @@ def advance(dialogue: Dialogue, count: int | None) -> None:
             printer.tell("the step comes to its end first; Ctrl-C once more breaks it off, and it did not happen")
 
     while done != count:
-        with defer_interrupt(announce) as pressed:
+        with defer_interrupt(announce) as pressed, StepProgress() as progress:
+            progress.begin(story.at + 1)
             moved = story.advance()
         if not moved:
             break

@@ -1,6 +1,7 @@
 """One run: the robot wakes in a scenario and acts until it has a verdict; the truth is recorded as it happens."""
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
@@ -10,7 +11,7 @@ from kb.task.task import Task
 from simulator.episode.episode import EpisodeLine, EpisodeLog
 from simulator.episode.record import action_entry, header, motion_entry
 from simulator.run.embodiment import Embodiment
-from simulator.run.time_limit import TimeLimit
+from simulator.run.time_limit import TimeLimit, TimeOver
 from simulator.scenario.expectation import Snapshot, shortfalls, should_fail
 from simulator.scenario.points import ExpectationOutcome, judge_expectations
 from simulator.scenario.scenario import Scenario
@@ -164,13 +165,15 @@ class Session:
         self._log = log
         self._track: list[Snapshot] = []
 
-    def wake(self, head: EpisodeLine | None = None) -> EpisodeLine:
+    def wake(self, limit: TimeLimit | None = None) -> EpisodeLine:
         """Write the header, let the robot wake, write step 0 and return that line.
 
-        head : the header to write; None for that of the scenario and the settings.
+        limit : raises TimeOver while the robot wakes when the time is over; step 0 is not written then. None for none.
         """
-        self._log.write(header(self.scenario, self.settings) if head is None else head)
-        return self._record(self.robot.wake())
+        self._log.write(header(self.scenario, self.settings))
+        with self._cutting(limit):
+            report = self.robot.wake()
+        return self._record(report)
 
     def adopt(self, scenario: Scenario, settings: Settings) -> EpisodeLine:
         """Go on from the present step with another scenario in the same world, and with other options.
@@ -206,12 +209,16 @@ class Session:
         self._log = log
         log.write(self.line)
 
-    def step(self) -> EpisodeLine:
+    def step(self, limit: TimeLimit | None = None) -> EpisodeLine:
         """Let the robot act once, write what happened, and return the last line.
 
         A step without a command is not written.
+
+        limit : raises TimeOver within the step when the time is over. Nothing is written then, and the session must not
+        go on. None for none.
         """
-        report = self.robot.step()
+        with self._cutting(limit):
+            report = self.robot.step()
         return self.line if report.command is None else self._record(report)
 
     @property
@@ -219,13 +226,16 @@ class Session:
         """Whether the robot has a verdict."""
         return self.robot.finished
 
-    def end(self, limit: TimeLimit | None = None) -> Result:
+    def end(self, limit: TimeLimit | None = None, within: bool = False) -> Result:
         """Compare the verdict with the truth, write the result and return it.
 
         limit : the limit of time that ends the run before the robot has a verdict; None when the robot has one.
+        within : whether it cut off a step, which does not count.
         """
-        verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit)
+        verdict: VerdictProtocol = self.robot.verdict if limit is None else self._verdict_of(limit, within)
         expected = self.scenario.expectations or ()
+        if not self._track:  # the robot did not wake in time
+            self._track.append(Snapshot(0, self.table.utak, dict(self.table.polygons)))
         missed = shortfalls(expected, self.scenario.world, self._track, str(verdict.verdict))
         achieved = None if self.scenario.expectations is None else not missed and not should_fail(expected)
         outcomes = judge_expectations(expected, missed, verdict.believed, verdict.reason)
@@ -245,7 +255,10 @@ class Session:
         """
         if limit is not None:
             limit.begin()
-        self.wake()
+        try:
+            self.wake(limit)
+        except TimeOver:
+            return self.end(limit, within=True)
         watch(self)
         return self._to_the_end(watch, limit)
 
@@ -268,14 +281,22 @@ class Session:
                 limit.begin()
             elif limit is not None and limit.is_over:
                 return self.end(limit)
-            self.step()
+            try:
+                self.step(limit)
+            except TimeOver:
+                return self.end(limit, within=True)
             watch(self)
         return self.end()
 
-    def _verdict_of(self, limit: TimeLimit) -> "_LimitVerdict":
-        """Return the verdict of a run that a limit of time ends."""
-        decision = getattr(self.robot, "decision", None)
+    def _cutting(self, limit: TimeLimit | None) -> AbstractContextManager[None]:
+        """Return what raises TimeOver in a block; nothing does while the episode that is resumed is repeated."""
+        return nullcontext() if limit is None or self._log.is_repeating else limit.cutting()
+
+    def _verdict_of(self, limit: TimeLimit, within: bool) -> "_LimitVerdict":
+        """Return the verdict of a run that a limit of time ends; `within` a step or between two."""
+        decision = None if within else getattr(self.robot, "decision", None)
         coming = "" if decision is None else f"; the next command would be: {decision.why}"
+        coming = "; the time was over within a step, which does not count" if within else coming
         return _LimitVerdict(f"not done after {limit.seconds:g} second{'s' * (limit.seconds != 1)}{coming}")
 
     def fork(self) -> "Session":

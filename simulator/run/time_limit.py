@@ -1,7 +1,18 @@
-"""A limit of wall-clock time for a run, looked at between two steps."""
+"""A limit of wall-clock time for a run, looked at between two steps; it also cuts a step off."""
 
+import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+ALARM_INTERVAL = (
+    0.1  # seconds between two alarms: the one that falls where errors are ignored is repeated; a convention
+)
+
+
+class TimeOver(BaseException):
+    """Raised in a step when the time of the run is over."""
 
 
 class TimeLimit:
@@ -10,7 +21,7 @@ class TimeLimit:
     Parameters
     ----------
     seconds : the limit, in seconds of wall-clock time.
-    clock : returns seconds that have passed since whenever.
+    clock : returns seconds that have passed since whenever. Steps are cut off by the default one alone.
 
     Attributes
     ----------
@@ -29,3 +40,34 @@ class TimeLimit:
     def is_over(self) -> bool:
         """Whether so many seconds have passed."""
         return self._clock() - self._begun >= self.seconds
+
+    @contextmanager
+    def cutting(self) -> Iterator[None]:
+        """Raise TimeOver in a `with` block as soon as the time is over.
+
+        Not outside of the main thread, and not where the system knows no such alarms.
+        """
+        in_main = threading.current_thread() is threading.main_thread()
+        if self._clock is not time.monotonic or not in_main or not hasattr(signal, "setitimer"):
+            yield
+            return
+
+        is_armed = True
+
+        def cut(_number: int, _frame: object) -> None:
+            """End the block, unless it has ended."""
+            if is_armed:
+                raise TimeOver
+
+        before = signal.signal(signal.SIGALRM, cut)
+        try:
+            try:
+                left = self.seconds - (self._clock() - self._begun)
+                signal.setitimer(signal.ITIMER_REAL, max(left, 1e-6), ALARM_INTERVAL)
+                yield
+            finally:
+                is_armed = False  # an alarm may come just before: what follows is done all the same
+        finally:
+            is_armed = False
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, before)

@@ -1,6 +1,7 @@
 """Progress of long work: how much is done, and about how long the rest takes; on a terminal only."""
 
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Hashable, Mapping
@@ -52,6 +53,57 @@ class Progress:
         at_once = max(1.0, sum(spent) / elapsed) if elapsed > 0 else 1.0
         rest = sum(number * fmean(self._seconds[kind] or spent) for kind, number in self._left.items())
         return rest / at_once
+
+
+class StepProgress:
+    """Reports on a terminal (standard error) that a step of a run is planned, after 2, 6, 14 ... seconds of it.
+
+    A context manager; nothing is reported outside of its block, before a step begins, or where the standard error is no
+    terminal.
+
+    Parameters
+    ----------
+    most : the number of steps that the run takes at most; None where that is not told.
+    interval : seconds until the first report.
+    """
+
+    def __init__(self, most: int | None = None, interval: float = REPORT_SECONDS) -> None:
+        self._most, self._interval = most, interval
+        self._step, self._begun = 0, 0.0
+        self._changed, self._ended = threading.Event(), False
+        self._thread = threading.Thread(target=self._report, daemon=True)
+
+    def __enter__(self) -> "StepProgress":
+        if sys.stderr.isatty():
+            self._thread.start()
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._ended = True
+        self._changed.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def begin(self, step: int) -> None:
+        """Note that a step begins, whose number is given."""
+        self._step, self._begun = step, time.monotonic()
+        self._changed.set()
+
+    def line(self, elapsed: float) -> str:
+        """Return the report after some seconds of the step."""
+        most = "" if self._most is None else f" of at most {self._most}"
+        return f"step {self._step}{most}: planning for {duration(elapsed)} ..."
+
+    def _report(self) -> None:
+        """Print reports until the block ends."""
+        wait = self._interval
+        while not self._ended:
+            if self._changed.wait(wait):
+                self._changed.clear()
+                wait = self._interval
+            elif self._step:
+                print(self.line(time.monotonic() - self._begun), file=sys.stderr, flush=True)
+                wait *= 2
 
 
 def duration(seconds: float) -> str:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from simulator.run.time_limit import TimeLimit
     from simulator.scenario.scenario import Scenario
     from simulator.scenario.settings import Settings
+    from simulator.terminal.progress import StepProgress
 
     LineListener = Callable[[EpisodeLine], None]
 
@@ -36,7 +37,7 @@ def add(parts: Any) -> None:
         "--log", metavar="EP.jsonl", help="write the episode to this file as it happens; - is the standard output"
     )
     part.add_argument("--html", metavar="FILE", help="write the whole run as a page that plays it in any browser")
-    part.add_argument("--seconds", type=_seconds, metavar="S", help="end a run that takes longer, after a step")
+    part.add_argument("--seconds", type=_seconds, metavar="S", help="end a run that takes longer, also within a step")
     part.add_argument("--resume", action="store_true", help="go on from the episode that --log names")
     part.add_argument(
         "--from",
@@ -85,6 +86,7 @@ def execute(options: argparse.Namespace) -> int:
     """Run the robot and print the result."""
     from simulator.episode.episode import STANDARD_OUTPUT
     from simulator.scenario.scenario import read_scenario
+    from simulator.terminal.progress import StepProgress
 
     wrong = _wrong_usage(options)
     if wrong:
@@ -98,7 +100,8 @@ def execute(options: argparse.Namespace) -> int:
         check_page_path(options.html, options.force)
     lines: list[EpisodeLine] = []
     run = _run if options.origin is None else _run_fork
-    result = run(options, scenario, _progress_printer(options.watch), _listener(options, lines))
+    with StepProgress(settings_of(options).max_steps) as progress:
+        result = run(options, scenario, _progress_printer(options.watch, progress), _listener(options, lines))
     if options.html is not None:
         from simulator.explaining.questions import rule_paths
         from simulator.replay.output import write_page
@@ -241,15 +244,19 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
         print(f"not met: {expected}: {came}", file=sys.stderr)
 
 
-def _progress_printer(watch: bool) -> "Callable[[Session], None]":
+def _progress_printer(watch: bool, progress: "StepProgress") -> "Callable[[Session], None]":
     """Return what prints after each step: nothing, one line on a terminal, or the table as a picture."""
     from simulator.replay.watching import TableWatch, step_in_words
 
-    if watch:
-        return TableWatch().tell
-    if not sys.stderr.isatty():
-        return lambda session: None
-    return lambda session: print(step_in_words(session.line), file=sys.stderr)
+    tell = TableWatch().tell if watch else lambda session: print(step_in_words(session.line), file=sys.stderr)
+
+    def note(session: "Session") -> None:
+        """Tell the step that is done; the next one begins."""
+        if watch or sys.stderr.isatty():
+            tell(session)
+        progress.begin(session.line["step"] + 1)
+
+    return note
 
 
 def _recorded(lines: "list[EpisodeLine]") -> "Episode":

@@ -10,11 +10,12 @@ from hypothesis import strategies as st
 from shapely import affinity, box
 
 from geometry.cspace.bottleneck import (
-    LONG_SEARCH_PRECISION,
+    WIDENING_CELLS,
+    WIDTH_PRECISION,
     Bottleneck,
     find_bottleneck,
     missing_width,
-    widening_suffices,
+    status_when_wide,
 )
 from geometry.cspace.plan_motion import plan_motion
 from geometry.manipulation.goals import Inside
@@ -82,22 +83,25 @@ def test_the_passage_between_two_rooms_is_the_door(
 
 
 @pytest.mark.parametrize("lacking", [0.4, 1.3, 2.6])
-def test_what_a_few_cells_do_not_decide_is_asked_with_all_cells(lacking: float) -> None:
+@pytest.mark.parametrize("hard", [0.0, 0.3])
+def test_the_missing_width_lies_between_what_is_refuted_and_what_is_found(lacking: float, hard: float) -> None:
+    """However much about the true width stays undecided, and within the cells allowed."""
     obstacles, gap, radius = box(0, 0, 30, 10).union(box(0, 12, 30, 22)), 2.0, 3.0
     bottleneck = Bottleneck((15.0, 11.0), ((15.0, 10.0), (15.0, 12.0)), gap)
-    all_cells_asked = []
+    taken = []
 
-    def status_with(walls: shapely.Geometry, all_cells: bool) -> str:
-        all_cells_asked.append(all_cells)
-        opened = (
-            shapely.LineString([(15.0, -9.0), (15.0, 31.0)]).intersection(box(0, 0, 30, 22).difference(walls)).length
-        )
-        return "limit" if not all_cells else "found" if opened >= gap + lacking else "impossible"
+    def status_with(walls: shapely.Geometry, cells: int) -> tuple[str, int]:
+        line = shapely.LineString([(15.0, -9.0), (15.0, 31.0)])
+        more = line.intersection(box(0, 0, 30, 22).difference(walls)).length - gap - lacking
+        taken.append(cells if abs(more) < hard else 100)
+        return "limit" if abs(more) < hard else "found" if more >= 0.0 else "impossible", taken[-1]
 
-    assert widening_suffices(obstacles, bottleneck, radius, status_with)
-    assert all_cells_asked == [False, True]
-    assert missing_width(obstacles, bottleneck, radius, status_with) == pytest.approx(
-        lacking, abs=LONG_SEARCH_PRECISION / 2
-    )
-    assert not all_cells_asked[-1]  # near the end of the bisection, undecided means found
-    assert not widening_suffices(obstacles, bottleneck, radius, lambda walls, all_cells: "limit")
+    assert status_when_wide(obstacles, bottleneck, radius, status_with) == "found"
+    taken.clear()
+    least, likely, most = missing_width(obstacles, bottleneck, radius, status_with)
+    assert least < lacking <= most + 1e-9
+    assert likely == pytest.approx(lacking, abs=hard or WIDTH_PRECISION)
+    assert most - least < 2 * (hard + WIDTH_PRECISION) + 0.3 * bool(hard)
+    assert sum(taken) <= WIDENING_CELLS
+    undecided = status_when_wide(obstacles, bottleneck, radius, lambda walls, cells: ("limit", cells))
+    assert undecided == "limit"

@@ -10,6 +10,7 @@ import shapely
 import shapely.affinity
 
 from geometry.cspace.bottleneck import Bottleneck
+from geometry.cspace.plan_motion import MotionPlan
 from geometry.manipulation.plan_carrying import CarryingPlan, Inside
 from kb.language.reader import facts_from_text
 from kb.mapping.occupancy import OCCUPIED
@@ -17,7 +18,7 @@ from kb.mapping.patch import patch_of_polygon
 from kb.task.task import Task
 from kb.world.model import Node
 from kb.world.rooms import MIN_DOOR_CONFIDENCE
-from planner.carrying.infeasibility import Infeasibility, certify, closest_refuted
+from planner.carrying.infeasibility import Infeasibility, certify, closest_refuted, how_narrow
 from planner.carrying.manipulation_oracle import (
     CONTACTS_FOR_CLEARANCE,
     WALL_CLEARANCE,
@@ -109,6 +110,24 @@ def test_an_object_stopped_off_the_grid_that_no_wider_passage_helps_proves_nothi
     answer = certify(node, [(2, plan)], known_model(PARTED))
     assert answer.proved == proved
     assert ("stopped on its way" in answer.reason()) != proved
+
+
+@pytest.mark.parametrize(
+    ("between", "words"),
+    [
+        ((math.inf, math.inf, math.inf), "is too narrow, and a wider one would not help"),
+        ((0.0, math.nan, math.inf), "is too narrow"),
+        ((0.49, 0.5, 0.51), "is too narrow by 0.50 squares"),
+        ((0.4, 0.5, 0.6), "is too narrow by 0.50 squares (between 0.40 and 0.60)"),
+    ],
+)
+def test_a_reason_says_no_more_than_the_search_decided(between: tuple[float, float, float], words: str) -> None:
+    body = MotionPlan("impossible")
+    body.__dict__.update(passage=Bottleneck((9.0, 7.0), ((9.0, 6.0), (9.0, 8.0)), 2.0), missing_between=between)
+    body.__dict__["when_wide"] = "found" if between[1] == 0.5 else "limit" if between[0] == 0.0 else "impossible"
+    plan = CarryingPlan("impossible", body=body)
+    assert plan.missing == pytest.approx(between[1], nan_ok=True)
+    assert how_narrow(plan) == words
 
 
 @pytest.mark.parametrize(("anew", "askew", "proved"), [(False, 20.0, True), (True, 20.0, False), (True, 0.0, True)])

@@ -1,8 +1,11 @@
 """Progress on a terminal, and the estimate of the remaining time."""
 
+import itertools
+import sys
+
 import pytest
 
-from simulator.terminal.progress import Progress, duration
+from simulator.terminal.progress import Progress, StepProgress, duration
 
 
 def test_the_rest_is_estimated_by_kind_and_by_how_many_are_done_at_once() -> None:
@@ -23,8 +26,6 @@ def test_the_last_report_tells_how_long_it_took() -> None:
 def test_reports_go_to_a_terminal_alone(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     Progress({"one": 1}, "runs", 0.0).note("one", 1.0)
     assert capsys.readouterr().err == ""
-    import sys
-
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     progress = Progress({"one": 3}, "runs", 0.0)
     for _ in range(3):
@@ -34,6 +35,25 @@ def test_reports_go_to_a_terminal_alone(monkeypatch: pytest.MonkeyPatch, capsys:
         "2 of 3 runs done",
         "3 of 3 runs done",
     ]
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_a_long_step_is_reported_on_a_terminal_alone(
+    is_terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The report comes while the step goes on, from its beginning to the end of the block."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal)
+    said = ""
+    with StepProgress(200, 0.001) as progress:
+        assert capsys.readouterr().err == ""
+        progress.begin(7)
+        for _ in itertools.count() if is_terminal else range(10_000):
+            said += capsys.readouterr().err
+            if said:
+                break
+    assert said == "step 7 of at most 200: planning for 0 s ...\n" * said.count("\n")
+    assert bool(said) == is_terminal
+    assert StepProgress().line(4.0) == "step 0: planning for 4 s ..."
 
 
 def test_durations_are_short_texts() -> None:
