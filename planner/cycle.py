@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 from kb.body import Body, Command, Impression, Release
 from kb.knowledge import Knowledge
 from kb.localisation.field_account import Accommodation
+from kb.reasoning.user_rules import rules_never_applied
 from kb.task.task import Task
-from kb.tracing.decisions import SolverCall, record_decisions
+from kb.tracing.decisions import SolverCall, record_applied_rules, record_decisions
 from kb.world.facts import Places, belief
 from planner.agenda.decider import Decider
 from planner.decision import Decision, TaskVerdict
@@ -128,8 +129,14 @@ class Robot:
         self.steps = 0
         self._must_restart = False  # whether all beliefs are given up as soon as the hand is empty
         self._has_restarted = False
+        self._applied: set[str] = set()  # the places of the users' rules that had an instance so far
         self._journal = Journal()
         self._before: _Before | None = None  # the mind before the newest impression; None until the robot wakes
+
+    @property
+    def idle_rules(self) -> tuple[str, ...]:
+        """The users' rules that had no instance in any decision so far, in words with file and line."""
+        return rules_never_applied(tuple(map(Path, self.options.kb_files)), self._applied)
 
     def wake(self) -> StepReport:
         """Receive the first impression, interpret it and make the first plan (steps 1 to 7); report it."""
@@ -187,7 +194,7 @@ class Robot:
             same = (task.parameters, task.claims) == (decider.task.parameters, decider.task.claims)
             attained = decider.attained if task == decider.task else 0
             decider = Decider(task, options.paths, rules, options.pull, bound=decider.bound if same else {})
-            decider.attained = attained
+            decider.attained, decider.place_names = attained, before.decider.place_names
         self.options, self.knowledge, self.decider = options, before.knowledge, decider
         self._journal = before.journal
         self._must_restart, self._has_restarted = before.must_restart, before.has_restarted
@@ -217,7 +224,7 @@ class Robot:
         command : the command before the impression; None on waking.
         decides_afresh : whether a held object is released first, because nothing is known of how it is to be carried.
         """
-        with record_decisions() as decisions:
+        with record_decisions() as decisions, record_applied_rules(self._applied):
             if command is None:
                 self.model, accommodated = self.knowledge.wake(impression)  # (3, 4, 5)
                 self._decide()  # (6, 7)

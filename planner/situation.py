@@ -16,7 +16,9 @@ from kb.language.vocabulary import ROBOT
 from kb.mapping.patch import Patch
 from kb.task.task import Task
 from kb.world.corners import Corner
+from kb.world.facts import Places, facts_for_rules
 from kb.world.model import Node, WorldModel
+from kb.world.place_names import SAME_DOOR
 from kb.world.rooms import MIN_DOOR_CONFIDENCE, MIN_TRIED_DOOR_CONFIDENCE, Door, Rooms, rooms_of, went_through
 from planner.constraints import (
     CARRY_NOTHING_THROUGH,
@@ -32,7 +34,6 @@ from planner.sights.frontiers import Viewpoint, viewpoint_of
 from planner.stages import constraints
 
 NECK_WIDTH = 0.01  # squares about the line of a shut door; a convention
-SAME_DOOR = 1.5  # squares between the middles of what is one door, as it was and as it is believed now; a convention
 
 
 def possible_doors(model: WorldModel, rooms: Rooms, rules: tuple[Path, ...]) -> tuple[Door, ...]:
@@ -112,6 +113,10 @@ class Situation:
         if (self.model.walls == self.model.verge).all():
             return self.rooms
         return rooms_of(self.model, self.rules, self.model.walls)
+
+    def facts_for_rules(self, encoding: str) -> tuple[str, ...]:
+        """Return the facts of the world model that users' rules name in an encoding, without full stops."""
+        return facts_for_rules(encoding, self.rules, self.model, Places(self.rooms, self.corners))
 
     @property
     def doors(self) -> tuple[Door, ...]:

@@ -213,6 +213,11 @@ class Episode(Sequence[Step]):
         return "" if self.record.result is None else str(self.record.result["reason"])
 
     @property
+    def idle_rules(self) -> tuple[str, ...]:
+        """The users' rules that never applied in the run, in words with file and line; () while it goes on."""
+        return () if self.record.result is None else tuple(self.record.result.get("idle_rules", ()))
+
+    @property
     def achieved(self) -> bool | None:
         """Whether the end is as expect.lp expects; None without expectations or without an end."""
         return None if self.record.result is None else self.record.result["achieved"]

@@ -7,7 +7,10 @@ from typing import NamedTuple
 from kb.perception.regions import Percept
 from kb.reasoning.encodings import KB_ENCODINGS, encoding_constant
 from kb.reasoning.solver import solve
+from kb.reasoning.user_rules import rules_reach, world_facts_named
+from kb.tracing.decisions import record_decisions
 
+SHAPES = KB_ENCODINGS / "shapes.lp"
 INTERPRETATION = KB_ENCODINGS / "interpretation.lp"
 SHORTEST_WALL = encoding_constant(INTERPRETATION, "shortest_wall")  # squares: what is so long is surely verge
 LONGEST_OBJECT = encoding_constant(INTERPRETATION, "longest_object")  # squares: what is longer is no object
@@ -107,7 +110,9 @@ def interpret_regions(percept: Percept, touched: Iterable[tuple[str, str]] = (),
     return Kinds(kind, frozenset(passages))
 
 
-def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mapping[str, Mapping[str, int]]:
+def classify_shapes(
+    facts: Iterable[str], rules: tuple[Path, ...] = (), world: Iterable[str] = ()
+) -> Mapping[str, Mapping[str, int]]:
     """Decide which shapes objects have.
 
     Parameters
@@ -116,7 +121,10 @@ def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mappi
         The facts fit/4, open_squares/2 and full_squares/2 of kb/asp/shapes.lp, without full stops, as of
         `kb.world.objects.shape_facts`.
     rules : tuple of Path
-        The user's own encodings, solved together with kb/asp/shapes.lp.
+        The user's own encodings, solved together with kb/asp/shapes.lp. What they state of an object and a class counts
+        in place of what the encoding derives; of several confidences the greatest.
+    world : iterable of str
+        What else is known of the objects, as facts without full stops; used where users' rules name it.
 
     Returns
     -------
@@ -129,7 +137,16 @@ def classify_shapes(facts: Iterable[str], rules: tuple[Path, ...] = ()) -> Mappi
         The user's encodings are wrong.
     """
     answer: dict[str, dict[str, int]] = {}
-    for atom in solve([KB_ENCODINGS / "shapes.lp", *rules], facts) or ():
+    given = list(facts)
+    named = [fact for fact in world if fact.partition("(")[0] in world_facts_named(SHAPES.stem, rules)]
+    atoms = solve([SHAPES, *rules], [*given, *named]) or []
+    if rules_reach(SHAPES.stem, rules):
+        with record_decisions():  # what rules change is asked, not decided
+            usual = solve([SHAPES], given) or []
+        stated = [atom for atom in atoms if atom not in usual]
+        replaced = {tuple(atom.arguments[:2]) for atom in stated}
+        atoms = [*(atom for atom in usual if tuple(atom.arguments[:2]) not in replaced), *stated]
+    for atom in atoms:
         if atom.match("shape", 3):
             node, shape, confidence = (str(a) for a in atom.arguments)
             known = answer.setdefault(node, {})

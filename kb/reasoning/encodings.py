@@ -26,11 +26,13 @@ class BoundedAnswer(NamedTuple):
     atoms : its shown atoms, clingo symbols sorted by their text; None when none was found.
     proved : whether the search ended: then no answer set is better, or there is none.
     cost : its cost, pairs of level and amount, the highest level first.
+    applied : the users' rules that had an instance, each as `RULES.lp:LINE:COLUMN`.
     """
 
     atoms: tuple[clingo.Symbol, ...] | None
     proved: bool
     cost: tuple[tuple[int, int], ...] = ()
+    applied: tuple[str, ...] = ()
 
     def cost_at(self, level: int) -> int:
         """Return the cost at one level; 0 where nothing costs anything there."""

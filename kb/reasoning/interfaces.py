@@ -18,10 +18,12 @@ from kb.language.arguments import (
 )
 from kb.language.terms import Symbol, Term
 from kb.language.vocabulary import (
+    BELIEF_PREDICATES,
     CONFIDENCE_ARGUMENT,
     CORNER_NAMES,
     KIND_ARGUMENT,
     LENGTH_ARGUMENT,
+    PLAN_PREDICATES,
     SETTLING_STEPS,
     SHAPE_CLASSES,
     Signature,
@@ -255,9 +257,21 @@ PLAN_FACTS = frozenset(
 READ_ONLY_THERE: Mapping[str, frozenset[Signature]] = {
     "task": frozenset({("shape", 3), ("colour", 3), ("width", 2), ("bound", 2)}),
 }
+# By the name of an encoding: the predicates of the world model that rules may read there besides its own. Rules about
+# nothing but the world model bind the task plan; elsewhere they would leave no answer.
+WORLD_PREDICATES = frozenset(BELIEF_PREDICATES) - frozenset(PLAN_PREDICATES)
+WORLD_FACTS_THERE: Mapping[str, frozenset[Signature]] = {
+    name: known - frozenset(USER_RULE_INTERFACES[name])
+    for name, known in {
+        "shapes": frozenset({("colour", 3)}),  # all that is known of objects before their shapes are
+        "reconciliation": WORLD_PREDICATES - {("corner", 3)},  # the corners are found after it
+        "task": WORLD_PREDICATES,
+        "agenda": WORLD_PREDICATES,
+    }.items()
+}
 # Predicates that state which things exist and how they are numbered. Users' rules may read, but not derive them.
 READ_ONLY_PREDICATES: frozenset[Signature] = frozenset(
-    {("region", 3), ("own", 1), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
+    {("region", 3), ("own", 1), ("has", 4), ("neck", 5), ("convex", 3), ("wanted", 1), ("candidate", 2), ("fit", 4)}
     | {signature for signature in USER_RULE_INTERFACES["task"] if signature[0] in PLAN_FACTS}
     | set(USER_RULE_INTERFACES["agenda"])  # rules may forbid activities, and price them
 )

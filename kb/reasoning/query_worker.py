@@ -295,13 +295,13 @@ def _respond(line: bytes) -> Response:
     try:
         request = json.loads(line)
         if "read" in request:
-            return read_rule_text(request["read"])
+            return read_rule_text(request["read"], request["renamed"])
         if "justify" in request:
             return justify_rules(request["facts"], request["rules"])
         if "trace" in request:
             return respond(request["trace"])
         if "program" in request:
-            return solve_with_rules(request["program"], request["rules"], request["heads"], request["conflicts"])
+            return solve_with_rules(**request)
         believed = _held_facts(request)
         if believed is None:
             return {"unknown": request["number"]}

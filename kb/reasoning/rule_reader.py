@@ -4,7 +4,7 @@ It runs in the process of kb.reasoning.query_worker. Arithmetic is rewritten to 
 exactly: where clingo would wrap a result to 32 bits without a message, the rule has an error.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import clingo
@@ -20,10 +20,12 @@ from clingo.ast import (
     parse_string,
 )
 
+from kb.language.vocabulary import Signature
 from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
 from kb.tracing.syntax import global_variables_of
 
+OWN_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
 # Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
 IGNORED_STATEMENTS = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")
@@ -42,21 +44,23 @@ class RuleSyntaxError(Exception):
     """A text is no file of rules; the message is clingo's, which begins with its place."""
 
 
-def read_statements(text: str) -> list[dict[str, Any]]:
+def read_statements(text: str, renamed: Collection[Signature] = ()) -> list[dict[str, Any]]:
     """Return the statements of a rule file that have an effect, in order.
 
     Parameters
     ----------
     text : the whole file.
+    renamed : predicates of the user's own that get another name in "text" and "condition", where encodings have one of
+        that name that is none of the user's business.
 
     Returns
     -------
     One dictionary of JSON values for each rule, `#minimize`, weak constraint and `#defined`: "at" (line and column,
     from 1), "heads" (the atoms stated or chosen) and "body" (those on which they depend), lists of dictionaries with
     the keys name, arity, at, constants, places and negative; "text" (the statement with checked arithmetic), "written"
-    (as the user wrote it, constants replaced), "plain" (whether it is a rule with one atom, not negated, as its head),
-    "variables" (the names of its global variables) and "declares" ([name, number of arguments] of a `#defined`, else
-    None). Other statements are left out.
+    (as the user wrote it, constants replaced), "condition" (its body alone, as in "text"), "plain" (whether it is a
+    rule with one atom, not negated, as its head), "variables" (the names of its global variables) and "declares"
+    ([name, number of arguments] of a `#defined`, else None). Other statements are left out.
 
     Raises
     ------
@@ -70,7 +74,8 @@ def read_statements(text: str) -> list[dict[str, Any]]:
     except RuntimeError as error:
         raise RuleSyntaxError(messages[0] if messages else str(error)) from None
     constants = _constants(found)
-    return [_entry(_ConstantSubstitution(constants).visit(node)) for node in found if _kept(node)]
+    names = _OwnNames(renamed)
+    return [_entry(_ConstantSubstitution(constants).visit(node), names) for node in found if _kept(node)]
 
 
 def _kept(node: AST) -> bool:
@@ -83,25 +88,27 @@ def _kept(node: AST) -> bool:
     return node.ast_type in KEPT_STATEMENTS
 
 
-def _entry(node: AST) -> dict[str, Any]:
+def _entry(node: AST, names: "_OwnNames") -> dict[str, Any]:
     """Return a statement as a dictionary of JSON values.
 
-    The keys are at, heads, body, text, written, plain, variables and declares (see `read_statements`): its place, the
-    atoms that it states, those on which they depend, the statement with checked arithmetic and as written, whether its
-    head is one atom, its global variables, and the predicate of a `#defined` or None.
+    The keys are at, heads, body, text, written, condition, plain, variables and declares (see `read_statements`): its
+    place, the atoms that it states, those on which they depend, the statement with checked arithmetic and as written,
+    its body, whether its head is one atom, its global variables, and the predicate of a `#defined` or None.
     """
     if node.ast_type == ASTType.Defined:
-        entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "plain": False}
-        return entry | {"variables": [], "declares": [node.name, node.arity]}
+        entry = {"at": place_of(node), "heads": [], "body": [], "text": "", "written": "", "condition": ""}
+        return entry | {"plain": False, "variables": [], "declares": [node.name, node.arity]}
     chosen, conditions = _split_head(node.head) if node.ast_type == ASTType.Rule else ([], [])
     heads = [atom for part in chosen for atom in _atoms(part)]
     body = [atom for part in (*node.body, *conditions) for atom in _atoms(part)]
+    checked = names.visit(_ArithmeticRewriter().visit(node))
     return {
         "at": place_of(node),
         "heads": heads,
         "body": body,
-        "text": str(_ArithmeticRewriter().visit(node)),
+        "text": str(checked),
         "written": str(node),
+        "condition": "; ".join(map(str, checked.body)),
         "plain": _is_plain(node),
         "variables": list(global_variables_of(node)),
         "declares": None,
@@ -243,6 +250,20 @@ class _ConstantSubstitution(Transformer):
         """Return the value of a constant, which stands in its place, as a term; any other term as it is."""
         value = self._values.get(str(node))
         return node if value is None else SymbolicTerm(node.location, value)
+
+
+class _OwnNames(Transformer):
+    """Gives some predicates, each a name and its number of arguments, a name that no encoding has."""
+
+    def __init__(self, renamed: Collection[Signature]) -> None:
+        self._renamed = frozenset(renamed)
+
+    def visit_SymbolicAtom(self, node: AST) -> AST:  # noqa: N802 (clingo's name)
+        """Return the atom, under its other name where it has one."""
+        symbol = node.symbol
+        if symbol.ast_type != ASTType.Function or (symbol.name, len(symbol.arguments)) not in self._renamed:
+            return node
+        return node.update(symbol=symbol.update(name=f"{OWN_PREFIX}{symbol.name}"))
 
 
 class _ArithmeticRewriter(Transformer):

@@ -13,16 +13,17 @@ Response = dict[str, Any]  # JSON values for the parent process
 MAX_RULES_TRIED = 200  # rules left out in turn, one solving each, to find those that contradict; a convention
 
 
-def read_rule_text(text: str) -> Response:
+def read_rule_text(text: str, renamed: Sequence[Sequence[Any]] = ()) -> Response:
     """Return the statements of a rule file: {"statements": [...]}, dictionaries as of `read_statements`.
 
     One dictionary for each statement that has an effect, in the order of the text.
 
-    text : the whole file. An error is returned as {"message": clingo's message}, or as {"error": message, "at": (line,
-    column), "hint"}.
+    text : the whole file. renamed : [name, number of arguments] of the predicates that get another name.
+
+    An error is returned as {"message": clingo's message}, or as {"error": message, "at": (line, column), "hint"}.
     """
     try:
-        return {"statements": read_statements(text)}
+        return {"statements": read_statements(text, {(str(name), int(count)) for name, count in renamed})}
     except RuleSyntaxError as error:
         return {"message": str(error)}
     except ClauseError as error:
@@ -31,7 +32,13 @@ def read_rule_text(text: str) -> Response:
         return {"error": "a term is nested too deep", "at": (1, 1), "hint": ""}
 
 
-def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequence[Any]], conflicts: int) -> Response:
+def solve_with_rules(
+    program: str,
+    rules: Sequence[str],
+    heads: Sequence[Sequence[Any]],
+    conflicts: int,
+    conditions: Sequence[str] = (),
+) -> Response:
     """Return the best answer set of an encoding together with users' rules.
 
     Parameters
@@ -41,18 +48,20 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
     heads : [name, number of arguments] of the predicates whose derived atoms are returned.
     conflicts : the limit of the search, in conflicts of clingo's; 0 to ground only, which tests whether everything can
         be computed.
+    conditions : the body of each rule, with checked arithmetic; '' for none.
 
     Returns
     -------
     One of these dictionaries; atoms are texts, rules are numbered from 0:
 
     - {"atoms": shown atoms of the best answer set, "derived": all atoms of `heads` that some answer set may hold,
-      "cost": pairs of level and amount, "proved": whether the search ended}
+      "cost": pairs of level and amount, "proved": whether the search ended, "applied": numbers of rules}: those whose
+      body may hold, by what was grounded
     - {} when nothing was searched and no error occurred
     - {"message": clingo's message}, with line numbers from 1 that count the rules
     - {"error": message, "at": (line, column), "rule": number} for an error of arithmetic
-    - {"cut": conflicts} when the search reached the limit before there was an answer
-    - {"against": numbers of rules} that together leave no answer
+    - {"cut": conflicts, "applied"} when the search reached the limit before there was an answer
+    - {"against": numbers of rules, "applied"} that together leave no answer
     """
     rules = [" ".join(rule.split("\n")) for rule in rules]
     for options in (CORE_GUIDED, ()):  # the same search as without users' rules
@@ -72,12 +81,28 @@ def solve_with_rules(program: str, rules: Sequence[str], heads: Sequence[Sequenc
         if result.exhausted:
             break
     if not best:
-        return {"against": _conflicting_rules(program, rules)} if result.exhausted else {"cut": conflicts}
+        observed = _grounded(program, [*rules, *_observers(conditions)])[0]
+        applied = _instances(observed)
+        end = {"against": _conflicting_rules(program, rules)} if result.exhausted else {"cut": conflicts}
+        return {**end, "applied": applied}
+    control.add("observed", [], "\n".join(_observers(conditions)))
+    control.ground([("observed", [])], context=Calculator())  # after the search, which stays as it was
+    applied = _instances(control)
     derived = [
         str(atom.symbol) for name, arity in heads for atom in control.symbolic_atoms.by_signature(str(name), int(arity))
     ]
     atoms, cost = best[-1]
-    return {"atoms": atoms, "derived": derived, "cost": cost, "proved": result.exhausted}
+    return {"atoms": atoms, "derived": derived, "cost": cost, "proved": result.exhausted, "applied": applied}
+
+
+def _observers(conditions: Sequence[str]) -> list[str]:
+    """Return rules that derive `applied__(N)` where the body of rule N holds, for those that have one."""
+    return [f"applied__({number}) :- {' '.join(text.split())}." for number, text in enumerate(conditions) if text]
+
+
+def _instances(control: clingo.Control) -> list[int]:
+    """Return the numbers, from 0, of the rules whose observers have an instance in a grounded program."""
+    return [atom.symbol.arguments[0].number for atom in control.symbolic_atoms.by_signature("applied__", 1)]
 
 
 def _grounded(

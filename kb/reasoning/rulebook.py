@@ -21,6 +21,7 @@ from kb.reasoning.interfaces import (
     READ_ONLY_THERE,
     TRANSIENT_NUMBERS,
     USER_RULE_INTERFACES,
+    WORLD_FACTS_THERE,
 )
 
 QUERY_INTERFACE = "belief"  # the name under which the facts that queries read stand among the encodings
@@ -40,6 +41,10 @@ INTERNAL_PREDICATES: Mapping[Signature, tuple[str, ...]] = {
     ("contradicted", 1): ("accommodation",), ("cramped", 1): ("accommodation",),
     ("clear", 0): ("accommodation",), ("uneven", 0): ("accommodation",), ("unchanged", 0): ("accommodation",),
 }  # fmt: skip
+# By a predicate that rules only read: what they may state in its place.
+STATE_INSTEAD: Mapping[Signature, str] = {
+    ("has", 4): "state shape(N, S, C), which counts wherever the shape of N does",
+}
 # The predicates that rules may use, by encoding.
 PREDICATES_BY_ENCODING: Mapping[str, frozenset[Signature]] = {
     **{name: frozenset(interface) for name, interface in USER_RULE_INTERFACES.items()},
@@ -88,6 +93,7 @@ class Statement:
     body : the atoms on which these depend.
     text : the statement as clingo gets it, with checked arithmetic.
     written : the statement as the user wrote it, with constants replaced.
+    condition : its body as clingo gets it; '' where it has none.
     is_single_atom_rule : whether it is a rule with one atom as its head.
     declares : the predicate (name, number of arguments) of a `#defined`, which states nothing; None for other
         statements.
@@ -100,9 +106,20 @@ class Statement:
     body: tuple[RuleAtom, ...]
     text: str
     written: str
+    condition: str
     is_single_atom_rule: bool
     declares: Signature | None
     variables: tuple[str, ...]
+
+    @property
+    def place(self) -> str:
+        """File, line and column of the statement, such as `rules.lp:3:1`."""
+        return f"{self.line}:{self.at[1]}"
+
+    @property
+    def line(self) -> str:
+        """File and line of the statement, such as `rules.lp:3`."""
+        return f"{self.source.file}:{self.at[0]}"
 
     def problem(self, what: str, at: tuple[int, int] | None = None, hint: str = "") -> Problem:
         """Return the problem `what` at the statement's place, or at another line and column (from 1).
@@ -121,8 +138,7 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
     It holds the source, the place (line, column, from 1), the atoms that it states and those on which they depend, its
     text with checked arithmetic and as written, whether its head is one atom, what it declares, and its variables.
 
-    source : the text of the file. entry : one of the dictionaries, with the keys at, heads, body, text, written, plain,
-        variables and declares.
+    source : the text of the file. entry : one of the dictionaries, with the keys of that function.
     """
     heads, body = (tuple(_atom(one) for one in entry[part]) for part in ("heads", "body"))
     declares = (entry["declares"][0], entry["declares"][1]) if entry["declares"] else None
@@ -133,6 +149,7 @@ def statement_of(source: Source, entry: Mapping[str, Any]) -> Statement:
         body=body,
         text=entry["text"],
         written=entry["written"],
+        condition=entry["condition"],
         is_single_atom_rule=entry["plain"],
         declares=declares,
         variables=tuple(entry["variables"]),
@@ -173,18 +190,11 @@ class Rulebook:
         self.statements = tuple(one for one in statements if one.declares is None)
         self._declared = {one.declares for one in statements if one.declares is not None}
         self._used = {atom.signature for one in self.statements for atom in one.body}
-        self.own_predicates = (
-            {atom.signature for one in self.statements for atom in one.heads}
-            - INTERFACE_PREDICATES
-            - set(INTERNAL_PREDICATES)
-        )
+        self.own_predicates = {atom.signature for one in self.statements for atom in one.heads} - INTERFACE_PREDICATES
         problems = [problem for one in self.statements for problem in self._invalid_parts(one)]
         if problems:
             raise BadInputError(problems)
-        self._counting = {
-            name: self._applicable(known, READ_ONLY_THERE.get(name, frozenset()))
-            for name, known in PREDICATES_BY_ENCODING.items()
-        }
+        self._counting = {name: self._taking_part(name) for name in PREDICATES_BY_ENCODING}
         problems = [problem for one in self.statements for problem in self._without_effect(one)]
         if problems:
             raise BadInputError(problems)
@@ -250,14 +260,14 @@ class Rulebook:
         for atom in one.heads:
             if atom.signature in READ_ONLY_PREDICATES:
                 what = f"{_form(atom.signature)} says what there is, and rules add nothing to it"
-                yield one.problem(what, atom.at)
+                yield one.problem(what, atom.at, STATE_INSTEAD.get(atom.signature, ""))
             elif atom.signature in INTERFACE_PREDICATES:
                 yield from self._constants_outside_domains(one, atom)
             elif self._is_misspelt(atom, one):
                 yield one.problem(*_unknown(atom, INTERFACE_PREDICATES))
 
     def _is_misspelt(self, atom: RuleAtom, one: Statement) -> bool:
-        """Return whether a head states a known predicate with a wrong number of arguments.
+        """Return whether a head states a predicate that rules may state, with a wrong number of arguments.
 
         A predicate that rules use, too, is the user's own, whatever its name; so is one whose name is known only in
         encodings that the rule does not speak of.
@@ -268,7 +278,7 @@ class Rulebook:
             return False
         spoken = {other.signature for other in one.body} & INTERFACE_PREDICATES
         known = [names for names in PREDICATES_BY_ENCODING.values() if not spoken or spoken & names]
-        return any(atom.name == name for names in known for name, _ in names)
+        return any(atom.name == name for names in known for name, _ in names - READ_ONLY_PREDICATES)
 
     def _unknown_steps(self, one: Statement, atom: RuleAtom) -> Iterator[Problem]:
         """Yield the problems of steps and activities in an atom of a body that no encoding knows: the atom never holds.
@@ -307,6 +317,26 @@ class Rulebook:
                     yield one.problem(what, atom.places[number], "take the number from the facts, as a variable")
                 elif all(complaint is not None for complaint in complaints) and complaints[0] is not None:
                     yield one.problem(complaints[0].what, atom.places[number], complaints[0].hint)
+
+    def _taking_part(self, encoding: str) -> tuple[Statement, ...]:
+        """Return the statements that take part in an encoding.
+
+        Conditions on nothing but the world model bind the task plan alone.
+        """
+        known, world = PREDICATES_BY_ENCODING[encoding], WORLD_FACTS_THERE.get(encoding, frozenset())
+        found = self._applicable(known | world, READ_ONLY_THERE.get(encoding, frozenset()) | world)
+        if not world or encoding == "task":
+            return found
+        of_world = self._applicable(world, world)  # with what they define
+        return tuple(one for one in found if one.heads or one not in of_world)
+
+    def world_facts_named(self, encoding: str) -> frozenset[Signature]:
+        """Return the predicates of the world model that rules name which take part in an encoding without them.
+
+        encoding : its name without `.lp`.
+        """
+        named = {atom.signature for one in self.rules_reaching(encoding) for atom in one.body}
+        return WORLD_FACTS_THERE.get(encoding, frozenset()) & named
 
     def _applicable(self, known: frozenset[Signature], read_only: frozenset[Signature]) -> tuple[Statement, ...]:
         """Return the greatest set of statements whose predicates are all in `known` or defined by the set itself.

@@ -12,7 +12,7 @@ from typing import Any
 import clingo
 
 from kb.reasoning.encodings import CORE_GUIDED, ENCODING_FOLDERS, BoundedAnswer, encoding_files
-from kb.tracing.decisions import note_answer
+from kb.tracing.decisions import note_answer, note_applied_rules
 
 MAX_BOUNDED_SECONDS = 600.0  # of wall-clock time; against a search that hangs, never reached within the conflicts
 
@@ -51,13 +51,18 @@ def solve(
     CannotOpenError : a file with users' rules cannot be read.
     """
     given = tuple(facts)
-    answer = _answer(tuple(files), given, seconds, None, _versions(files)).atoms
-    note_answer(files, given, answer, about)
-    return None if answer is None else list(answer)
+    answer = _answer(tuple(files), given, seconds, None, _versions(files))
+    note_answer(files, given, answer.atoms, about)
+    note_applied_rules(answer.applied)
+    return None if answer.atoms is None else list(answer.atoms)
 
 
 def solve_within(
-    files: Sequence[Path], facts: Iterable[str], conflicts: int, about: Sequence[Any] = ()
+    files: Sequence[Path],
+    facts: Iterable[str],
+    conflicts: int,
+    about: Sequence[Any] = (),
+    without: tuple[str, ...] = (),
 ) -> BoundedAnswer:
     """Return the best answer set that is found within a number of conflicts, which is the same on every machine.
 
@@ -67,14 +72,16 @@ def solve_within(
     ----------
     files, facts, about : as for `solve`.
     conflicts : the number of conflicts of clingo's search after which the best answer so far is returned.
+    without : the places of users' rules that are left out, as kb.reasoning.user_rules.rules_to_blame returns them.
 
     Raises
     ------
     EncodingError, BadInputError, CannotOpenError : as for `solve`.
     """
     given = tuple(facts)
-    answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts, _versions(files))
+    answer = _answer(tuple(files), given, MAX_BOUNDED_SECONDS, conflicts, _versions(files), without)
     note_answer(files, given, answer.atoms, about)
+    note_applied_rules(answer.applied)
     return answer
 
 
@@ -97,19 +104,21 @@ def _answer(
     seconds: float,
     conflicts: int | None,
     _files_as_of: tuple[tuple[int, int], ...],
+    without: tuple[str, ...] = (),
 ) -> BoundedAnswer:
     """Return the answer of `solve` or `solve_within`; cached while the files stay as they are.
 
     files : paths of encodings and of files with users' rules. facts : atoms as text, without full stops. seconds : the
         limit of wall-clock time of the search; not used with users' rules. conflicts : the limit of conflicts; None for
-        none. _files_as_of : the versions of the users' files.
+        none. _files_as_of : the versions of the users' files. without : the places
+        of users' rules that are left out.
     """
     users = _users_files(files)
     if users:
         from kb.reasoning.user_rules import solve_with_user_rules  # imported only when needed: it takes time
 
         files = tuple(path for path in files if path not in users)
-        found = solve_with_user_rules(files, users, facts, conflicts)
+        found = solve_with_user_rules(files, users, facts, conflicts, without=without)
         if found is not None:
             return found
     if conflicts is not None:

@@ -8,7 +8,7 @@ too much memory or is no rule at all is only an error of its file. The rules are
 import atexit
 import re
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -137,16 +137,27 @@ def _rulebook(sources: tuple[Source, ...], seconds: float) -> Rulebook:
             problems += bad.problems
     if problems:
         raise BadInputError(problems)
-    return Rulebook(statements)
+    rules = Rulebook(statements)
+    names = internal_names()
+    if clashing := sorted(own for own in rules.own_predicates if own[0] in names):
+        return Rulebook([one for source in sources for one in _statements(source, seconds, clashing)])
+    return rules
 
 
-def _statements(source: Source, seconds: float) -> list[Statement]:
+@cache
+def internal_names() -> frozenset[str]:
+    """Return the names of all predicates and functions in the encodings that users' rules reach."""
+    texts = (encoding_text(encoding_path(name)) for name in USER_RULE_INTERFACES)
+    return frozenset(name for text in texts for name in re.findall(r"\b[a-z]\w*", text))
+
+
+def _statements(source: Source, seconds: float, renamed: Sequence[Signature] = ()) -> list[Statement]:
     """Return the statements of one source, in order; at least one.
 
     Each holds its place, the atoms that it states and those on which they depend, and its text. Raises BadInputError
     when it is no file of rules, has no rule, or takes too much time or memory.
 
-    seconds : the limit of wall-clock time.
+    seconds : the limit of wall-clock time. renamed : the predicates that get another name in what clingo gets.
     """
     end = time.monotonic() + seconds
     try:
@@ -158,7 +169,7 @@ def _statements(source: Source, seconds: float) -> list[Statement]:
         raise BadInputError([source.problem(source.start(), what)]) from None
     if problems:
         raise BadInputError(problems)
-    found = rules_worker().exchange({"read": source.text}, max(0.0, end - time.monotonic()))
+    found = rules_worker().exchange({"read": source.text, "renamed": renamed}, max(0.0, end - time.monotonic()))
     if "limit" in found:
         raise BadInputError([source.problem(source.start(), f"these rules were given up: {found['limit']}")])
     if "message" in found:
@@ -213,6 +224,7 @@ def solve_with_user_rules(
     facts: Sequence[str],
     conflicts: int | None = None,
     limits: RuleLimits = RULE_LIMITS,
+    without: Container[str] = (),
 ) -> BoundedAnswer | None:
     """Return the best answer set of an encoding with users' rules.
 
@@ -224,6 +236,7 @@ def solve_with_user_rules(
     conflicts : of clingo's search, after which the best answer so far counts; there may be none, also because the
         rules leave none. None where an answer is needed, within the conflicts of `limits`.
     limits : the wall-clock time, in seconds, and the conflicts of clingo's search.
+    without : the places of rules that are left out, such as `rules.lp:3`.
 
     Returns
     -------
@@ -237,12 +250,44 @@ def solve_with_user_rules(
     """
     rules = read_rules(users, limits)
     (encoding,) = ours
-    reaching = rules.rules_reaching(encoding.stem)
+    reaching = [one for one in rules.rules_reaching(encoding.stem) if one.line not in without]
     if not reaching:
         return None
     if conflicts is not None:
         limits = limits._replace(conflicts=conflicts)
     return _solved(encoding, reaching, facts, limits, may_fail=conflicts is not None)
+
+
+def rules_never_applied(users: Sequence[Path], applied: Container[str]) -> tuple[str, ...]:
+    """Return the rules with a body that had no instance in any decision, in words, in the order of the files.
+
+    Rules that reach queries alone are left out: they wait to be asked.
+
+    Parameters
+    ----------
+    users : the paths of the users' rules.
+    applied : the places of those that had one, as `RULES.lp:LINE:COLUMN`.
+
+    Raises
+    ------
+    CannotOpenError, BadInputError : as for `read_rules`.
+    """
+    rules = read_rules(users) if users else Rulebook(())
+    deciding = {one for name in USER_RULE_INTERFACES for one in rules.rules_reaching(name) if one.condition}
+    what = "this rule never applied, for nothing was as it says"
+    return tuple(
+        f"{one.line}: {what}: {one.written.removeprefix('#false ')}"
+        for one in rules.statements
+        if one in deciding and one.place not in applied
+    )
+
+
+def world_facts_named(encoding: str, users: Sequence[Path]) -> frozenset[str]:
+    """Return the names of the predicates of the world model that users' rules want to be given in an encoding.
+
+    Its name is given without `.lp`. Raises CannotOpenError or BadInputError when the files are not valid.
+    """
+    return frozenset(name for name, _ in read_rules(users).world_facts_named(encoding)) if users else frozenset()
 
 
 def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
@@ -254,7 +299,11 @@ def rules_reach(encoding: str, users: Sequence[Path]) -> bool:
 
 
 def rules_to_blame(
-    encoding: Path, users: Sequence[Path], facts: Sequence[str], is_bad: Callable[[Sequence[clingo.Symbol]], bool]
+    encoding: Path,
+    users: Sequence[Path],
+    facts: Sequence[str],
+    is_bad: Callable[[Sequence[clingo.Symbol]], bool],
+    without: Container[str] = (),
 ) -> tuple[str, ...]:
     """Return the places of the rules because of which an answer is bad, such as `rules.lp:3`; () without such rules.
 
@@ -267,14 +316,15 @@ def rules_to_blame(
     users : the paths of the users' rules.
     facts : the facts of the encoding, without full stops.
     is_bad : says of the shown atoms whether they are a bad answer; they are one with all rules. So is no answer.
+    without : the places of rules that are left out anyway.
     """
-    left = list(read_rules(users).rules_reaching(encoding.stem))
+    left = [one for one in read_rules(users).rules_reaching(encoding.stem) if one.line not in without]
     for one in reversed(left):
         fewer = [other for other in left if other is not one]
         atoms = _solved(encoding, fewer, facts, RULE_LIMITS, may_fail=True).atoms
         if atoms is None or is_bad(atoms):
             left = fewer
-    return tuple(f"{one.source.file}:{one.at[0]}" for one in left)
+    return tuple(dict.fromkeys(one.line for one in left))
 
 
 def _solved(
@@ -283,8 +333,9 @@ def _solved(
     """Return the best answer set of an encoding with some rules; arguments and errors as for solve_with_user_rules."""
     program = "\n".join([encoding_text(encoding), *(f"{fact}." for fact in facts)])
     found = _solved_by_worker(encoding.name, program, reaching, limits, may_fail)
+    applied = tuple(reaching[number].place for number in found.get("applied", ()))
     if "atoms" not in found:
-        return BoundedAnswer(None, "against" in found)
+        return BoundedAnswer(None, "against" in found, applied=applied)
     given: dict[Signature, list[Fact]] = {}
     for fact in facts_from_text("".join(f"{fact}.\n" for fact in facts)):
         given.setdefault(fact.signature, []).append(fact)
@@ -294,7 +345,7 @@ def _solved(
         if why:
             raise _error_at_source_rule(reaching, text, atom, f"these rules derive {text}, in {encoding.name}: {why}")
     atoms = sorted((clingo.parse_term(text) for text in found["atoms"]), key=str)
-    return BoundedAnswer(tuple(atoms), found["proved"], tuple(map(tuple, found["cost"])))
+    return BoundedAnswer(tuple(atoms), found["proved"], tuple(map(tuple, found["cost"])), applied)
 
 
 def _solved_by_worker(
@@ -311,7 +362,8 @@ def _solved_by_worker(
         grounded.
     """
     heads = sorted({atom.signature for one in reaching for atom in one.heads if atom.signature in INTERFACE_PREDICATES})
-    request = {"program": program, "rules": [one.text for one in reaching], "heads": heads}
+    conditions = [one.condition for one in reaching]
+    request = {"program": program, "rules": [one.text for one in reaching], "conditions": conditions, "heads": heads}
     found = rules_worker().exchange(request | {"conflicts": limits.conflicts}, limits.seconds)
     if "limit" in found:
         where = f", in {name}" if name else ""
@@ -336,7 +388,7 @@ def _solved_by_worker(
         what = "this rule leaves no answer, whatever is given: it contradicts itself"
         if name:
             what = f"this rule contradicts what must hold: {name} has no answer with it"
-        others = ", ".join(f"{one.source.file}:{one.at[0]}" for one in rest)
+        others = ", ".join(one.line for one in rest)
         raise BadInputError([first.problem(what, hint=f"together with {others}" if others else "")])
     return found
 

@@ -54,6 +54,7 @@ def reconcile(
     kept: Iterable[str] = (),
     given_up: Iterable[tuple[str, str]] = (),
     refused: Iterable[tuple[str, str]] = (),
+    world: Iterable[str] = (),
 ) -> Reconciliation:
     """Return the best match of the task's object parameters with objects of the world model.
 
@@ -70,6 +71,7 @@ def reconcile(
     given_up : (parameter, node) pairs where what is asked cannot be done with the node as far as is known; others that
         match equally well are preferred.
     refused : (parameter, node) pairs that users' rules leave to no task plan; never bound.
+    world : facts of the world model that users' rules name, without full stops.
 
     Returns
     -------
@@ -89,7 +91,7 @@ def reconcile(
     facts += [f"planned({x},{node})" for x, node in sorted(planned.items())]
     facts += [f"kept({x})" for x in sorted(kept)]
     facts += [f"given_up({x},{node})" for x, node in sorted(given_up)]
-    facts += [f"refused({x},{node})" for x, node in sorted(refused)]
+    facts += [*(f"refused({x},{node})" for x, node in sorted(refused)), *world]
     found: dict[str, list[tuple[str, ...]]] = {}
     for atom in solve([KB_ENCODINGS / "reconciliation.lp", *rules], facts) or ():
         found.setdefault(atom.name, []).append(tuple(str(a) for a in atom.arguments))

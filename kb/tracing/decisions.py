@@ -4,7 +4,7 @@ Whoever wants a record opens a block with `record_decisions`; `kb.reasoning.solv
 Explanations, episodes and dumps of programs are made from such records.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
@@ -29,6 +29,7 @@ class SolverCall(NamedTuple):
     about: tuple[Any, ...] = ()
 
 
+_applied_rules: ContextVar[set[str] | None] = ContextVar("applied_rules", default=None)
 _open_record: ContextVar[list[SolverCall] | None] = ContextVar("open_record", default=None)
 
 
@@ -48,6 +49,26 @@ def record_decisions() -> Iterator[list[SolverCall]]:
         yield record
     finally:
         _open_record.reset(token)
+
+
+@contextmanager
+def record_applied_rules(applied: set[str]) -> Iterator[None]:
+    """Add to a set which users' rules had an instance in any answer of a `with` block, as `RULES.lp:LINE:COLUMN`.
+
+    Unlike `record_decisions`, it also counts what is asked in blocks within the block.
+    """
+    token = _applied_rules.set(applied)
+    try:
+        yield
+    finally:
+        _applied_rules.reset(token)
+
+
+def note_applied_rules(places: Iterable[str]) -> None:
+    """Add the places of users' rules that had an instance to the set that is open, if one is."""
+    applied = _applied_rules.get()
+    if applied is not None:
+        applied.update(places)
 
 
 def note_answer(

@@ -7,6 +7,7 @@ model         the world model, frozen: map, regions, objects, and what is derive
 objects       nodes of the world model, made from regions of the map and from held objects
 doors         the necks of the floor, and how surely each of them is a doorway
 rooms         doors, and the parts of the floor between them
+place_names   the names of doors and rooms, kept from one impression to the next
 corners       the corners of the known floor
 pathgraph     the pathgraph of the believed floor, as facts
 evidence      what the world model rests on: explained fields, regions, necks of doors

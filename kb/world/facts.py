@@ -4,17 +4,21 @@ Lengths are hundredths of squares in the robot frame, whose origin is where the 
 """
 
 import math
+import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from geometry.kernels.arrays import Bools, Floats, Longs
 from geometry.raster.contours import Ring, outline
+from kb.language.vocabulary import ROBOT
 from kb.localisation.field_account import Accommodation
 from kb.mapping.occupancy import OPEN
+from kb.reasoning.user_rules import world_facts_named
 from kb.world.corners import Corner
 from kb.world.evidence import evidence
 from kb.world.model import FACT_UNITS_PER_SQUARE, FLOOR_NODE, ROOT_NODE, VERGE_NODE, Node, WorldModel, hundredths
@@ -24,6 +28,7 @@ from kb.world.rooms import Rooms
 SEGMENT_SAMPLES = 8  # places along a segment at which the squares on both sides of it are looked up; convention
 SETTLED_CONFIDENCE = 99  # percent: belief in a square that the counts settle, but not beyond doubt; convention
 FELT_COLOUR_CONFIDENCE = 99  # percent: belief in a colour that was felt; convention
+ROBOT_AS_NODE = re.compile(rf"\b{ROOT_NODE}\b")  # the robot where it is a node; plans call it utak
 MIN_OBJECT_CONFIDENCE = 50  # percent: below it a node is stated not to be movable: more likely it is verge
 
 
@@ -155,6 +160,32 @@ def model_facts(model: WorldModel, places: Places) -> Iterator[str]:
     yield from pathgraph_facts(model, places.rooms)
 
 
+def facts_for_rules(encoding: str, rules: Sequence[Path], model: WorldModel, places: Places) -> tuple[str, ...]:
+    """Return the facts of the world model that users' rules name in an encoding which works without them.
+
+    Parameters
+    ----------
+    encoding : the name of the encoding, without `.lp`.
+    rules : the paths of the users' rules.
+    model, places : as for `model_facts`.
+
+    Returns
+    -------
+    Facts without full stops, in the order of `model_facts`; `object(N)` for objects, and for `org` also `utak`.
+
+    Raises
+    ------
+    CannotOpenError, BadInputError : the files are not valid.
+    """
+    named = world_facts_named(encoding, rules)
+    if not named:
+        return ()
+    facts = [fact for fact in model_facts(model, places) if fact.partition("(")[0] in named]
+    facts += [f"object({node.name})" for node in model.objects if "object" in named]
+    facts += [ROBOT_AS_NODE.sub(ROBOT, fact) for fact in facts if ROBOT_AS_NODE.search(fact)]
+    return tuple(dict.fromkeys(facts))
+
+
 def _root_facts(model: WorldModel) -> Iterator[str]:
     """Yield the facts of the robot, the floor and the verge, without full stops.
 
@@ -202,8 +233,12 @@ def appearance_facts(node: Node) -> Iterator[str]:
     node : the object.
     """
     yield from (f"shape({node.name},{shape},{confidence})" for shape, confidence in sorted(node.shape.items()))
-    if node.colour is not None:
-        yield f"colour({node.name},{node.colour},{FELT_COLOUR_CONFIDENCE})"
+    yield from colour_facts(node.name, node.colour)
+
+
+def colour_facts(name: str, colour: str | None) -> tuple[str, ...]:
+    """Return colour/3 of an object by name, without a full stop; () where no colour was felt."""
+    return () if colour is None else (f"colour({name},{colour},{FELT_COLOUR_CONFIDENCE})",)
 
 
 def _object_facts(node: Node, model: WorldModel, rooms: Rooms) -> Iterator[str]:

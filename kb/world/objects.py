@@ -32,6 +32,7 @@ from kb.perception.protrusions import (
 )
 from kb.perception.regions import Percept, Region, label_of
 from kb.perception.seams import cornered_parts, part_by_colour
+from kb.world.facts import colour_facts
 from kb.world.model import Node, WorldModel, count_open_squares, free_squares, occupied_squares
 
 MIN_OBJECT_BELIEF = 5  # percent: a region less likely an object is no node: the least that interpretation.lp gives
@@ -209,7 +210,8 @@ def seen_objects(
     patches = [patch_of(window.mask, window.view) for window in windows]
     names = assign_names(patches)
     measured = {n: measurer.measure(p, model.view) for n, p in zip(names, patches, strict=True)}
-    shapes = classify_shapes(shape_facts(measured), rules)
+    colours = (colour_facts(name, touches.colour_of(patch)) for name, patch in zip(names, patches, strict=True))
+    shapes = classify_shapes(shape_facts(measured), rules, (fact for facts in colours for fact in facts))
     return tuple(
         _seen_node(name, region, window, patch, measured[name], shapes.get(name, {}), model.kinds, touches)
         for name, region, window, patch in sorted(
@@ -353,7 +355,8 @@ def classified(load: HeldObject, measurer: ShapeMeasurer, rules: tuple[Path, ...
     if load.shape:
         return load
     measured = measurer.measure_whole(patch_of_polygon(load.first))
-    return replace(load, shape=classify_shapes(shape_facts({load.name: measured}), rules).get(load.name, {}))
+    shapes = classify_shapes(shape_facts({load.name: measured}), rules, colour_facts(load.name, load.colour))
+    return replace(load, shape=shapes.get(load.name, {}))
 
 
 def grasped(node: Node) -> HeldObject:

@@ -42,7 +42,7 @@ class Door:
     Attributes
     ----------
     name : str
-        d1, d2, ... in the order of `Rooms.doors`. It may name another door in another world model.
+        d1, d2, ... in the order of `Rooms.doors`; kb.world.place_names keeps the names in a run.
     a, b : (x, y)
         The ends of its neck, on the walls, in squares, view frame (origin at the south-west corner of the map view's
         square [0, 0]): the left and the right one as seen by a robot that goes from the first of `sides` to the second.

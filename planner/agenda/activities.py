@@ -106,6 +106,7 @@ class Activities:
             "map_contradicted": model.anew and model.shaken,
         }
         yield from (name for name, holds in given.items() if holds)
+        yield from turn.situation.facts_for_rules("agenda")
 
     def _do(self, activity: Activity, turn: StageTurn, last: Decision) -> Decision:
         """Return what an activity comes to.

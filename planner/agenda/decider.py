@@ -16,7 +16,9 @@ from kb.task.binding import Reconciliation, as_well_by_parameter, reconcile
 from kb.task.task import Task
 from kb.tracing.decisions import record_decisions
 from kb.world.corners import Corner, corners
+from kb.world.facts import Places, facts_for_rules
 from kb.world.model import WorldModel
+from kb.world.place_names import PlaceNames
 from kb.world.rooms import NO_ROOMS, Rooms, rooms_of
 from planner.agenda.activities import Activities
 from planner.carrying.plan_executor import PlanExecutor
@@ -47,6 +49,7 @@ class Decider:
     attained : how many of them are attained.
     bound : what the task's parameters mean: parameter -> name of a node.
     rooms, corners : as last believed, in squares, view frame; none before the first decision.
+    place_names : keeps the names of doors and rooms.
     pursuer : walks after subgoals.
     executor : follows manipulation plans.
     """
@@ -78,6 +81,7 @@ class Decider:
         self.stages = stages(task)
         self.attained = 0
         self.rooms: Rooms = NO_ROOMS
+        self.place_names = PlaceNames()
         self.corners: Mapping[str, Corner] = {}
         self.pursuer = pursuer or Pursuer(paths)
         self.executor = executor or PlanExecutor(pull)
@@ -135,7 +139,7 @@ class Decider:
         """
         kept_off = regions_kept_off(self.task, self.bound, model, ROBOT, lenient=self._lenient)
         cost_maps = CostMaps(model, kept_off=kept_off if kept_off.any() else None)
-        self.rooms = rooms_of(model, self.rules)
+        self.rooms = self.place_names.named(rooms_of(model, self.rules), model)
         reconciled = self._reconcile(cost_maps)
         self.corners = corners(model, self.rules)
         places = tuple((float(x), float(y)) for x, y in track)
@@ -289,7 +293,10 @@ class Decider:
         kept = parameters_that_keep_meaning(self.task, self.attained) & set(carried)
         planned, before, given_up = self._intention.meanings, self.bound, self._given_up
         model, rules = cost_maps.model, self.rules
-        reconciled = reconcile(self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused)
+        world = facts_for_rules("reconciliation", rules, model, Places(self.rooms, {}))
+        reconciled = reconcile(
+            self.task, model, known, before, rules, carried, planned, kept, given_up, self._refused, world
+        )
         unmoved = {x for x, _ in reconciled.unmovable if is_moved_for_others_only(x, goals, self.task.parameters)}
         if unmoved:  # the other one of two things is moved
             self._unmoved |= unmoved

@@ -195,7 +195,7 @@ def things_in_way(overlaps: Iterable[Overlap]) -> list[str]:
 
 
 def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
-    """Yield what is believed of the objects and of what the task calls them, for users' rules."""
+    """Yield what is believed of the objects, and what the task calls them; of the world what users' rules name."""
     bound = [pair for pair in sorted(situation.binding.items()) if situation.model.object(pair[1]) is not None]
     meanings = {parameter: (name,) for parameter, name in bound} | dict(problem.meanings)
     yield from (f"bound({parameter},{name})" for parameter, name in bound)
@@ -204,6 +204,7 @@ def _world_facts(problem: TaskProblem, situation: Situation) -> Iterator[str]:
         yield from appearance_facts(node)
         yield f"size({node.name},{int(node.patch.mask.sum())})"
     yield from (f"width({door.name},{hundredths(door.width)})" for door in situation.rooms.doors)
+    yield from situation.facts_for_rules("task")
 
 
 def _masks(problem: TaskProblem, shape: tuple[int, ...]) -> Iterator[tuple[str, str, Bools]]:

@@ -38,14 +38,17 @@ class Proposal(NamedTuple):
     left: tuple[str, ...] = ()
 
 
-def propose(facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] = ()) -> Proposal:
+def propose(
+    facts: tuple[str, ...], rules: Sequence[Path], about: Sequence[str] = (), without: tuple[str, ...] = ()
+) -> Proposal:
     """Return the plan that the encoding finds cheapest; the same answer for the same facts.
 
     facts : as planner/asp/task wants them, without full stops.
     rules : the user's own encodings.
     about : what the names of goals mean, in words; for the record of decisions alone.
+    without : the places of users' rules that are left out.
     """
-    answer = solve_within([TASK_ENCODING, *rules], facts, MAX_PLAN_CONFLICTS, about)
+    answer = solve_within([TASK_ENCODING, *rules], facts, MAX_PLAN_CONFLICTS, about, without)
     if answer.atoms is None:  # rules leave no plan of that length, or the search was cut off before it found one
         return Proposal((), (UNMET_PLAN,), facts, {}, proved=answer.proved)
     atoms = answer.atoms

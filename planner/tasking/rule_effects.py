@@ -10,8 +10,9 @@ from kb.reasoning.solver import solve_within
 from kb.reasoning.user_rules import rules_reach, rules_to_blame
 from kb.tracing.decisions import record_decisions
 from kb.world.model import hundredths
+from kb.world.place_names import SAME_DOOR
 from planner.oracles.problem import TableState, TaskProblem
-from planner.situation import SAME_DOOR, Situation
+from planner.situation import Situation
 from planner.tasking.facts import problem_facts
 from planner.tasking.proposal import MAX_PLAN_CONFLICTS, TASK_ENCODING
 from planner.tasking.search import MadePlan

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
+from kb.reasoning.user_rules import rules_to_blame
 from planner.oracles.problem import TaskProblem
 from planner.situation import Situation
 from planner.stages import Stage
 from planner.tasking.facts import Answers, answer_facts, goal_facts, overlaps_of, problem_facts
-from planner.tasking.proposal import propose
+from planner.tasking.proposal import TASK_ENCODING, UNMET_PLAN, propose
 from planner.tasking.setting import waiting_goal
 from planner.tasking.task_plan import Errand, RefutedStep, TaskPlan
 
@@ -21,7 +22,8 @@ def plan_that_settles(
     """Return the plan of the encoding where something is open, and the steps that users' rules may have kept out of it.
 
     Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
-    unmet in it. The steps returned are all that may settle something, where users have rules; () where they have none.
+    unmet in it. Users' rules that no such plan fulfils are left out: it is not the end. The steps
+    returned are all that may settle something, where users have rules; () where they have none.
 
     problem : things, places and goals; None while they are not known.
     given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
@@ -32,14 +34,22 @@ def plan_that_settles(
         facts.append(f"holds({situation.model.held})")
     if problem is None:
         goals = [waiting_goal(f"g{number}", goal) for number, goal in enumerate(stage.carried, 1)]
-        facts += goal_facts(goals, [goal.name for goal in goals])
+        facts += [*goal_facts(goals, [goal.name for goal in goals]), *situation.facts_for_rules("task")]
     else:
         facts += problem_facts(problem, (), situation, frozenset(), overlaps_of(problem))
         facts += answer_facts(Answers(refutations=refuted))
     horizon = max(1, len(stage.goals) + sum(fact.startswith("stuck(") for fact in given))
     placed = () if problem is None else problem.goals
     about = [f"{goal.name}: {goal.words}" for goal in placed]
-    found = propose((f"horizon({horizon})", *facts), situation.rules, about)
+    without: tuple[str, ...] = ()
+    given_facts = (f"horizon({horizon})", *facts)
+    found = propose(given_facts, situation.rules, about)
+    while situation.rules and found.unmet == (UNMET_PLAN,) and found.proved:
+        more = rules_to_blame(TASK_ENCODING, situation.rules, given_facts, lambda _atoms: False, without)
+        if not more:
+            break
+        without += more  # what they demand of the end cannot be had before this is settled
+        found = propose(given_facts, situation.rules, about, without)
     hoped = [errand.goal for errand in found.errands if errand.settles and errand.goal]
     unmet = tuple(dict.fromkeys([*hoped, *found.unmet]))
     plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=placed, refutations=refuted)

@@ -163,8 +163,9 @@ RESULT_FORMS: dict[str, Form] = {
     "reason": TEXT,
     "steps": STEP_NUMBER,
     "seconds": Noted("the limit of time that ended the run; there alone", Numeric(0, MAX_RUN_SECONDS)),
+    "idle_rules": Noted("the users' rules that never applied, with file and line; where there are any", ListOf(TEXT)),
 }
-RESULT_OPTIONAL = frozenset({"seconds"})
+RESULT_OPTIONAL = frozenset({"seconds", "idle_rules"})
 # The last line of an episode.
 END = Keys({"result": Keys(RESULT_FORMS, RESULT_OPTIONAL)})
 

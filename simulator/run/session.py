@@ -113,6 +113,7 @@ class Result:
     came : what came instead of each of them, in words.
     outcomes : what came of each expectation that a test tests, with its points.
     seconds : the limit of time that ended the run; None when the robot ended it.
+    idle_rules : the users' rules that never applied, in words with file and line.
     """
 
     believed: bool
@@ -124,13 +125,15 @@ class Result:
     came: tuple[str, ...] = field(default=())
     outcomes: tuple[ExpectationOutcome, ...] = field(default=())
     seconds: float | None = None
+    idle_rules: tuple[str, ...] = field(default=())
 
     @property
     def line(self) -> EpisodeLine:
         """The last line of the episode."""
         names = ("believed", "achieved", "verdict", "reason", "steps")
         values = {name: getattr(self, name) for name in names}
-        return {"result": values if self.seconds is None else {**values, "seconds": self.seconds}}
+        values |= {} if self.seconds is None else {"seconds": self.seconds}
+        return {"result": values | ({"idle_rules": list(self.idle_rules)} if self.idle_rules else {})}
 
 
 @dataclass(frozen=True)
@@ -242,9 +245,9 @@ class Session:
         steps = self._track[-1].step
         unmet, came = tuple(map(str, missed)), tuple(missed.values())
         seconds = None if limit is None else limit.seconds
-        result = Result(
-            verdict.believed, achieved, verdict.verdict, verdict.reason, steps, unmet, came, outcomes, seconds
-        )
+        end = (verdict.believed, achieved, verdict.verdict, verdict.reason, steps)
+        idle = tuple(getattr(self.robot, "idle_rules", ()))  # other minds have no rules
+        result = Result(*end, unmet, came, outcomes, seconds, idle)
         self._log.write(result.line)
         return result
 

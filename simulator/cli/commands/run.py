@@ -242,6 +242,8 @@ def _print(result: "Result", json: bool, stream: TextIO) -> None:
     )
     for expected, came in zip(result.unmet, result.came, strict=True):
         print(f"not met: {expected}: {came}", file=sys.stderr)
+    for rule in result.idle_rules:
+        print(escape_controls(rule, lines=False), file=sys.stderr)
 
 
 def _progress_printer(watch: bool, progress: "StepProgress") -> "Callable[[Session], None]":

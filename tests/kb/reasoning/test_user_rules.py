@@ -58,6 +58,16 @@ def test_own_predicates_connect_rules(tmp_path: Path) -> None:
     assert answered(tmp_path, *rules) == ["kind(a,floor,100)", "kind(a,verge,7)"]
 
 
+def test_predicates_of_ones_own_are_no_internal_ones_of_that_name(tmp_path: Path) -> None:
+    """`left` belongs to the task plan, `odd` to an encoding that rules do not reach, the others to shapes.lp."""
+    facts = ["fit(o1,square,0,1)", "open_squares(o1,0)", "full_squares(o1,9)"]
+    own = written(tmp_path, "left(X, Y) :- fit(X, Y, _, _). odd(X) :- left(X, _). first(X, square, 9) :- odd(X).")
+    usual = solve([KB_ENCODINGS / "shapes.lp"], facts)
+    assert solve([KB_ENCODINGS / "shapes.lp", *own], facts) == usual
+    stated = written(tmp_path, "sure(X) :- fit(X, square, _, _). shape(X, disc, 7) :- sure(X).")
+    assert "shape(o1,disc,7)" in map(str, solve([KB_ENCODINGS / "shapes.lp", *stated], facts) or ())
+
+
 def test_constants_hold_in_their_file_only(tmp_path: Path) -> None:
     rules = ("#const zero = 7. kind(a, verge, zero).", "kind(R, verge, 9) :- region(R, zero, _).")
     assert answered(tmp_path, *rules) == ["kind(a,floor,100)", "kind(a,verge,7)", "kind(a,verge,9)"]
@@ -93,11 +103,13 @@ def test_a_search_that_is_cut_off_is_refused(tmp_path: Path) -> None:
 
 
 WRONG = {
+    "colour(X,r,90) :- shape(X,disc,C).": "rules0.lp:1:1-1: error: this changes nothing",
+    "has(X,shape,disc,90) :- candidate(X,C).": "has/4 says what there is, and rules add nothing to it",
+    "in(X,r1) :- held(X).": "this changes nothing",
     "door(99,100).": "rules0.lp:1:6-6: error: there is no neck 99",
     'kind("x",object,"90").': 'rules0.lp:1:6-6: error: a name was expected, not "x"',
     "shape(o1,square,high).": "rules0.lp:1:17-17: error: a confidence must be an integer, not high",
     "touched(R,green) :- region(R,zero,_).": "a colour is a single lower-case letter, not green",
-    "odd(R) :- region(R,zero,_).": "odd/1 belongs to accommodation.lp, which rules of users do not reach",
     "shape(o1,sqare,90).": "unknown shape sqare",
     "kind(R,verge,101) :- region(R,zero,_).": "a confidence must be from 0 to 100, not 101",
     "region(a,zero,100).": "region/3 says what there is, and rules add nothing to it",
@@ -114,11 +126,8 @@ WRONG = {
     "-p(1).": "classical negation is not known here",
     "p :- &diff{a} > 3.": "theory atoms are not known here",
     ":- choose(_).": "choose/1 belongs to aims.lp and routes.lp, which rules of users do not reach",
-    "take(P) :- plan(P, C), C < 5.": "take/1 belongs to boldness.lp, which rules of users do not reach",
     ":- chosen(E), explanation(E, slipped, _, _).": "chosen/1 belongs to accommodation.lp",
     "p(X) :- kind(X,verge,C), fit(X,S,M,R).": "this rule counts nowhere: no encoding knows all of fit/4, kind/3",
-    "shape(X,disc,90) :- colour(X,g,C).": "this changes nothing",
-    ":- room(R), unseen(R,N), N > 50.": "this changes nothing",
     "p(X) :- object(X), not q(X). q(X) :- object(X), not p(X).": "is defined through its own negation",
     '#include "/etc/passwd".': "#include is not allowed",
     "#script (python)\nimport os\n#end.": "#script is not allowed",

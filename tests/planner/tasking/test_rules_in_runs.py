@@ -82,3 +82,61 @@ object(t1, t, "POLYGON ((6 9, 6 11, 8 11, 8 9, 6 9))").
     rules = rule_file(tmp_path, ":~ occurs(go(D), T), width(D, W), W < 500. [20@1, narrow(D, T)]")
     episode = utak.Run(scenario, rules=[rules]).finish()
     assert (episode.verdict, episode.achieved) == ("done", True)
+
+
+FINAL = """%! because "At the end nothing that can be carried is left in room r1."
+:- horizon(H), at(X, P, H), lies(X, P, r1), thing(X).
+"""
+SQUARE = {"start": "object(x). shape(x, square).", "goal": "in(x, room(next))."}
+
+
+def test_a_rule_about_the_end_does_not_keep_the_robot_from_looking_for_what_is_meant(tmp_path: Path) -> None:
+    """While a goal's object is not found, no plan is the end: what the end shall be forbids no search."""
+    scenario = utak.Scenario.from_text(world=TWO_SQUARES, **SQUARE)
+    run = utak.Run(scenario, rules=[rule_file(tmp_path, FINAL)])
+    run.step()
+    assert run.verdict is None
+
+
+def test_the_end_of_a_run_names_rules_that_never_applied(tmp_path: Path) -> None:
+    """One rule is about a door that is wide enough, one about a colour that nothing has, one applies."""
+    rules = rule_file(
+        tmp_path,
+        ":- occurs(go(D), T), width(D, W), W < 100.\n:- occurs(carry(X, P), T), colour(X, q, _).\n"
+        ":~ occurs(carry(X, P), T). [1@0, X]\nred(X) :- colour(X, r, _).\nbig(X) :- object(X), not held(X).\n",
+    )
+    scenario = utak.Scenario.from_text(world=TWO_SQUARES, **SQUARE)
+    episode = utak.Run(scenario, rules=[rules]).finish()
+    assert episode.verdict == "done"
+    assert [one.split(" ")[0] for one in episode.idle_rules] == [f"{rules}:{line}:" for line in (1, 2, 4)]
+    assert (
+        utak.Run(scenario, rules=[rule_file(tmp_path, ":~ occurs(carry(X, P), T). [1@0, X]")]).finish().idle_rules == ()
+    )
+
+
+def test_rules_say_what_shape_things_have(tmp_path: Path) -> None:
+    """What a rule states of a shape counts in what is believed, be it more or less than what is seen."""
+    scenario = utak.Scenario.from_text(world=TWO_SQUARES, **SQUARE)
+    for stated in (99, 3):
+        rules = rule_file(tmp_path, f"shape(N, square, {stated}) :- fit(N, square, _, _).")
+        world = utak.Run(scenario, rules=[rules]).world
+        assert {row["C"] for row in world.query("shape(X, square, C)")} == {stated}
+
+
+@pytest.mark.parametrize(
+    ("rule", "blamed"),
+    [
+        (":- link(L, J, K, N, C), N > 0.", True),
+        (":- unseen(R, N), N > 10.", True),
+        (":- in(utak, R), adjacent(org, X), held(X).", False),
+        (":- room(R), not door(d9), node(floor).", True),
+        ("far(X) :- offset(X, E, N), object(X), E > 10000. :- occurs(carry(X, P), T), far(X).", False),
+    ],
+)
+def test_facts_of_the_world_model_are_known_to_the_task_plan(tmp_path: Path, rule: str, blamed: bool) -> None:
+    """A rule about nothing but the world leaves no plan where it holds, and the verdict names it."""
+    scenario = utak.Scenario.from_text(world=TWO_SQUARES, start="", goal="in(utak, room(next)).")
+    rules = rule_file(tmp_path, rule)
+    episode = utak.Run(scenario, rules=[rules], max_steps=30).finish()
+    assert (episode.verdict != "done") is blamed
+    assert (f"{rules}:1" in episode.reason) is blamed
