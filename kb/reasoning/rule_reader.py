@@ -25,7 +25,7 @@ from kb.three_valued.arithmetic import CalculationError, calculate
 from kb.three_valued.clauses import BINARY_SIGNS, UNARY_SIGNS, ClauseError, place_of
 from kb.tracing.syntax import global_variables_of
 
-OWN_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
+RENAMED_PREFIX = "own__"  # of the names of users' predicates where encodings have another predicate of that name
 KEPT_STATEMENTS = (ASTType.Rule, ASTType.Minimize, ASTType.Defined)  # statements with an effect in an encoding
 # Constants are substituted, and queries decide what is shown: these statements have no effect of their own.
 IGNORED_STATEMENTS = ("Definition", "ShowSignature", "ShowTerm", "Program", "Comment")
@@ -263,7 +263,7 @@ class _OwnNames(Transformer):
         symbol = node.symbol
         if symbol.ast_type != ASTType.Function or (symbol.name, len(symbol.arguments)) not in self._renamed:
             return node
-        return node.update(symbol=symbol.update(name=f"{OWN_PREFIX}{symbol.name}"))
+        return node.update(symbol=symbol.update(name=f"{RENAMED_PREFIX}{symbol.name}"))
 
 
 class _ArithmeticRewriter(Transformer):
