@@ -15,6 +15,7 @@ from planner.deciding.stage_turn import StageTurn
 from planner.decision import Decision, TaskVerdict, nothing_to_do
 from planner.goals.embedded import Supposition, suppose
 from planner.goals.placement import POSSIBLE_OBJECT
+from planner.sights.walls import is_ringed
 from planner.situation import Situation
 
 ASIDE_TARGET = "aside"  # the end of a plan that moves an obstacle out of the robot's way
@@ -79,13 +80,17 @@ class ObstacleClearer:
     def clear(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:
         """Return the next command to move aside what blocks the robot's way; nothing when no such object can be moved.
 
+        A ring about the robot may have an opening that fills no whole square: it is walked against first.
+
         Parameters
         ----------
         goals : what they speak of stays where it is.
         turn : the stage, what is believed, and the tools.
         """
         self._let_stay(goals, turn.situation)
-        instead = self._move_first(self._movable(turn.situation), turn)
+        ringed = is_ringed(turn.situation.model, turn.situation.cost_maps.floor)
+        instead = self._passages.next(turn) if ringed else None
+        instead = instead or self._move_first(self._movable(turn.situation), turn)
         return instead or nothing_to_do("nothing that blocks the robot's way can be moved aside")
 
     def pull(self, goals: Sequence[Fact], turn: StageTurn) -> Decision:

@@ -22,7 +22,14 @@ from planner.screen.moves import move_to, one_move_squares
 from planner.screen.projection import CostMaps, dilate, indices_to_mask
 from planner.sights.frontiers import Viewpoint
 from planner.sights.passages import SAME_LINE, WallLine, passages
-from planner.sights.walls import FeelingPlace, FeelingScope, WallKind, feeling_places, walls_in_question
+from planner.sights.walls import (
+    FeelingPlace,
+    FeelingScope,
+    WallKind,
+    feeling_places,
+    is_ringed,
+    walls_in_question,
+)
 from planner.situation import Situation, neck_squares
 from planner.stages import Stage
 from planner.subgoal_kind import SubgoalKind
@@ -157,12 +164,16 @@ class Passages:
     def next(self, turn: StageTurn) -> Decision | None:
         """Return the next command to walk through wall to floor beyond it; None when no line is left.
 
+        Through the thing, too, where one alone lies all round the robot.
+
         turn : the stage, what is believed, and the tools.
         """
         situation = turn.situation
         model, far = situation.model, situation.cost_maps.distances[0].ravel()
-        left = [one for one in passages(situation.cost_maps) if not self._is_tried(one.line)]
-        for passage in sorted(left, key=lambda one: (int(far[one.square]), math.dist(one.start, model.place))):
+        walks = passages(situation.cost_maps, things=not is_ringed(model, situation.cost_maps.floor))
+        left = [one for one in walks if not self._is_tried(one.line)]
+        left.sort(key=lambda one: (not one.is_middle, int(far[one.square]), math.dist(one.start, model.place)))
+        for passage in left:
             if math.dist(passage.start, model.place) < SAME_LINE / 2:
                 self._tried.add(passage.line)
                 return Decision(move_to(passage.end, model), f"{PASSAGE_REASON}; {turn.stage}")

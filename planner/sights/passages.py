@@ -30,11 +30,19 @@ class WalkThroughWall(NamedTuple):
     start: XY
     end: XY
 
+    @property
+    def is_middle(self) -> bool:
+        """Whether it leads along the middle of a row: such walks find every opening of a square."""
+        return abs(self.line[1] % 1 - 0.5) < SAME_LINE
 
-def passages(cost_maps: CostMaps) -> Iterator[WalkThroughWall]:
-    """Yield the walks that lead through at most MAX_THICK_WALL squares of wall, by direction and row."""
+
+def passages(cost_maps: CostMaps, things: bool = True) -> Iterator[WalkThroughWall]:
+    """Yield the walks that lead through at most MAX_THICK_WALL squares of wall, by direction and row.
+
+    things : whether ways over things count, which may be moved; if not, things are walls.
+    """
     reached, view = cost_maps.floor, cost_maps.model.view
-    apart = floor_apart(cost_maps.model, reached)
+    apart = floor_apart(cost_maps.model, reached, things)
     for number, (dx, dy) in enumerate(EDGE_STEPS):
         for row, column in np.argwhere(reached).tolist() if apart.any() else ():
             depth = _depth(row, column, (dx, dy), reached, apart)

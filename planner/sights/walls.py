@@ -107,18 +107,26 @@ def unfelt_walls(model: WorldModel) -> Bools:
     return mask
 
 
-def floor_apart(model: WorldModel, reached: Bools) -> Bools:
+def floor_apart(model: WorldModel, reached: Bools, things: bool = True) -> Bools:
     """Return the floor that was seen and that nothing but wall parts from where the robot is, (rows, columns) bool.
 
     All floor is connected, and what a wall covers in part looks like wall: so one of these walls has an opening.
-    reached : the floor that the robot reaches.
+    reached : the floor that the robot reaches. things : whether a way over things counts, too, for they may be moved.
     """
-    under = np.any([model.mask(node.patch) for node in model.objects], axis=0)
-    labels = components(model.space | reached | under).labels
+    floor = model.space | reached
+    if things:
+        floor |= np.any([model.mask(node.patch) for node in model.objects], axis=0)
+    labels = components(floor).labels
     large = np.bincount(labels.ravel()) >= MIN_UNREACHED_SQUARES
     row, column = model.view.locate(*model.place)
     apart: Bools = large[labels] & model.space & (labels != labels[row, column])
     return apart
+
+
+def is_ringed(model: WorldModel, reached: Bools) -> bool:
+    """Return whether one thing alone lies all round the floor that the robot reaches, such as a ring about it."""
+    beside = with_edge_neighbours(reached) & ~reached
+    return any(not (beside & ~model.mask(node.patch)).any() for node in model.objects)
 
 
 def walls_in_question(model: WorldModel, reached: Bools, scope: FeelingScope = ALL_WALLS) -> dict[WallKind, Bools]:
