@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely import Point, Polygon, box, union_all
+from shapely import LineString, Point, Polygon, box, union_all
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
@@ -38,13 +38,18 @@ class OddNeck:
     @property
     def gap(self) -> float:
         """The distance between the jambs: nothing convex of a greater least width passes."""
-        return shapely.LineString([self.a0, self.b0]).distance(shapely.LineString([self.a1, self.b1]))
+        return LineString([self.a0, self.b0]).distance(LineString([self.a1, self.b1]))
 
     @property
     def clear(self) -> float:
         """The distance between the lines of the jambs: a square with a smaller side passes along them."""
         (x, y), (u, v) = np.subtract(self.b0, self.a0), np.subtract(self.a1, self.a0)
         return float(abs(x * v - y * u) / math.hypot(x, y))
+
+    @property
+    def middle(self) -> LineString:
+        """The line from jamb to jamb, halfway through: who crosses it goes through the door."""
+        return LineString([np.mean([self.a0, self.b0], axis=0), np.mean([self.a1, self.b1], axis=0)])
 
     def half(self, second: bool) -> Polygon:
         """Return the half of the neck at its first or its second room."""

@@ -24,7 +24,6 @@ DOOR_RULES = {
 }
 RULE_SENTENCE = '%! because "Door {D} is {W/100} squares wide, and narrow doors are to be left alone."\n'
 NARROW_DOORS, WIDE_DOORS = (28, 42), (56, 72)  # tenths of squares: narrower than 5 beyond doubt, and wider
-DOOR_INSET = 0.1  # squares within the sides of a door at which the robot is in it
 
 
 def two_doors(rng: np.random.Generator, seed: int) -> OddWorld | None:
@@ -56,7 +55,7 @@ def door_rule(rng: np.random.Generator, seed: int) -> OddWorld | None:
     return replace(
         made,
         texts=replace(made.texts, rules=RULE_SENTENCE + DOOR_RULES[variant]),
-        avoid=narrow.polygon.buffer(-DOOR_INSET),
+        avoid=narrow.middle,
     )
 
 
