@@ -128,10 +128,15 @@ def picture(lines: Sequence[Line]) -> str:
     return f'<svg xmlns="http://www.w3.org/2000/svg" {size}><style>{STYLE}</style>{"".join(panels)}</svg>\n'
 
 
-if __name__ == "__main__":
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Write the picture of an episode."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("episode", type=Path)
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).with_name("run.svg"))
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     drawn = picture([json.loads(line) for line in options.episode.read_text().splitlines()])
-    write_whole(options.output, drawn, is_svg, "SVG picture")
+    write_whole(options.output, drawn.encode(), is_svg, "SVG picture")
+
+
+if __name__ == "__main__":
+    main()
