@@ -127,6 +127,11 @@ class Situation:
         """Return the object that a parameter of the task means; None while none is known, and for any other word."""
         return self.model.object(self.binding.get(parameter, ""))
 
+    def nothing_is(self, parameter: str) -> str:
+        """Return in words that nothing is known to be what a parameter means: so far, or since the map is a new one."""
+        since = "since the map was begun anew" if self.model.anew else "so far"
+        return f"nothing seen {since} is {parameter}"
+
     def named_by(self, goals: Iterable[Fact]) -> frozenset[str]:
         """Return the names of the objects of which some goals speak, and "" where a term means none that is known."""
         return frozenset(self.binding.get(str(term), "") for goal in goals for term in goal.args)

@@ -78,6 +78,11 @@ def constraints(task: Task) -> tuple[Fact, ...]:
     return tuple(fact for fact in task.goals if fact.name in CONSTRAINT_GOALS)
 
 
+def rests_on_waking(goal: Fact) -> bool:
+    """Return whether it depends on where the robot woke if a goal for the robot itself holds."""
+    return goal.name in (*ORIGIN_GOALS, *TRACK_GOALS) or str(goal.args[1]) == "start"
+
+
 def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:
     """Return the parameters of a task that a plan must not give another meaning.
 

@@ -18,7 +18,7 @@ from kb.tracing.decisions import SolverCall
 INSTEAD_SHOWN = 6  # believed facts that are named in the place of a missing one, at most; a convention
 SURE_KIND = {"object": 95, "verge": 99, "floor": 100, "utak": 100}  # percent: the surest that interpretation.lp derives
 SURE_SHAPE = {"rectangle": 98, "polygon": 99}  # percent: likewise by shapes.lp
-SURE_CLASS = 98  # percent: the surest class of shapes: 62 + 12 * 3 in shapes.lp
+SURE_CLASS = 62  # percent: a class of shapes that fits best and is not ahead, by shapes.lp
 
 
 class AbsenceExplainer:
@@ -62,8 +62,8 @@ class AbsenceExplainer:
             return self._no_object(wanted, arguments[0], step)
         if signature not in BELIEF_PREDICATES:
             return self._not_derived(wanted, signature, step)
-        for call, atom in self._decisions(wanted, step):
-            return self._absence(wanted, call, atom, step)
+        for call, atom, number in self._decisions(wanted, step):
+            return self._absence(wanted, step, call, atom, number)
         return self._instead(wanted, step)
 
     def _no_object(self, wanted: str, node: str, step: int) -> Reason:
@@ -84,72 +84,77 @@ class AbsenceExplainer:
         call = call_deriving(self._facts.record.decisions(step), signature, self._rule_files)
         if call is None:
             raise BadInputError([unknown_predicate(wanted, signature, self._rule_files)])
-        return self._absence(wanted, call, wanted, step)
+        return self._absence(wanted, step, call, wanted, step)
 
-    def _decisions(self, fact: str, step: int) -> Iterator[tuple[SolverCall, str]]:
-        """Yield the answer of an encoding that could have derived a fact, with the atom that would have been it."""
+    def _decisions(self, fact: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
+        """Yield the answer of an encoding that could have derived a fact, the atom that would have been it, its step.
+
+        The newest answer comes first.
+        """
         name, arguments = atom_parts(fact)
         now = self._facts.record.steps[step]
         if name == "kind" and len(arguments) == 3 and arguments[0] in now.regions:
             confidence = _number_or(arguments[2], SURE_KIND.get(arguments[1], 95))
             atom = f"kind({now.regions[arguments[0]]},{arguments[1]},{confidence})"
             yield from self._calls("interpretation", atom, step)
-        elif name == "shape" and len(arguments) == 3:
+        elif name == "shape" and len(arguments) == 3 and f"node({arguments[0]})" in now.fact_set:
             confidence = _number_or(arguments[2], SURE_SHAPE.get(arguments[1], SURE_CLASS))
             atom = f"shape({arguments[0]},{arguments[1]},{confidence})"
-            yield self._newest("shapes", step, f"fit({arguments[0]},"), atom
+            call, number = self._newest("shapes", step, f"fit({arguments[0]},")
+            yield call, atom, number
         elif name == "bound" and len(arguments) == 2:
             yield from self._calls("reconciliation", f"bind({arguments[0]},{arguments[1]})", step)
         elif name in ("door", "connects", "width") and f"door({arguments[0]})" not in now.fact_set:
             yield from self._opening(step)
-            call = self._newest("rooms", step, "neck(")
+            call, number = self._newest("rooms", step, "neck(")
             if call.facts:
-                yield call, f"door({sum(given.startswith('neck(') for given in call.facts)},100)"  # one more neck
+                more = sum(given.startswith("neck(") for given in call.facts)  # one more neck
+                yield call, f"door({more},100)", number
         elif name == "corner" and len(arguments) == 3:
             yield from self._corner(arguments, step)
         elif name == "plan" and len(arguments) == 2:
             yield from planned_choice(self._facts.record, arguments[0], arguments[1], step)
 
-    def _calls(self, encoding: str, atom: str, step: int) -> Iterator[tuple[SolverCall, str]]:
+    def _calls(self, encoding: str, atom: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answers of an encoding at a step, the newest first."""
         for call in reversed(self._facts.record.decisions(step)):
             if call.encoding == encoding:
-                yield call, atom
+                yield call, atom, step
 
-    def _newest(self, encoding: str, step: int, needs: str) -> SolverCall:
-        """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`.
+    def _newest(self, encoding: str, step: int, needs: str) -> tuple[SolverCall, int]:
+        """Return the newest answer of an encoding up to a step whose facts have one that begins with `needs`; its step.
 
         Where there is none, one to which nothing was given: what is missing is the same then.
         """
-        for number in range(step, -1, -1):
+        for number in range(step, self._facts.record.steps[step].first_impression - 1, -1):
             calls: Sequence[SolverCall] = self._facts.record.decisions(number)
             told = [one for one in calls if one.encoding == encoding and any(f.startswith(needs) for f in one.facts)]
             if told:
-                return told[-1]
-        return SolverCall(encoding, (), (), ())
+                return told[-1], number
+        return SolverCall(encoding, (), (), ()), step
 
-    def _opening(self, step: int) -> Iterator[tuple[SolverCall, str]]:
+    def _opening(self, step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answer of rooms.lp with the neck that comes nearest to being a door and is none."""
         for call in reversed(self._facts.record.decisions(step)):
             for atom in call.answer or () if call.encoding == "rooms" else ():
                 name, arguments = atom_parts(atom)
                 if name == "opening":
                     neck = next(fact for fact in call.facts if fact.startswith(f"neck({arguments[0]},"))
-                    yield call, f"door({arguments[0]},{atom_parts(neck)[1][4]})"
+                    yield call, f"door({arguments[0]},{atom_parts(neck)[1][4]})", step
 
-    def _corner(self, arguments: Sequence[str], step: int) -> Iterator[tuple[SolverCall, str]]:
+    def _corner(self, arguments: Sequence[str], step: int) -> Iterator[tuple[SolverCall, str, int]]:
         """Yield the answer of corners.lp, if there is a convex corner at the place that is not the furthest."""
         for call in reversed(self._facts.record.decisions(step)):
             for fact in call.facts if call.encoding == "corners" else ():
                 number, *place = atom_parts(fact)[1]
                 if place == list(arguments[1:]):
-                    yield call, f"furthest({arguments[0]},{number})"
+                    yield call, f"furthest({arguments[0]},{number})", step
 
-    def _absence(self, fact: str, call: SolverCall, atom: str, step: int) -> Reason:
-        """Return why an answer does not hold an atom, with the reasons of what is in the way."""
+    def _absence(self, fact: str, step: int, call: SolverCall, atom: str, made: int) -> Reason:
+        """Return why an answer, made at a step, does not hold an atom, with the reasons of what is in the way."""
         found = explain_absence(call.encoding, call.facts, call.answer, atom, self._rule_files)
         in_way = tuple(
-            input_reason(self._facts.record, Given(given, call, step), self._facts.reason) for given in found.in_way
+            input_reason(self._facts.record, Given(given, call, made), self._facts.reason) for given in found.in_way
         )
         return self._reason_of(fact, found, in_way, step)
 
@@ -192,7 +197,7 @@ class AbsenceExplainer:
         elif f"node({thing})" in self._facts.record.steps[step].fact_set:
             because = f"{thing} is believed to be there, but nothing that was seen, felt or done says this of it"
         else:
-            because = "nothing seen so far is about it: no such thing is believed to be there"
+            because = "no such thing is believed to be there at this step"
         data = {"missing": [fact], "in_way": [reason.claim for reason in instead], "partial": False, "found": True}
         return Reason(f"not {fact}", because, ReasonKind.NEGATION, f"step {step}", instead, data)
 

@@ -105,9 +105,8 @@ def _found_by_geometry(record: Record, number: str, step: int) -> Iterator[Reaso
     for about in decision[1].about if decision is not None else ():
         if isinstance(about, str) and about.startswith(begin):
             found = about.removeprefix(begin)
-            yield Reason(
-                f"geometry found no way: {found}", "", ReasonKind.MEASURED, f"step {decision[0] if decision else step}"
-            )
+            at = decision[0] if decision else step
+            yield Reason(f"what was found: {found}", "", ReasonKind.MEASURED, f"step {at}")
 
 
 def _stated(beliefs: PlanExplainer, start: str, step: int) -> Iterator[Reason]:
@@ -186,14 +185,13 @@ def _decided(beliefs: PlanExplainer, number: int, planned: str, step: int) -> It
 
     number : the number of the plan's step, 0 for the present one. planned : the step, or go(D) for a door on its way.
     """
-    found = _decision(beliefs.record, step)
-    for call, atom in planned_choice(beliefs.record, str(number), planned, step):
-        if found is not None and atom in (call.answer or ()):
-            yield beliefs.prove(call, atom, found[0])
+    for call, atom, at in planned_choice(beliefs.record, str(number), planned, step):
+        if atom in (call.answer or ()):
+            yield beliefs.prove(call, atom, at)
 
 
-def planned_choice(record: Record, number: str, planned: str, step: int) -> Iterator[tuple[SolverCall, str]]:
-    """Yield the decision of the plan of a step, with the atom that says there that the plan has some step.
+def planned_choice(record: Record, number: str, planned: str, step: int) -> Iterator[tuple[SolverCall, str, int]]:
+    """Yield the decision of the plan of a step, the atom that says there that the plan has some step, and its step.
 
     Nothing when the step of the run has no plan.
 
@@ -210,7 +208,7 @@ def planned_choice(record: Record, number: str, planned: str, step: int) -> Iter
         return
     steps = [atom_parts(atom)[1][0] for atom in found[1].answer or () if atom.startswith("occurs(")]
     done = sum(1 for one in steps if atom_parts(one)[0] != DOOR_STEP) - left
-    yield found[1], f"occurs({planned},{done + int(number)})"
+    yield found[1], f"occurs({planned},{done + int(number)})", found[0]
 
 
 def _decision(record: Record, step: int) -> tuple[int, SolverCall] | None:

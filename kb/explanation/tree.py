@@ -139,8 +139,9 @@ class ProofTrees:
             yield ProofNode("aggregate", claim, told, children=tuple(self._members(info, elements)))
         elif kind == "conditional":
             text = substituted(info["text"], values or {})
-            number = f"in all {len(elements)} cases" if len(elements) > 1 else "in the one case that there is"
-            told = f"{number} it holds that {text}" if elements else f"there is no case in which to check {text}"
+            literal, _, cases = text.partition(": ")
+            number = f"{len(elements)} cases, and in each" if len(elements) > 1 else "one case, and there"
+            told = f"{cases} holds in {number} {literal}" if elements else f"{cases} holds in no case"
             yield ProofNode("each", text, told, children=tuple(self._cases(info, elements)))
 
     def _members(self, info: JsonValues, elements: Sequence[CountedElement]) -> Iterator[ProofNode]:

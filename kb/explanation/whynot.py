@@ -63,7 +63,7 @@ def explain_absence(
     is_single = bool(found["found"]) and len(missing) + len(in_way) <= 1
     partial = not found["least"] or (candidates["cut"] and not is_single)
     proof = _proof_after(program, given, missing, in_way, wanted) if found["found"] else None
-    sentence = _sentence(program, wanted, given, missing, in_way, found["found"])
+    sentence = _sentence(program, wanted, _otherwise(wanted, known), given, missing, in_way, found["found"])
     return Absence(encoding, wanted, missing, in_way, partial, found["found"], sentence, rival, proof)
 
 
@@ -93,16 +93,25 @@ def _proof_after(
     return Proof(program.encoding, decision.node(wanted)) if wanted in decision.atoms else None
 
 
+def _otherwise(wanted: str, known: Sequence[str]) -> str:
+    """Return the atom among some that differs from the wanted one in a last number alone; "" for none."""
+    name, arguments = atom_parts(wanted)
+    rest = f"{name}({','.join(arguments[:-1])}," if len(arguments) > 1 and arguments[-1].isdigit() else ""
+    same = [atom for atom in known if rest and atom.startswith(rest) and atom[len(rest) : -1].isdigit()]
+    return same[0] if len(same) == 1 else ""
+
+
 def _sentence(
     program: DecisionProgram,
     wanted: str,
+    other: str,
     given: Sequence[str],
     missing: Sequence[str],
     in_way: Sequence[str],
     found: bool,
 ) -> str:
-    """Return in one sentence why an atom does not hold."""
-    said = absent_words(wanted, program.words)
+    """Return in one sentence why an atom does not hold. other : the atom with another last number that does, or ""."""
+    said = f"{other} does" if other else absent_words(wanted, program.words)
     start = f"{wanted} does not hold" if said == f"no {wanted} is known" else f"{wanted} does not hold: {said}"
     if not found:
         return f"{start}; no change of the given facts was found with which it would."

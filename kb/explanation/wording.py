@@ -37,11 +37,13 @@ def absent_words(atom: str, words: WordsByPredicate) -> str:
     """Return in plain words that an atom is not known to hold; `any__` among its arguments stands for any value."""
     name, arguments = atom_parts(atom)
     found = words.get((name, len(arguments)))
-    shown = ["any" if argument == ANY_NAME else argument for argument in arguments]
-    if found and found.absent:
-        return fill(found.absent, dict(zip(found.variables, shown, strict=True)))
     if found:
-        return f"it is not known that {fill(found.holds, dict(zip(found.variables, shown, strict=True)))}"
+        values = dict(zip(found.variables, arguments, strict=True))
+        free = [name for name, value in values.items() if value == ANY_NAME]
+        if found.absent and not free:
+            return fill(found.absent, values)
+        known = fill(found.holds, values | dict(zip(free, free, strict=True)))
+        return f"for no {' and '.join(free)} is it known that {known}" if free else f"it is not known that {known}"
     return f"no {atom_pattern(atom)} is known"
 
 
@@ -73,9 +75,15 @@ def comparison_words(info: JsonValues, sides: Sequence[str], values: Mapping[str
     if info["signs"] == ["="] and sides[0] == sides[1]:
         texts = written
     parts = [
-        f"{left} {SIGN_WORDS[sign]} {right}" for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
+        f"{left} {_compared(sign, right)}" for left, sign, right in zip(texts, info["signs"], texts[1:], strict=False)
     ]
     return ("it is not so that " if info["negated"] else "") + " and ".join(parts)
+
+
+def _compared(sign: str, right: str) -> str:
+    """Return what a comparison says of its left side."""
+    first, interval, last = right.partition("..")
+    return f"is one of {first} to {_unwrapped(last)}" if interval and sign == "=" else f"{SIGN_WORDS[sign]} {right}"
 
 
 def aggregate_claim(info: JsonValues, bounds: Sequence[str], elements: Sequence[CountedElement]) -> str:

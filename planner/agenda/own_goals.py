@@ -25,7 +25,7 @@ from planner.navigation.encircle import encircled_point, encircling_routes, wind
 from planner.screen.moves import next_move
 from planner.sights.viewpoints import TO_REACH
 from planner.skills.into_corner import IntoCorner, halt_beside_walls
-from planner.stages import ORIGIN_GOALS
+from planner.stages import ORIGIN_GOALS, rests_on_waking
 from planner.subgoal_kind import SubgoalKind
 from planner.tasking.intention import Intention
 from planner.tasking.setting import DestinationFunction
@@ -113,7 +113,7 @@ class OwnGoals:
         if decision.command is not None:
             return decision
         if decision.verdict != TaskVerdict.DONE:
-            intention.failed(errand, turn.situation)
+            intention.failed(errand, turn.situation, decision.why)
         return nothing_to_do(decision.why)
 
     def look(self, turn: StageTurn, transporter: Transporter) -> Decision:
@@ -200,7 +200,7 @@ class OwnGoals:
         nearer = self._into_corner.next(stage, situation)
         if nearer is not None:
             return Decision(nearer, f"the walls of the corner may lie further away; {stage}")
-        return done(f"{stage} holds for the robot")
+        return _attained(f"{stage} holds for the robot", turn)
 
     def _go_round(self, name: str, turn: StageTurn) -> Decision:
         """Return the next command on the way round an object; done when the robot has gone round it and is back.
@@ -219,7 +219,7 @@ class OwnGoals:
         winding = winding_number(track, node)
         besides = self._round.besides(turn.track, node, back=any(map(is_back_at_start, situation.task.goals)))
         if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) >= LEAST_ROUND:
-            return done(f"{stage} holds")
+            return _attained(f"{stage} holds", turn)
         offered = encircling_routes(cost_maps, track, node)
         self._turn = self._turn or (besides > NO_ROUND) - (besides < -NO_ROUND)
         begun = [offered[self._turn]] if self._turn in offered else list(offered.values())
@@ -244,6 +244,15 @@ def _turned(start: XY, end: XY, node: Node) -> float:
     x, y = encircled_point(node) if node.polygon is None else (node.polygon.centroid.x, node.polygon.centroid.y)
     before, after = (math.atan2(place[1] - y, place[0] - x) for place in (start, end))
     return math.degrees(math.remainder(after - before, math.tau))
+
+
+def _attained(why: str, turn: StageTurn) -> Decision:
+    """Return `done`; the verdict `limit` where a goal rests on where the robot woke, and it was lost since then."""
+    resting = [str(goal) for goal in turn.stage.own if rests_on_waking(goal)]
+    if not resting or not turn.situation.model.anew:
+        return done(why)
+    doubt = f"it cannot be told whether {' and '.join(resting)} hold{'s' * (len(resting) == 1)}: the robot was lost"
+    return Decision(None, f"{doubt} since it woke", TaskVerdict.LIMIT)
 
 
 def _make_sure(goals: Sequence[Fact], there: bool, turn: StageTurn) -> Decision | None:

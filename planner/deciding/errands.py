@@ -66,7 +66,7 @@ class ErrandRunner:
             decision = self._follow(found, turn.within(self.intention.along_plan(turn.situation)))
             if decision.command is not None:
                 return decision
-            self.intention.failed(found.errand, turn.situation)
+            self.intention.failed(found.errand, turn.situation, decision.why)
         turn.executor.unwanted = {}
         planned = self.intention.plan is not None
         return nothing_to_do("the next step is the robot's own" if planned else "the task plan has no errand")

@@ -123,7 +123,7 @@ class ConstraintKeeper:
         model, region = situation.model, region_of(fact)
         node = situation.object_of(name)
         if node is None:
-            return f"it cannot be told whether {fact} holds: nothing seen so far is {name}"
+            return f"it cannot be told whether {fact} holds: {situation.nothing_is(name)}"
         if model.anew and node.moved:
             return f"it cannot be told whether {fact} holds: the robot was lost"
         track = self._tracks.get(node.name)

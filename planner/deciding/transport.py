@@ -214,7 +214,7 @@ class Transporter:
         """
         x = str(goal.args[0])
         immovable = dict(turn.reconciled.unmovable).get(x)
-        unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else f"nothing seen so far is {x}")
+        unseen = unknown_destination(f"{immovable} cannot be moved" if immovable else turn.situation.nothing_is(x))
         goals = [goal for goal in turn.stage.goals if str(goal.args[0]) == x]
         subgoals = self._search([unseen], turn.situation, turn.reconciled, approach_for_goals(goals, turn.situation))
         proof = proof_if_not_found(turn.situation.model, bool(immovable))

@@ -42,7 +42,7 @@ def beside_placement(other: str, node: Node, situation: Situation) -> Placement:
     """
     target = situation.object_of(other)
     if target is None:
-        return Placement({}, f"nothing seen so far is {other}")
+        return Placement({}, situation.nothing_is(other))
     squares = mask_to_polygon(situation.model.mask(target.patch))
     found = touching(to_view_frame(node.polygon, situation), squares, target.name)
     return replace(found, must_reach=KnownEnds()) if target.movable else found  # it may be brought elsewhere

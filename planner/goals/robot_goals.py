@@ -288,7 +288,7 @@ def beside_destination(parameter: str, situation: Situation) -> Destination:
     """
     node = situation.object_of(parameter)
     if node is None:
-        return unknown_destination(f"nothing seen so far is {parameter}")
+        return unknown_destination(situation.nothing_is(parameter))
     mask = situation.model.mask(node.patch)
     around = dilate(mask, 1)
     near = around & situation.cost_maps.floor

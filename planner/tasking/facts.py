@@ -40,6 +40,11 @@ class Answers:
     hoped: AbstractSet[Way] = frozenset()
     refutations: tuple[RefutedStep, ...] = ()
 
+    @property
+    def found(self) -> list[str]:
+        """What was found for each refutation, by its number, for the record of decisions."""
+        return [f"refutation {n}: {one.found}" for n, one in enumerate(self.refutations) if one.found]
+
 
 class Overlap(NamedTuple):
     """Two places of two things that overlap.

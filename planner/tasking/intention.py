@@ -238,20 +238,20 @@ class Intention:
         ends = (*land.ends, *land.loose)
         return next(((goal, end) for end in ends if place_name(name, end) == errand.place), (None, ""))
 
-    def failed(self, errand: Errand, situation: Situation) -> None:
+    def failed(self, errand: Errand, situation: Situation, why: str) -> None:
         """Note that an errand cannot be done as things lie now; the plan is made anew without it.
 
         A wish is dropped for good.
 
         Parameters
         ----------
-        errand : the present errand.
+        errand : the present errand. why : why it cannot be done, in words.
         """
         wish = None if self._kept is None else wish_of_place(errand.place, self._kept.stage)
         self._dropped |= set() if wish is None else {wish}
         others = () if self._problem is None else sorted(self._problem.nodes.keys() - {errand.subject})
         given = tuple((name, HERE) for name in others)
-        self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given)))
+        self._tried.append((_lying(situation), RefutedStep(errand.subject, HERE, errand.place, given, found=why)))
         self._kept = None
 
     @property

@@ -289,8 +289,7 @@ class PlanSearch:
 
     def _about(self) -> list[str]:
         """Return the goals in words, by their number from 1, and what geometry found, by refutation, for the record."""
-        found = [f"refutation {n}: {one.found}" for n, one in enumerate(self._answers.refutations) if one.found]
-        return [*(f"{goal.name}: {goal.words}" for goal in self._problem.goals), *found]
+        return [*(f"{goal.name}: {goal.words}" for goal in self._problem.goals), *self._answers.found]
 
     def _with_geometry(self, plan: TaskPlan, facts: tuple[str, ...]) -> MadePlan:
         """Return a plan with the states that it leads to and the squares that it crosses."""

@@ -40,7 +40,7 @@ def plan_that_settles(
         facts += answer_facts(Answers(refutations=refuted))
     horizon = max(1, len(stage.goals) + sum(fact.startswith("stuck(") for fact in given))
     placed = () if problem is None else problem.goals
-    about = [f"{goal.name}: {goal.words}" for goal in placed]
+    about = [*(f"{goal.name}: {goal.words}" for goal in placed), *Answers(refutations=refuted).found]
     without: tuple[str, ...] = ()
     given_facts = (f"horizon({horizon})", *facts)
     found = propose(given_facts, situation.rules, about)

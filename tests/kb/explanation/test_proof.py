@@ -97,6 +97,7 @@ def test_a_conditional_literal_shows_all_its_cases() -> None:
         node for node in checked(decision, "ahead(o1,1)").walk() if node.kind == "each" and "behind" in node.claim
     )
     assert [child.claim for child in node.children] == ["1 <= 1", "1 <= 2"]
+    assert node.words == "behind(o1,K) holds in 2 cases, and in each 1 <= K"
 
 
 def test_a_greatest_value_shows_what_it_is_the_greatest_of() -> None:

@@ -175,3 +175,12 @@ def test_facts_of_the_change_are_marked_as_assumed() -> None:
     assert found.proof is not None
     assert {node.claim: node.kind for node in found.proof.root.walk()}["surrounds(a,b)"] == "assumed"
     assert (found.missing, found.in_way, found.partial) == (("surrounds(a,b)",), (), False)
+
+
+def test_a_weaker_belief_is_not_denied() -> None:
+    """No square is surely covered, so every class has 12 percent; with nothing open the best one is likelier."""
+    classes = ["brick", "triangle", "l_shape", "t_shape", "u_shape"]
+    fits = [f"fit(o1,{name},0,{rank})" for rank, name in enumerate(classes, 1)]
+    found = absence("shapes", [*fits, "open_squares(o1,15)", "full_squares(o1,0)"], "shape(o1,brick,62)")
+    assert found.sentence.startswith("shape(o1,brick,62) does not hold: shape(o1,brick,12) does; it would if ")
+    assert found.missing == ("open_squares(o1,0)",) and found.in_way == ()

@@ -3,7 +3,8 @@
 import pytest
 from clingo.ast import ASTType, parse_string
 
-from kb.explanation.wording import comparison_claim, comparison_words
+from kb.explanation.wording import absent_words, comparison_claim, comparison_words
+from kb.reasoning.sentences import PredicateWords
 from kb.tracing.instrument import literal_info
 
 VALUES = {"D": "-286", "E": "1650", "N": "-950", "X": "a", "K": "3"}
@@ -36,3 +37,14 @@ def test_values_stand_where_variables_stood(comparison: str, claim: str) -> None
 
 def test_words_leave_strings_alone() -> None:
     assert comparison_words(info_of('X != "X"'), ["a", '"X"'], VALUES) == 'a is not "X"'
+
+
+def test_an_interval_is_told_by_its_ends() -> None:
+    info = info_of("T = 0..(K-1)")
+    assert comparison_words(info, ["0", "0..(3-1)"], {"T": "0", "K": "3"}) == "0 is one of 0 to 3-1"
+
+
+def test_what_holds_for_nothing_is_told_of_all() -> None:
+    words = {("came", 2): PredicateWords("came", ("A", "R"), "{A} came to {R}", "{A} is not known to have come to {R}")}
+    assert absent_words("came(feel,any__)", words) == "for no R is it known that feel came to R"
+    assert absent_words("came(feel,idle)", words) == "feel is not known to have come to idle"

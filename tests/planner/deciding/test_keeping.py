@@ -121,5 +121,8 @@ def test_a_thing_that_was_never_moved_is_held_against_its_region(west: float) ->
 
 def test_a_parameter_that_means_nothing_known_cannot_be_told() -> None:
     text = f'at(utak, start). avoid(z, "{box(4, 4, 5, 5)}").'
-    assert "nothing seen so far is z" in keeper_of(text).doubt_of_done(situation_for(text))
+    found = situation_for(text)
+    assert "nothing seen so far is z" in keeper_of(text).doubt_of_done(found)
+    lost = replace(found, model=replace(found.model, anew=True))
+    assert "nothing seen since the map was begun anew is z" in keeper_of(text).doubt_of_done(lost)
     assert keeper_of("at(utak, start).").doubt_of_done(known_situation(ROWS)) == ""

@@ -100,7 +100,7 @@ def test_a_wish_that_failed_is_dropped_for_good() -> None:
     intention.update(stage, situation, {}, 1.0)
     found = intention.next_errand(stage, situation)
     assert found is not None and found.goal == stage.wishes[0][0]
-    intention.failed(found.errand, situation)
+    intention.failed(found.errand, situation, "")
     intention.update(stage, situation, {}, 1.0)
     assert intention.next_errand(stage, situation) is None
 

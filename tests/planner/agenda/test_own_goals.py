@@ -1,0 +1,32 @@
+"""Goals for the robot itself: what is said where it stands on their squares."""
+
+from dataclasses import replace
+
+import pytest
+
+from kb.language.reader import facts_from_text
+from planner.agenda.own_goals import OwnGoals
+from planner.decision import TaskVerdict
+from planner.goals.robot_goals import destination
+from planner.stages import Stage
+from planner.tasking.intention import Intention
+from planner.tasking.setting import WhereGoalsHold
+from tests.planner.situations import BESIDE_A_THING, all_felt, known_situation, situation_of, turn_of
+
+
+@pytest.mark.parametrize(
+    ("goal", "told"), [("at(utak, start)", False), ("circled(utak, x)", False), ("beside(utak, x)", True)]
+)
+def test_a_robot_that_was_lost_does_not_say_that_it_is_back(goal: str, told: bool) -> None:
+    """Where it woke is squares away from where it believes that, once it was lost; what it sees is not."""
+    model = all_felt(known_situation(BESIDE_A_THING).model)
+    x, y = model.place
+    middle = model.objects[0].polygon.centroid
+    ring = [(middle.x + a * abs(x - middle.x), middle.y + b * 4) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    track = [(x, y), *ring, (x, y)]
+    for anew, verdict in ((False, TaskVerdict.DONE), (True, TaskVerdict.DONE if told else TaskVerdict.LIMIT)):
+        situation = situation_of(replace(model, anew=anew), {"x": "g"})
+        turn = replace(turn_of(Stage(facts_from_text(f"{goal}.")), situation), track=track)
+        found = OwnGoals(destination).go(turn, Intention(WhereGoalsHold(None, None, destination)))  # type: ignore[arg-type]
+        assert found.verdict == verdict, found.why
+        assert ("the robot was lost since it woke" in found.why) == (verdict == TaskVerdict.LIMIT)
