@@ -42,7 +42,7 @@ class Answers:
 
     @property
     def found(self) -> list[str]:
-        """What was found for each refutation, by its number, for the record of decisions."""
+        """Return what was found for each refutation, by its number, for the record of decisions."""
         return [f"refutation {n}: {one.found}" for n, one in enumerate(self.refutations) if one.found]
 
 
