@@ -8,6 +8,7 @@ picture      world.txt, the world as a picture, and the picture of any world
 expectation  expect.lp, and the comparison with the truth
 points       the outcome of each expectation, and its points
 trialfile    trial.lp: how a test runs the scenario, and what it asks
+cautions     warnings of `utak check`: what can be run but is hardly meant
 settings     the options of a run
 untrusted    the refusal of links that lead out of a scenario
 folder_writer  new scenario folders

@@ -62,13 +62,16 @@ def _parts(path: Path) -> list[Path]:
 
 def _check(path: Path, root: Path, options: argparse.Namespace) -> int:
     """Check a scenario folder or one file; the file's name tells what it must hold."""
+    from simulator.scenario.cautions import cautions
     from simulator.scenario.scenario import read_scenario
 
     refuse_links(options, path, root)
     if path.is_dir():
-        read_scenario(path)
+        scenario = read_scenario(path)
         if (path / "trial.lp").exists():
             _plan(path / "trial.lp")
+        for caution in cautions(path, scenario):
+            print(str(caution).replace(": error: ", ": warning: ", 1), file=sys.stderr)
         return exits.SUCCESS
     check = _checks().get(path.name)
     if check is None:
