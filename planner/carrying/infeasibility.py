@@ -161,10 +161,12 @@ def how_narrow(plan: CarryingPlan) -> str:
     """Return by how much the passage of a refuted plan is too narrow, in words, as far as that is proved.
 
     A verb and its complements: "is too narrow by 0.51 squares", with the bounds of that number where they lie apart by
-    more than ONE_NUMBER.
+    more than ONE_NUMBER. Where a wider one would not help, it need not be narrow: something else stops the body, too.
     """
+    if _is_blocked_elsewhere(plan):
+        return "is not all that stops it: a wider one would not help"
     if not plan.opens:
-        return "is too narrow" + ", and a wider one would not help" * _is_blocked_elsewhere(plan)
+        return "is too narrow"
     least, _, most = plan.missing_between
     between = f" (between {least:.2f} and {most:.2f})" if most - least > ONE_NUMBER else ""
     return f"is too narrow by {plan.missing:.2f} squares{between}"

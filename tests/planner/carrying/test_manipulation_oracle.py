@@ -115,7 +115,7 @@ def test_an_object_stopped_off_the_grid_that_no_wider_passage_helps_proves_nothi
 @pytest.mark.parametrize(
     ("between", "words"),
     [
-        ((math.inf, math.inf, math.inf), "is too narrow, and a wider one would not help"),
+        ((math.inf, math.inf, math.inf), "is not all that stops it: a wider one would not help"),
         ((0.0, math.nan, math.inf), "is too narrow"),
         ((0.49, 0.5, 0.51), "is too narrow by 0.50 squares"),
         ((0.4, 0.5, 0.6), "is too narrow by 0.50 squares (between 0.40 and 0.60)"),
