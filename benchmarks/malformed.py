@@ -33,7 +33,8 @@ from benchmarks.malformations.commands import in_processes, in_this_process
 from benchmarks.malformations.episodes import episodes
 from benchmarks.malformations.imports import imports
 from benchmarks.malformations.mutate import spoil
-from benchmarks.malformations.outcomes import HANG_SECONDS, came_out
+from benchmarks.malformations.outcomes import HANG_SECONDS, bound_memory, came_out
+from benchmarks.malformations.written import written
 from geometry.io.movingai import MapError, parse_map
 from kb.language.diagnostics import BadInputError, Problem, SourceSpan
 from kb.reasoning.encodings import KB_ENCODINGS
@@ -119,7 +120,7 @@ def _no_file(path: Path, draw: random.Random) -> None:
 def outcome(folder: Path, read: Callable[[Path], Scenario] = read_scenario, seconds: float = HANG_SECONDS) -> str:
     """Return the outcome of reading a scenario, as `came_out` does.
 
-    read : the reader of the folder. seconds : of wall-clock time after which it hangs.
+    read : the reader of the folder. seconds : of processor time after which it hangs.
     """
     return came_out(lambda: _simulated(read(folder)), seconds)
 
@@ -222,6 +223,7 @@ def kinds(count: int, seed: int, keep: Path) -> dict[str, Callable[[], Counter[s
         "queries": lambda: queries(count, seed),
         "rules": lambda: rules(count, seed, keep),
         "maps": lambda: maps(count, seed),
+        "written": lambda: written(count, seed, keep),
     }
 
 
@@ -235,6 +237,7 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=0)
     options = parser.parse_args()
     start, keep = time.monotonic(), Path(tempfile.mkdtemp(prefix="malformed-"))
+    bound_memory()
     shares = SHARES_OF_TEN if options.what == "all" else {options.what: 10}
     faults = 0
     for kind, share in shares.items():

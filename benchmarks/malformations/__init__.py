@@ -7,5 +7,6 @@ outcomes  what came of reading something: accepted, refused with a place, or a f
 samples   good files of other formats
 episodes  malformed episodes, read as the prompt, questions and pictures read them
 imports   malformed files of other formats
+written   malformed files that we wrote, and read again or overwrite: pages, results of sweeps, compiled kernels
 commands  malformed files given to commands, in this process and in processes of their own
 """

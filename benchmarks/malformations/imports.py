@@ -10,12 +10,13 @@ from pathlib import Path
 
 from benchmarks.malformations.mutate import spoil_bytes
 from benchmarks.malformations.outcomes import came_out
-from benchmarks.malformations.samples import HOSTILE_HEADS, SAMPLES, TEXT_PGM, WIDE_PGM
+from benchmarks.malformations.samples import HOSTILE_ELEMENTS, HOSTILE_HEADS, SAMPLES, TEXT_PGM, WIDE_PGM
 from simulator.cli.commands.files.import_scenario import FORMATS, scenario_files
 from simulator.importing.imported import ImportOptions
 from simulator.scenario.folder_writer import write_folder
 from simulator.scenario.scenario import read_scenario
 
+HOSTILE_ELEMENT_SHARE = 0.3  # of the pictures that hold an element that is hostile, and are whole otherwise
 HOSTILE_SHARE = 0.05  # of the files that begin with, or hold, something that an attacker would write
 
 
@@ -26,6 +27,8 @@ def write_malformed_file(folder: Path, draw: random.Random) -> Path:
     good = SAMPLES[end] if end != ".pgm" else draw.choice([SAMPLES[end], TEXT_PGM, WIDE_PGM])
     path = folder / f"sample{end}"
     raw = spoil_bytes(draw, good)
+    if end == ".svg" and draw.random() < HOSTILE_ELEMENT_SHARE:
+        raw = good.replace(b"</svg>", draw.choice(HOSTILE_ELEMENTS) + b"</svg>")
     if draw.random() < HOSTILE_SHARE:
         at = draw.choice([0, draw.randrange(len(raw) + 1)])
         raw = raw[:at] + draw.choice(HOSTILE_HEADS) + raw[at:]

@@ -26,6 +26,22 @@ SAMPLES: dict[str, bytes] = {
 }
 TEXT_PGM = b"P2\n# as text\n4 3\n15\n0 0 0 0\n0 15 15 0\n0 0 0 0\n"
 WIDE_PGM = b"P5 3 3 65535\n" + b"\x00\x00" * 4 + b"\xff\xfe" + b"\x00\x00" * 4
+HOSTILE_ELEMENTS = (  # put into a picture that is whole otherwise
+    b'<svg x="1" y="2" width="9" height="9" viewBox="0 0 1e-300 1e300">' * 30 + b'<rect width="1"/>' + b"</svg>" * 30,
+    b'<svg viewBox="0 0 0 0">' * 2000 + b"</svg>" * 2000,
+    b'<g id="a"><use href="#a"/></g>', b'<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>',
+    b"".join(b'<g id="u%d">' % n + b'<use href="#u%d"/>' % (n + 1) * 9 + b"</g>" for n in range(12))
+    + b'<rect id="u12" width="1" height="1"/>',
+    b'<g transform="rotate(1)" style="transform: rotate(2deg) scale(nan)">' * 400 + b"</g>" * 400,
+    b'<path type="wall" d="' + b"M 0,0 h 1 v 1 z " * 20_000 + b'"/>',
+    b'<path type="wall" d="M 0 0 ' + b"c 1,9 9,1 9,9 " * 20_000 + b'z"/>',
+    b'<path type="wall" d="M 0 0 ' + b"A 1e-9 1e9 77 1 0 5 5 " * 3000 + b'z"/>',
+    b'<path type="wall" d="M -1e308,-1e308 L 1e308,1e308 L 1e308,-1e308 z"/>',
+    b'<path type="wall" style="' + b"fill:red;" * 20_000 + b'" d="M 0,0 h 9 v 9 z"/>',
+    b'<polygon type="movable" points="' + b"1,1 9,9 1,9 9,1 " * 5000 + b'"/>',
+    b'<circle type="movable" cx="9" cy="9" r="1e6"/>', b'<ellipse type="wall" rx="nan" ry="inf"/>',
+    b'<rect type="movable" x="5" y="5" width="1e-12" height="1e-12"/>' * 500,
+)  # fmt: skip
 HOSTILE_HEADS = (  # what attackers put into files of other formats
     b'<!DOCTYPE svg [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>\n',
     b'<!DOCTYPE svg [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n',

@@ -14,7 +14,7 @@ from types import TracebackType
 from typing import Any
 
 from kb.language.diagnostics import MAX_PROBLEMS_PER_FILE, BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.source_text import read_bytes
+from kb.language.source_text import Source, lies_outside, read_bytes
 from simulator.episode.forms import KeyPath, complaints
 from simulator.episode.output_files import GrowingFile, is_episode
 from simulator.episode.wellformed import END, EPISODE_VERSION, HEADER, STEP, column
@@ -200,7 +200,12 @@ _JSON = json.JSONDecoder(object_pairs_hook=_object_without_duplicates, parse_con
 
 def _damaged(path: str, number: int, what: str, column: int = 1) -> BadInputError:
     """Return the error `what` at a line and a column of an episode."""
-    return BadInputError([Problem(path, SourceSpan(number, column, column), what)])
+    return BadInputError([_problem(path, SourceSpan(number, column, column), what)])
+
+
+def _problem(path: str, span: SourceSpan, what: str) -> Problem:
+    """Return a problem of an episode; of one behind a link out of its folder it gives the place alone."""
+    return Source(path, "", lies_outside(path)).problem(span, what)
 
 
 def _was_changed(row: bytes) -> bool:
@@ -215,7 +220,7 @@ def _located(path: str, number: int, raw: bytes, where: KeyPath, what: str) -> P
     """Return the problem of a value, placed at the key that leads to it."""
     at = column(raw.decode("utf-8"), where)
     key = ".".join(where)[:80]
-    return Problem(path, SourceSpan(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
+    return _problem(path, SourceSpan(number, at, at), f"{key}: {what}: the episode is damaged" if key else what)
 
 
 class EpisodeLog:

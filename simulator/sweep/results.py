@@ -14,8 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple, Protocol
 
-from kb.language.diagnostics import BadInputError, CannotOpenError, Problem, SourceSpan
-from kb.language.source_text import read_bytes
+from kb.language.diagnostics import BadInputError, CannotOpenError, SourceSpan
+from kb.language.source_text import Source, lies_outside, read_bytes
 from simulator.episode.output_files import keep_first, open_for_writing, replace_whole
 
 STDOUT_NAME = "-"  # the name of a file that stands for the standard output
@@ -276,5 +276,5 @@ def _shown(value: Any) -> str:
 
 
 def _damaged(path: str, number: int, what: str, hint: str = "") -> BadInputError:
-    """Return the error `what` at a line of a file of results."""
-    return BadInputError([Problem(path, SourceSpan(number, 1, 1), what, hint=hint)])
+    """Return the error `what` at a line of a file of results; behind a link out of its folder, the place alone."""
+    return BadInputError([Source(path, "", lies_outside(path)).problem(SourceSpan(number, 1, 1), what, hint)])

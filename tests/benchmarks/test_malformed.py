@@ -34,6 +34,13 @@ def test_malformed_maps() -> None:
     assert outcomes["refused"] > 500
 
 
+def test_malformed_files_that_we_wrote(tmp_path: Path) -> None:
+    outcomes = malformed.written(400, 7, tmp_path)
+    assert [result for result in outcomes if result.startswith("!")] == []
+    assert outcomes["accepted"] > 100
+    assert outcomes["refused"] > 40
+
+
 def test_the_campaign_sees_faults(tmp_path: Path) -> None:
     def forever(folder: Path) -> NoReturn:
         while True:

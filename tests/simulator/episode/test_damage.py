@@ -241,3 +241,21 @@ def test_an_episode_without_steps_is_not_explained(lines: list[dict[str, Any]], 
     path.write_text(json.dumps(lines[0]) + "\n")
     for question in ([], ["--cell", "40"], ["node(o1)"]):
         assert main(["explain", str(path), *question]) == 65
+
+
+def test_nothing_is_quoted_of_what_a_link_leads_to(tmp_path: Path, lines: list[dict[str, Any]]) -> None:
+    """Neither of the header nor of keys further on; a link within its folder is read like the file itself."""
+    home = tmp_path / "home"
+    home.mkdir()
+    bad_version = [{**lines[0], "version": "secret"}]
+    twice = [lines[0], {**lines[1], "utak": {"secret": 1}}]
+    for number, rows in enumerate((bad_version, twice)):
+        for place, is_told in ((tmp_path / f"far{number}", False), (home / f"near{number}", True)):
+            text = "".join(json.dumps(row) + "\n" for row in rows)
+            place.write_text(text.replace('{"secret": 1}', '{"secret": 1, "secret": 2}'))
+            link = home / f"link-{place.name}"
+            link.symlink_to(place)
+            with pytest.raises(BadInputError) as caught:
+                read_episode(link)
+            assert ("secret" in str(caught.value)) == is_told
+            assert ("leads out of its folder" in str(caught.value)) != is_told

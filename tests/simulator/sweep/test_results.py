@@ -160,3 +160,19 @@ def test_a_file_without_header_is_overwritten(tmp_path: Path) -> None:
     results.append(row(0))
     results.finish()
     assert [json.loads(line) for line in path.read_text().splitlines()] == [row(0), row(1)]
+
+
+@pytest.mark.parametrize("header", [{**HEADER, "plan": "secret"}, {**HEADER, "plan": {"seeds": "secret"}}])
+def test_nothing_is_quoted_of_what_a_link_leads_to(tmp_path: Path, header: ResultRow) -> None:
+    """A link within its folder is read like the file itself."""
+    home = tmp_path / "home"
+    home.mkdir()
+    for place, is_told in ((tmp_path / "far.jsonl", False), (home / "near.jsonl", True)):
+        place.write_bytes(encode_row(header))
+        link = home / f"link-{place.name}"
+        link.symlink_to(place)
+        with pytest.raises(BadInputError) as caught:
+            open_results(link, FORM)
+        assert str(link) in str(caught.value)
+        assert ("secret" in str(caught.value)) == is_told
+        assert ("leads out of its folder" in str(caught.value)) != is_told
