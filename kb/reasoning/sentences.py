@@ -23,7 +23,7 @@ ANNOTATION_MARK = "%!"  # begins a comment that is an annotation
 PLACEHOLDER = re.compile(r"\{(_*[A-Z][A-Za-z0-9_']*)(?:/(100?))?\}")  # a variable, and by what it is divided
 STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 PREDICATE_FORM = re.compile(r"(_*[a-z][A-Za-z0-9_']*)(?:\(([^()]*)\))?")
-ONE_OF_SEVERAL = re.compile(r"(?<![\w.-])1 (square|field|command|impression|parameter)s\b")  # a plural after 1
+ONE_OF_SEVERAL = re.compile(r"(?<![\w.-])1 (square|field|command|impression|parameter|errand)s\b")  # a plural after 1
 Place = tuple[int, int]  # line and column, from 1
 
 
