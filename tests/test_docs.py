@@ -74,7 +74,8 @@ def test_commands_of_a_page_do_what_it_shows(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Run the `console` blocks: commands of `utak` after "$ ", below each what it prints; "..." stands for anything."""
-    (tmp_path / "examples").symlink_to(ROOT / "examples", target_is_directory=True)
+    for name in ("examples", "docs"):
+        (tmp_path / name).symlink_to(ROOT / name, target_is_directory=True)
     monkeypatch.chdir(tmp_path)
     for block in fences(page, "console"):
         for part in re.split(r"^\$ ", block, flags=re.MULTILINE)[1:]:

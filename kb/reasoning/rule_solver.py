@@ -119,6 +119,7 @@ def _grounded(
     messages: list[str] = []
     calculator = Calculator()
     control = clingo.Control([*options], logger=lambda _code, text: messages.append(text), message_limit=20)
+    control.enable_cleanup = False  # what a search finds never to hold is observed all the same
     try:
         control.add("base", [], "\n".join(rules))
         control.add("base", [], program)

@@ -148,7 +148,7 @@ class Activities:
         """Return that no step of the task plan settles what is open; `limit` where users' rules forbid such a step."""
         if not self.errands.forbidden:
             return nothing_to_do("no step of the task plan settles what is open")
-        return Decision(None, "users' rules forbid steps of the task plan that settle it", TaskVerdict.LIMIT)
+        return Decision(None, f"users' rules forbid {self.errands.forbidden}", TaskVerdict.LIMIT)
 
     def _allowed(self, decision: Decision, turn: StageTurn) -> Decision:
         """Return a decision; the verdict `limit` in place of a grasp while users' rules leave no plan so far."""
@@ -162,7 +162,7 @@ class Activities:
             return replace(last, why=f"{turn.stage} holds", verdict=TaskVerdict.DONE)
         why = last.why
         if end.forbidden:
-            forbidden = " and ".join(self.errands.forbidden) or "all that may still be done"
+            forbidden = self.errands.forbidden or f"all that may still be done{end.forbidden}"
             why = f"{turn.stage} cannot be attained: users' rules forbid {forbidden}"
         elif last.verdict is None:
             why = f"what the task asks for holds, but {self._doubt_of_done(turn.situation)}"

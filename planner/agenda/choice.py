@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kb.reasoning.solver import solve
+from kb.reasoning.user_rules import rules_to_blame
 from kb.tracing.decisions import record_decisions
 from planner.decision import Decision, TaskVerdict
 from planner.navigation.subgoals import PLANNER_ASP
@@ -33,11 +34,16 @@ class StageEnd(NamedTuple):
     Attributes
     ----------
     verdict : `done` for a stage that is attained; else the verdict with which the robot gives up.
-    forbidden : whether users' rules forbid all that may still be done.
+    forbidden : by which users' rules all that may still be done is forbidden, in words; "" where it is not.
     """
 
     verdict: TaskVerdict
-    forbidden: bool = False
+    forbidden: str = ""
+
+
+def _chooses_nothing(atoms: Sequence[Any]) -> bool:
+    """Return whether an answer, given by the shown atoms, has neither an activity nor an end."""
+    return not any(atom.name in ("do", "verdict", "stage_attained") for atom in atoms)
 
 
 class Agenda:
@@ -72,7 +78,11 @@ class Agenda:
                 return StageEnd(TaskVerdict(str(atom.arguments[0])))
             if atom.name == "stage_attained":
                 return StageEnd(TaskVerdict.DONE)
-        return StageEnd(TaskVerdict.LIMIT, forbidden=True)
+        agenda, *rules = self._files
+        blamed = rules_to_blame(agenda, rules, self._facts, _chooses_nothing)
+        return StageEnd(
+            TaskVerdict.LIMIT, f", by the rule at {' and '.join(blamed)}" if blamed else ", as far as is known"
+        )
 
     def note(self, activity: Activity, decision: Decision) -> None:
         """Note that an activity came to no command, and why."""

@@ -25,7 +25,7 @@ class ErrandRunner:
     Attributes
     ----------
     intention : owns the plan.
-    forbidden : the steps that users' rules forbade where something was open, and no step was left to settle it.
+    forbidden : the steps that users' rules forbade where something was open and none was left to settle it, in words.
     """
 
     def __init__(self, transporter: Transporter, where: DestinationFunction, pull: bool = True) -> None:
@@ -39,7 +39,7 @@ class ErrandRunner:
         """
         self._transporter = transporter
         self.intention = Intention(WhereGoalsHold(transporter.place, transporter.origin_of, where), pull)
-        self.forbidden: tuple[str, ...] = ()
+        self.forbidden = ""
 
     def next(self, turn: StageTurn) -> Decision:
         """Return the next command for the task plan; nothing where it has no errand for an object next.
@@ -51,7 +51,7 @@ class ErrandRunner:
         ----------
         turn : the stage, what is believed, and the tools.
         """
-        self.forbidden = ()
+        self.forbidden = ""
         turn = self._updated(turn)
         if self.is_shut_out(turn.situation):
             why = f"{turn.stage} cannot be attained: {self.blamed}"

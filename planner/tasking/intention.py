@@ -170,8 +170,8 @@ class Intention:
             self._problem = problem_of(stage, situation, self.where)
         return situation
 
-    def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, tuple[str, ...]]:
-        """Plan what settles what is open; return its first step, and what users' rules forbid where there is none.
+    def settle(self, stage: Stage, situation: Situation, given: Sequence[str]) -> tuple[str, str]:
+        """Plan what settles what is open; return its first step, or "" and the words for what users' rules forbid then.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ class Intention:
         plan, left = plan_that_settles(problem, stage, situation, given, refuted)
         step = step_that_settles(plan, any(fact.startswith("stuck(") for fact in given))
         self._settling = None if step is None else plan
-        return ("", left) if step is None else (str(step), ())
+        return ("", left) if step is None else (str(step), "")
 
     @property
     def meanings(self) -> Mapping[str, str]:

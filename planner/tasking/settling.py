@@ -1,6 +1,7 @@
 """The task plan where something is open: steps that find, see, feel or move away what is not settled."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from kb.reasoning.user_rules import rules_to_blame
 from planner.oracles.problem import TaskProblem
@@ -18,12 +19,12 @@ def plan_that_settles(
     situation: Situation,
     given: Sequence[str],
     refuted: tuple[RefutedStep, ...] = (),
-) -> tuple[TaskPlan, tuple[str, ...]]:
-    """Return the plan of the encoding where something is open, and the steps that users' rules may have kept out of it.
+) -> tuple[TaskPlan, str]:
+    """Return the plan of the encoding where something is open, and words for what users' rules keep out of it.
 
     Geometry is not asked about it: what is settled changes all that follows. Goals that depend on what is settled are
-    unmet in it. Users' rules that no such plan fulfils are left out: it is not the end. The steps
-    returned are all that may settle something, where users have rules; () where they have none.
+    unmet in it. Users' rules that no such plan fulfils are left out: it is not the end. The words
+    name the steps that may settle something, and the rules because of which there is none; "" where there is one.
 
     problem : things, places and goals; None while they are not known.
     given : what is not known, what activities came to, and what the robot is stuck with, as facts without full stops.
@@ -53,7 +54,16 @@ def plan_that_settles(
     hoped = [errand.goal for errand in found.errands if errand.settles and errand.goal]
     unmet = tuple(dict.fromkeys([*hoped, *found.unmet]))
     plan = TaskPlan(found.errands, unmet, proved=found.proved, rounds=1, goals=placed, refutations=refuted)
-    return plan, found.left if situation.rules else ()
+    if not situation.rules or not found.left or step_that_settles(plan, True) is not None:
+        return plan, ""
+    blamed = rules_to_blame(TASK_ENCODING, situation.rules, given_facts, _settles_nothing, without)
+    return plan, f"{' and '.join(found.left)}, by the rule at {' and '.join(blamed)}" if blamed else ""
+
+
+def _settles_nothing(atoms: Sequence[Any]) -> bool:
+    """Return whether a plan, given by the shown atoms, has no step that settles something."""
+    steps = (str(atom.arguments[0]) for atom in atoms if atom.name == "occurs")
+    return not {str(atom.arguments[0]) for atom in atoms if atom.name == "left"}.intersection(steps)
 
 
 def step_that_settles(plan: TaskPlan, stuck: bool) -> Errand | None:

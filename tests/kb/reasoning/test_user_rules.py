@@ -12,6 +12,7 @@ from kb.language.diagnostics import BadInputError
 from kb.reasoning.encodings import KB_ENCODINGS, encoding_path, encoding_text
 from kb.reasoning.interfaces import USER_RULE_INTERFACES
 from kb.reasoning.query import QueryEngine
+from kb.reasoning.rule_solver import solve_with_rules
 from kb.reasoning.rulebook import INTERNAL_PREDICATES
 from kb.reasoning.solver import solve
 from kb.reasoning.user_rules import RULE_LIMITS, RuleLimits, read_rules, read_tested_rules, solve_with_user_rules
@@ -66,6 +67,13 @@ def test_predicates_of_ones_own_are_no_internal_ones_of_that_name(tmp_path: Path
     assert solve([KB_ENCODINGS / "shapes.lp", *own], facts) == usual
     stated = written(tmp_path, "sure(X) :- fit(X, square, _, _). shape(X, disc, 7) :- sure(X).")
     assert "shape(o1,disc,7)" in map(str, solve([KB_ENCODINGS / "shapes.lp", *stated], facts) or ())
+
+
+def test_a_rule_that_has_an_instance_applied_also_where_it_lets_nothing_of_it_hold() -> None:
+    """Of three rules the first forbids what the second says, whether there is an answer or none; the third is idle."""
+    rules, conditions = [":- a.", "b :- a.", "c :- d."], ["a", "a", "d"]
+    for program in ("{ a }.", "a."):
+        assert solve_with_rules(program, rules, [], 100, conditions)["applied"] == [0, 1]
 
 
 def test_constants_hold_in_their_file_only(tmp_path: Path) -> None:

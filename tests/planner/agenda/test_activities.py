@@ -46,14 +46,14 @@ def test_before_a_verdict_walls_are_felt_and_the_record_says_what_was_refused_be
 def test_a_rule_that_forbids_an_activity_ends_in_limit_and_says_so(tmp_path: Path) -> None:
     decision, choice = decided(tmp_path, ":- do(feel(_)).")
     assert (decision.command, decision.verdict) == (None, "limit")
-    assert "users' rules forbid all that may still be done" in decision.why
+    assert f"users' rules forbid all that may still be done, by the rule at {tmp_path}" in decision.why
     assert choice.answer == ("stuck(robot,impossible)",)
 
 
 def test_a_rule_that_forbids_a_step_of_the_plan_ends_in_limit_and_says_so(tmp_path: Path) -> None:
     decision, _ = decided(tmp_path, ":- occurs(feel(_), T), time(T). :- occurs(bare(_), T), time(T).")
     assert (decision.command, decision.verdict) == (None, "limit")
-    assert "users' rules forbid bare(robot) and feel(robot)" in decision.why
+    assert f"users' rules forbid bare(robot) and feel(robot), by the rule at {tmp_path}" in decision.why
 
 
 def test_a_rule_about_what_the_robot_is_stuck_with_counts_only_there(tmp_path: Path) -> None:

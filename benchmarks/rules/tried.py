@@ -1,0 +1,123 @@
+"""The rules that are tried, each with how the true track of a run shows that it was kept."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from benchmarks.rules.track import WALL_AT, TrueTrack
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A rule that is tried.
+
+    Attributes
+    ----------
+    kind : what it is about.
+    text : the rule.
+    kept : whether the rule was kept, by what truly happened; None for a rule that is to be refused.
+    examples : the scenarios in which it is tried.
+    refused : what the message of the refusal says; "" for a rule that counts.
+    """
+
+    kind: str
+    text: str
+    kept: Callable[[TrueTrack], bool] | None = None
+    examples: tuple[str, ...] = ()
+    refused: str = ""
+
+
+GO, TWO_DOORS, SQUARE, EXCHANGE = WALL_AT
+WALKS, CARRIES = (GO, TWO_DOORS), (SQUARE, EXCHANGE)
+PLACED = "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."  # time begins anew with each plan: orders speak of goals
+RULES: dict[str, Tried] = {
+    "no_door": Tried("doors", ":- occurs(go(D), T).", lambda t: not t.passes(), (GO, SQUARE)),
+    "no_narrow": Tried(
+        "doors",
+        ":- occurs(go(D), T), width(D, W), W < 450.",
+        lambda t: t.wall != WALL_AT[GO] or not t.passes(),
+        WALKS,
+    ),
+    "no_wide": Tried(
+        "doors", ":- occurs(go(D), T), width(D, W), W > 450.", lambda t: t.wall == 21 or not t.passes(), WALKS
+    ),
+    "no_first_door": Tried("doors", ":- occurs(go(d1), T).", lambda t: True, (TWO_DOORS, SQUARE)),
+    "nothing_through": Tried(
+        "doors",
+        ":- occurs(go(D), T), brought(X, _, _, T), X != utak.",
+        lambda t: not any(t.passes(name) for name in t.things),
+        CARRIES,
+    ),
+    "y_first": Tried(
+        "orders",
+        f"{PLACED} :- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not placed(Y, T).",
+        lambda t: t.moved()[:1] != ["g1"] or len(t.things) < 2 or t.wall == 23,
+        (EXCHANGE, SQUARE),
+    ),
+    "x_first": Tried(
+        "orders",
+        f"{PLACED} :- brought(Y, _, _, T), meaning(x, X), meaning(y, Y), not placed(X, T).",
+        lambda t: t.moved()[:1] != ["r1"] or t.wall == 23,
+        (EXCHANGE, SQUARE),
+    ),
+    "one_thing": Tried(
+        "counts", ":- #count { X, T : brought(X, _, _, T), X != utak } > 1.", lambda t: len(t.moved()) <= 1, CARRIES
+    ),
+    "one_pass": Tried("counts", ":- #count { D, T : occurs(go(D), T) } > 1.", lambda t: len(t.passes()) <= 1, CARRIES),
+    "no_carry": Tried("counts", ":- brought(X, _, _, _), X != utak.", lambda t: not t.moved(), CARRIES),
+    "dear_doors": Tried("prices", ":~ occurs(go(D), T). [9@1, D, T]", lambda t: True, (GO, SQUARE)),
+    "cheap_feeling": Tried("prices", "price(feel(S), 1) :- stuck(S, impossible).", lambda t: True, (GO, SQUARE)),
+    "apart": Tried(
+        "end states",
+        ":- horizon(H), at(X, P, H), at(Y, Q, H), X < Y, lies(X, P, R), lies(Y, Q, R).",
+        lambda t: t.ends_east("g1") != t.ends_east("r1"),
+        CARRIES,
+    ),
+    "together": Tried(
+        "end states",
+        ":- horizon(H), at(X, P, H), at(Y, Q, H), X < Y, lies(X, P, R), lies(Y, Q, S), R != S.",
+        lambda t: t.ends_east("g1") == t.ends_east("r1"),
+        (SQUARE,),
+    ),
+    "not_what_is_square": Tried(
+        "meanings", "shape(N, square, 1) :- fit(N, square, _, _).", lambda t: "g1" not in t.moved(), CARRIES
+    ),
+    "x_is_not_large": Tried(
+        "meanings", ":- meaning(x, X), size(X, S), S > 8.", lambda t: "g1" not in t.moved(), CARRIES
+    ),
+    "large_stays": Tried(
+        "own predicates",
+        "big(X) :- size(X, S), S > 8. :- brought(X, _, _, _), big(X).",
+        lambda t: "g1" not in t.moved(),
+        CARRIES,
+    ),
+    "left_is_mine": Tried(
+        "own predicates",
+        "left(X, E) :- offset(X, E, _), object(X). :- brought(X, _, _, _), left(X, E), E < 100000.",
+        lambda t: not t.moved(),
+        CARRIES,
+    ),
+    "stay_in_room": Tried(
+        "world facts",
+        ":- occurs(carry(X, P), T), in(X, R), lies(X, P, S), R != S.",
+        lambda t: not any(t.passes(name) for name in t.things),
+        CARRIES,
+    ),
+    "surely_movable": Tried(
+        "world facts", ":- brought(X, _, _, _), movable(X, C), C < 101.", lambda t: not t.moved(), CARRIES
+    ),
+    "wide_links": Tried(
+        "world facts",
+        ":- occurs(go(D), T), crosses(L, D), link(L, _, _, _, C), C < 9000.",
+        lambda t: not t.passes(),
+        (GO, SQUARE),
+    ),
+    "all_seen": Tried("aggregates", ":- #sum { N, R : unseen(R, N) } > 100000.", lambda t: True, (GO, SQUARE)),
+    "few_doors": Tried(
+        "aggregates", ":- #count { D : connects(D, _, _) } > 9, occurs(go(E), T).", lambda t: True, WALKS
+    ),
+    "a_step_as_a_fact": Tried("refused", "occurs(go(d1), 0).", refused="says what there is"),
+    "an_unknown_step": Tried("refused", ":- occurs(jump(X), T).", refused="unknown step jump/1"),
+    "a_misspelt_word": Tried("refused", ":- widht(D, W), occurs(go(D), T).", refused="did you mean width?"),
+    "a_believed_room": Tried("refused", "in(X, r1) :- held(X).", refused="this changes nothing"),
+    "a_claimed_shape": Tried("refused", "has(X, shape, square, 99) :- candidate(X, _).", refused="shape(N, S, C)"),
+}
