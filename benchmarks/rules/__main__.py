@@ -19,7 +19,7 @@ from typing import Any
 
 from benchmarks.bounded import EXAMPLES_FOLDER
 from benchmarks.rules.track import WALL_AT, TrueTrack
-from benchmarks.rules.tried import GO, RULES
+from benchmarks.rules.tried import GO, TRIED_RULES
 from kb.language.diagnostics import BadInputError
 from simulator.episode.episode import EpisodeLog
 from simulator.run.robots import make_robot
@@ -61,7 +61,7 @@ class RuleRow:
 
 def tried(name: str, example: str) -> RuleRow:
     """Return the row of a rule in a scenario; example is "" for one that is to be refused."""
-    rule = RULES[name]
+    rule = TRIED_RULES[name]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.lp"
         path.write_text(f"{rule.text}\n", encoding="utf-8")
@@ -97,12 +97,12 @@ def table(rows: Sequence[RuleRow]) -> str:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Try the rules, print the table, and return 0 when all rows are right, else 1."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", choices=[*RULES, []], metavar="NAME", help="the rules; all without any")
+    parser.add_argument("names", nargs="*", choices=[*TRIED_RULES, []], metavar="NAME", help="rules; all without any")
     parser.add_argument("--jobs", type=int, default=1, help="processes at a time (default 1)")
     parser.add_argument("-o", dest="output", type=Path, help="write the rows as JSON lines to this file")
     options = parser.parse_args(arguments)
-    names = options.names or list(RULES)
-    jobs = [(name, example) for name in names for example in RULES[name].examples or ("",)]
+    names = options.names or list(TRIED_RULES)
+    jobs = [(name, example) for name in names for example in TRIED_RULES[name].examples or ("",)]
     rows: list[RuleRow] = []
     with ProcessPoolExecutor(options.jobs) as pool:
         for row in pool.map(tried, *zip(*jobs, strict=True)):

@@ -28,8 +28,10 @@ class Tried:
 
 GO, TWO_DOORS, SQUARE, EXCHANGE = WALL_AT
 WALKS, CARRIES = (GO, TWO_DOORS), (SQUARE, EXCHANGE)
-PLACED = "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."  # time begins anew with each plan: orders speak of goals
-RULES: dict[str, Tried] = {
+PLACED_AT_GOAL = (
+    "placed(X, T) :- at(X, P, T), fulfils(X, P, _)."  # time begins anew with each plan: orders speak of goals
+)
+TRIED_RULES: dict[str, Tried] = {
     "no_door": Tried("doors", ":- occurs(go(D), T).", lambda t: not t.passes(), (GO, SQUARE)),
     "no_narrow": Tried(
         "doors",
@@ -49,13 +51,13 @@ RULES: dict[str, Tried] = {
     ),
     "y_first": Tried(
         "orders",
-        f"{PLACED} :- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not placed(Y, T).",
+        f"{PLACED_AT_GOAL} :- brought(X, _, _, T), meaning(x, X), meaning(y, Y), not placed(Y, T).",
         lambda t: t.moved()[:1] != ["g1"] or len(t.things) < 2 or t.wall == 23,
         (EXCHANGE, SQUARE),
     ),
     "x_first": Tried(
         "orders",
-        f"{PLACED} :- brought(Y, _, _, T), meaning(x, X), meaning(y, Y), not placed(X, T).",
+        f"{PLACED_AT_GOAL} :- brought(Y, _, _, T), meaning(x, X), meaning(y, Y), not placed(X, T).",
         lambda t: t.moved()[:1] != ["r1"] or t.wall == 23,
         (EXCHANGE, SQUARE),
     ),

@@ -102,7 +102,7 @@ def _observers(conditions: Sequence[str]) -> list[str]:
 
 def _instances(control: clingo.Control) -> list[int]:
     """Return the numbers, from 0, of the rules whose observers have an instance in a grounded program."""
-    return [atom.symbol.arguments[0].number for atom in control.symbolic_atoms.by_signature("applied__", 1)]
+    return sorted(atom.symbol.arguments[0].number for atom in control.symbolic_atoms.by_signature("applied__", 1))
 
 
 def _grounded(

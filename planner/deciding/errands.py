@@ -7,6 +7,7 @@ end. A thing that is moved aside, or to a spot that the plan chose, is brought t
 from collections.abc import Sequence
 from dataclasses import replace
 
+from kb.reasoning.user_rules import world_facts_named
 from planner.carrying.preconditions import turn_cost
 from planner.deciding.bringing import bring_to_end
 from planner.deciding.stage_turn import StageTurn
@@ -93,9 +94,10 @@ class ErrandRunner:
     def is_shut_out(self, situation: Situation) -> bool:
         """Return whether users' rules leave no plan, and not because they close doors: no other way can be looked for.
 
-        False while it is open where exactly a goal holds.
+        False while it is open where exactly a goal holds, and where rules speak of the world as it is believed now.
         """
-        return bool(self.intention.blamed and not situation.closed and not self.intention.is_open)
+        lasting = not situation.closed and not self.intention.is_open
+        return bool(self.intention.blamed and lasting and not world_facts_named("task", situation.rules))
 
     def blamed_so_far(self, situation: Situation) -> str:
         """Return the users' rules because of which there is no plan as far as is known, in words; "" for none.
