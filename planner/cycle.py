@@ -298,6 +298,7 @@ class Robot:
                 reason = f"all goals hold after {self.steps} commands, and wishes are left"
                 self.verdict, self.finished = Verdict(True, TaskVerdict.DONE, reason), True
                 return
-            reason = f"not done after {self.steps} commands; the next one would be: {decision.why}"
+            blamed = f"; {self.decider.blamed}" if self.decider.blamed else ""
+            reason = f"not done after {self.steps} commands; the next one would be: {decision.why}{blamed}"
             self.verdict = Verdict(False, TaskVerdict.LIMIT, reason)
             self.finished = True

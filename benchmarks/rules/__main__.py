@@ -55,8 +55,8 @@ class RuleRow:
 
     @property
     def right(self) -> bool:
-        """Whether the rule was kept, and what it came to is said."""
-        return self.kept and (self.verdict in ("done", "refused") or self.named)
+        """Whether the rule was kept, and what it came to is said: none that leaves no plan is called idle."""
+        return self.kept and (self.verdict in ("done", "refused") or (self.named and not self.idle))
 
 
 def tried(name: str, example: str) -> RuleRow:
@@ -77,7 +77,7 @@ def tried(name: str, example: str) -> RuleRow:
             return RuleRow(name, rule.kind, example, "refused", said, True, False, message)
         track = TrueTrack([line for line in lines if "step" in line], WALL_AT[example or GO])
         kept = rule.kept is not None and rule.kept(track)
-        named, idle = str(path) in result.reason, any(str(path) in one for one in result.idle_rules)
+        named, idle = (rule.said or str(path)) in result.reason, any(str(path) in one for one in result.idle_rules)
         return RuleRow(name, rule.kind, example, result.verdict, kept, named, idle, result.reason)
 
 

@@ -17,6 +17,7 @@ class Tried:
     kept : whether the rule was kept, by what truly happened; None for a rule that is to be refused.
     examples : the scenarios in which it is tried.
     refused : what the message of the refusal says; "" for a rule that counts.
+    said : what the verdict's reason says in place of the rule's name, where the rule is about what is believed.
     """
 
     kind: str
@@ -24,6 +25,7 @@ class Tried:
     kept: Callable[[TrueTrack], bool] | None = None
     examples: tuple[str, ...] = ()
     refused: str = ""
+    said: str = ""
 
 
 GO, TWO_DOORS, SQUARE, EXCHANGE = WALL_AT
@@ -81,7 +83,11 @@ TRIED_RULES: dict[str, Tried] = {
         (SQUARE,),
     ),
     "not_what_is_square": Tried(
-        "meanings", "shape(N, square, 1) :- fit(N, square, _, _).", lambda t: "g1" not in t.moved(), CARRIES
+        "meanings",
+        "shape(N, square, 1) :- fit(N, square, _, _).",
+        lambda t: not t.ends_east("g1"),
+        CARRIES,
+        said="nothing seen so far is x",
     ),
     "x_is_not_large": Tried(
         "meanings", ":- meaning(x, X), size(X, S), S > 8.", lambda t: "g1" not in t.moved(), CARRIES

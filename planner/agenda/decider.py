@@ -107,6 +107,11 @@ class Decider:
         """The best that was found in place of a plan: it leaves goals unmet; None while there is a plan."""
         return self._intention.attempt
 
+    @property
+    def blamed(self) -> str:
+        """The users' rules because of which there is no plan for all goals, in words; "" for none, or with a plan."""
+        return self._activities.errands.blamed if self._intention.plan is None else ""
+
     def decide(self, model: WorldModel, track: Sequence[XY]) -> Decision:
         """Return what to do after an impression.
 

@@ -137,7 +137,7 @@ def test_facts_of_the_world_model_are_known_to_the_task_plan(tmp_path: Path, rul
     """A rule about nothing but the world leaves no plan where it holds, and the verdict names it."""
     scenario = utak.Scenario.from_text(world=TWO_SQUARES, start="", goal="in(utak, room(next)).")
     rules = rule_file(tmp_path, rule)
-    episode = utak.Run(scenario, rules=[rules], max_steps=30).finish()
+    episode = utak.Run(scenario, rules=[rules], max_steps=12).finish()
     assert (episode.verdict != "done") is blamed
     assert episode.verdict != "impossible"  # what is believed may change
     assert (f"{rules}:1" in episode.reason) is blamed
