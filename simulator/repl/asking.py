@@ -1,6 +1,7 @@
 """Queries and their rows, a page at a time; `facts`, and `since` when a fact holds."""
 
 import re
+from collections.abc import Sequence
 from itertools import groupby
 
 from kb.reasoning.assumptions import canonical_facts
@@ -45,6 +46,28 @@ class Pages:
         return False
 
 
+class FactPages:
+    """The rest of a list of facts, of which a page was printed.
+
+    Parameters
+    ----------
+    facts : all of them.
+    """
+
+    def __init__(self, facts: Sequence[str]) -> None:
+        self._left, self._count = list(facts), len(facts)
+
+    def print_next(self, dialogue: Dialogue) -> bool:
+        """Print the next page. Return whether there is more."""
+        rows = dialogue.printer.page_rows or self._count
+        page, self._left = self._left[:rows], self._left[rows:]
+        dialogue.printer.say("\n".join(page))
+        if self._left:
+            done = self._count - len(self._left)
+            dialogue.printer.note(f"facts 1 to {done} of {self._count}: type ; for more, or a word: facts o1")
+        return bool(self._left)
+
+
 def ask(dialogue: Dialogue, rest: str) -> None:
     """Print the answer to a query: the first page of its rows, or yes, no, don't know."""
     answer = dialogue.ask(rest, MAX_ANSWER_ROWS)
@@ -70,7 +93,11 @@ def facts(dialogue: Dialogue, rest: str) -> None:
     word = rest.removesuffix(".").strip()
     known = dialogue.known_facts()
     found = [fact for fact in known if not word or names_word(fact, word)]
-    dialogue.printer.say("\n".join(found) if found else "none")
+    if not found:
+        dialogue.printer.say("none")
+        return
+    lines = FactPages(found)
+    dialogue.rest = lines if lines.print_next(dialogue) else None
 
 
 def names_word(fact: str, word: str) -> bool:

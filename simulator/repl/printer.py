@@ -6,6 +6,7 @@ Colours and framed tables need `rich`, and a terminal without NO_COLOR. Everythi
 import os
 import shutil
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -46,12 +47,12 @@ class Printer:
 
     def say(self, text: str) -> None:
         """Print an answer."""
-        print(text, flush=True)
+        print(self._broken(text), flush=True)
 
     def tell(self, text: str) -> None:
         """Print a message: an error, or what is being done."""
         sys.stdout.flush()
-        print(text, file=sys.stderr, flush=True)
+        print(self._broken(text), file=sys.stderr, flush=True)
 
     def note(self, text: str) -> None:
         """Print what helps a person to read an answer; nothing on a pipe."""
@@ -100,7 +101,12 @@ class Printer:
             return
         from rich.text import Text
 
-        self._on_console(Text(escape_controls(text), style))
+        self._on_console(Text(escape_controls(self._broken(text)), style))
+
+    def _broken(self, text: str) -> str:
+        """Return a text whose lines are broken between words where the terminal ends; as it is for a pipe."""
+        width = self.width
+        return text if width is None else "\n".join(broken_line(line, width) for line in text.split("\n"))
 
     def _on_console(self, value: Any) -> None:
         """Print a value of rich on the console; raise StreamError when the terminal is gone."""
@@ -109,6 +115,20 @@ class Printer:
             self._console.print(value, soft_wrap=not hasattr(value, "columns"), highlight=False)
         except OSError as error:
             raise StreamError(f"the terminal cannot be written: {error.strerror}") from None
+
+
+def broken_line(line: str, width: int) -> str:
+    """Return a line broken between words so that its parts have at most `width` characters, where words do.
+
+    >>> print(broken_line("  step 1: goes on", 12))
+      step 1:
+        goes on
+    """
+    if len(line) <= width:
+        return line
+    indent = line[: len(line) - len(line.lstrip(" "))] + "  "
+    parts = textwrap.wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(parts) or line
 
 
 def plain_table(columns: Sequence[str], rows: Sequence[Sequence[int | str]]) -> str:

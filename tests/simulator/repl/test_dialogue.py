@@ -366,6 +366,36 @@ def test_pages_of_rows(episode: Path, engine: QueryEngine, capsys: pytest.Captur
     assert talk(dialogue, capsys, ";")[0].endswith("\n12000\n")
 
 
+def test_pages_of_facts(episode: Path, engine: QueryEngine, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each fact comes once, and all of them at once on a pipe."""
+    dialogue = dialogue_of(episode, engine)
+    whole = talk(dialogue, capsys, "facts")[0].splitlines()
+    dialogue.printer.is_terminal = True
+    out, _ = talk(dialogue, capsys, "facts")
+    pages = []
+    while found := re.search(r"\nfacts 1 to (\d+) of (\d+): .*\n$", out):
+        pages += out[: found.start()].splitlines()
+        assert (len(pages), len(whole)) == tuple(map(int, found.groups()))
+        out, _ = talk(dialogue, capsys, ";")
+    assert pages and [*pages, *out.splitlines()] == whole
+    assert talk(dialogue, capsys, ";")[1] == "there are no more rows\n"
+
+
+def test_text_is_broken_between_words_on_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On a pipe no line is broken; a word that is too long stays whole."""
+    text = "  step 12: carries o2 to the east, as the plan says it is to be done\n" + "x" * 50
+    monkeypatch.setenv("COLUMNS", "30")
+    for is_terminal in (True, False):
+        printer = Printer(is_terminal)
+        printer.say(text)
+        printer.tell(text)
+        for said in capsys.readouterr():
+            assert said.split() == text.split()
+            assert (max(len(line) for line in said.splitlines()[:-1]) <= 30) == is_terminal
+
+
 COMMAND_WORDS = """?- facts step back goto run diff since assume retract goal plan show truth why step. ; help save
     node(o1) shape(o1,square,90). door(d9). kind(X,object,C), 0 1 2 99 at(utak,x). at(utak,corner(southwest)). utak not
     . , ( { :- #include X bound(x,o2). 1..99999999"""
