@@ -1,5 +1,6 @@
 """The docs are true: pages made from the code are fresh, links lead somewhere, modules exist, and commands run."""
 
+import io
 import re
 import shlex
 import subprocess
@@ -110,3 +111,16 @@ def test_benchmarks_that_a_page_names_have_the_options_it_shows(page: Path) -> N
         kinds = {"--plain", "--snug", "--loose"} if "add_kinds" in sources else set[str]()
         for option in re.findall(r"(?<![\w-])(--[\w-]+)", rest.split("#")[0]):
             assert f'"{option}"' in sources or option in kinds, f"{module} {option}"
+
+
+def test_the_conversation_at_the_prompt_goes_as_the_page_shows(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Type what stands behind `utak N>` in docs/asking.md; what is printed stands below it."""
+    monkeypatch.chdir(ROOT)
+    block = (ROOT / "docs" / "asking.md").read_text().partition("    $ utak repl ")[2].partition("\n\n")[0]
+    scenario, *rest = [line.removeprefix("    ") for line in block.splitlines()]
+    typed = [re.sub(r"^utak \d+> ", "", line) for line in rest if re.match(r"utak \d+> ", line)]
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO("\n".join([*typed, ""]).encode())))
+    assert main(["repl", scenario]) == 0
+    assert capsys.readouterr().out.splitlines() == [line for line in rest if not re.match(r"utak \d+> ", line)]

@@ -1,7 +1,7 @@
 """Numba's cache on disk, made safe: a damaged file counts as missing, and what cannot be written is read all the same.
 
-Files are as numba writes them, with a seal at their end: a digest of all bytes before it. Files without a seal, which
-numba wrote by itself, are read, too.
+Files are as numba writes them, with a seal at their end: a digest of all bytes before it. A file without one counts as
+damaged, too: the damage may be in the seal.
 """
 
 import hashlib
@@ -78,9 +78,9 @@ class _ReadOnlyLocator(caching.InTreeCacheLocator):  # type: ignore[misc]
 
 
 def is_whole(path: str) -> bool:
-    """Return whether a file has a seal that fits, or none. Raises OSError when it cannot be read."""
+    """Return whether a file has a seal that fits. Raises OSError when it cannot be read."""
     contents, seal, digest = Path(path).read_bytes().rpartition(SEAL)
-    return not seal or hashlib.sha256(contents).digest() == digest
+    return bool(seal) and hashlib.sha256(contents).digest() == digest
 
 
 def allow_reading() -> None:

@@ -63,7 +63,7 @@ PROMPT_COMMANDS: Mapping[str, PromptCommand] = {
         "The body of a rule over the facts at this step. It goes on over lines to its full stop; an empty line ends\n"
         "it, too. Where it begins with an atom, ?- may be left out. Long answers come a page at a time: ; shows more.",
     ),
-    ";": PromptCommand(";", "more rows of the last answer", asking.more),
+    ";": PromptCommand(";", "more rows of the last answer, or more facts", asking.more),
     "facts": PromptCommand(
         "facts [WORD]", "the facts at this step; with a word those that name it", asking.facts, "utak and org are one."
     ),

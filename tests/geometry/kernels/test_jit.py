@@ -167,7 +167,7 @@ def test_damaged_files_in_the_cache_are_made_anew(tmp_path: Path) -> None:
         whole = file.read_bytes()
         middle = len(whole) // 2
         flipped = whole[:middle] + bytes([whole[middle] ^ 4]) + whole[middle + 1 :]
-        for damaged in (b"", whole[:middle], flipped):
+        for damaged in (b"", whole[:middle], flipped, flipped.replace(b"seal of utak", b"seal of utok")):
             file.write_bytes(damaged)
             assert called() == "42 1", (end, len(damaged))
         assert called() == "42 0"
