@@ -367,4 +367,5 @@ def test_nothing_is_proved_of_the_unseen_while_impressions_contradict_each_other
     assert (found.command, found.verdict) == (None, "impossible")
     after = Decider(SQUARE).decide(replace(model, anew=anew, shaken=shaken), [model.place])
     assert (after.command, after.verdict) == (None, verdict)
-    assert found.why.startswith(after.why.partition(";")[0])
+    said = after.why.partition(";")[0].replace("since the map was begun anew", "so far")
+    assert found.why.startswith(said)
