@@ -186,7 +186,6 @@ REFUSED = {
     "assume p(X).": "assume:1:3-3: error: X is a variable",
     "assume :- region(_,_,_).": "this rule contradicts what must hold: interpretation.lp",
     "assume a :- not a.": "it contradicts itself",
-    "assume choose(a).": "rules of users do not reach",
     'assume #include "x".': "#include is a directive",
     "retract door(d1).": "nothing is assumed here",
     "retract": "retract takes an assumption",
