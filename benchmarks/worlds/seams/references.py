@@ -13,7 +13,7 @@ from benchmarks.worlds.scenes import PlacedThing, wkt
 
 REFERENCE_KIND = "reference"
 TWO_THINGS_FACTS = "object(x). shape(x, square).\nobject(y). shape(y, brick).\n"
-NEAR_OTHER = 1.6  # squares between two things of which one is within a square of the other's squares, off the grid
+NEAR_OTHER = 2  # squares between two things of which one is within a square of the squares under the other
 REFERENCE_GOALS = {
     "beside_xy_fixed": "beside(x, y).\n",
     "beside_yx_fixed": "beside(y, x).\n",
