@@ -79,8 +79,8 @@ def constraints(task: Task) -> tuple[Fact, ...]:
 
 
 def rests_on_waking(goal: Fact) -> bool:
-    """Return whether it depends on where the robot woke if a goal for the robot itself holds."""
-    return goal.name in (*ORIGIN_GOALS, *TRACK_GOALS) or str(goal.args[1]) == "start"
+    """Return whether it depends on the very place where the robot woke if a goal for the robot itself holds."""
+    return goal.name in TRACK_GOALS or str(goal.args[1]) == "start"
 
 
 def parameters_that_keep_meaning(task: Task, attained: int = 0) -> frozenset[str]:

@@ -5,10 +5,11 @@ Every function does what the system supports and returns whether it did. `missin
 
 import os
 import queue
+import signal
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from types import ModuleType
 from typing import Any
 
@@ -46,6 +47,38 @@ def missing_features() -> list[str]:
     if _fcntl is None and _msvcrt is None:
         missing.append("episodes are not locked on this system: two runs can write to one file")
     return missing
+
+
+@contextmanager
+def alarms(seconds: float, interval: float, ring: Callable[[], None]) -> Iterator[None]:
+    """Call a function, which raises, while a `with` block goes on; not outside of the main thread, nor on Windows.
+
+    Parameters
+    ----------
+    seconds : of wall-clock time until it is called first.
+    interval : between two calls, for one may fall where errors are ignored.
+    """
+    if threading.current_thread() is not threading.main_thread() or not hasattr(signal, "setitimer"):
+        yield
+        return
+    is_armed = True
+
+    def rung(_number: int, _frame: object) -> None:
+        """Call the function, unless the block has ended."""
+        if is_armed:
+            ring()
+
+    before = signal.signal(signal.SIGALRM, rung)
+    try:
+        try:
+            signal.setitimer(signal.ITIMER_REAL, max(seconds, 1e-6), interval)
+            yield
+        finally:
+            is_armed = False  # an alarm may come just before: what follows is done all the same
+    finally:
+        is_armed = False
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def limit_resource(kind: str, most: int) -> bool:

@@ -1,10 +1,10 @@
 """A limit of wall-clock time for a run, looked at between two steps; it also cuts a step off."""
 
-import signal
-import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+from kb.language.operating_system import alarms
 
 ALARM_INTERVAL = (
     0.1  # seconds between two alarms: the one that falls where errors are ignored is repeated; a convention
@@ -47,27 +47,13 @@ class TimeLimit:
 
         Not outside of the main thread, and not where the system knows no such alarms.
         """
-        in_main = threading.current_thread() is threading.main_thread()
-        if self._clock is not time.monotonic or not in_main or not hasattr(signal, "setitimer"):
+        if self._clock is not time.monotonic:
             yield
             return
 
-        is_armed = True
+        def cut() -> None:
+            """End the block."""
+            raise TimeOver
 
-        def cut(_number: int, _frame: object) -> None:
-            """End the block, unless it has ended."""
-            if is_armed:
-                raise TimeOver
-
-        before = signal.signal(signal.SIGALRM, cut)
-        try:
-            try:
-                left = self.seconds - (self._clock() - self._begun)
-                signal.setitimer(signal.ITIMER_REAL, max(left, 1e-6), ALARM_INTERVAL)
-                yield
-            finally:
-                is_armed = False  # an alarm may come just before: what follows is done all the same
-        finally:
-            is_armed = False
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-            signal.signal(signal.SIGALRM, before)
+        with alarms(self.seconds - (self._clock() - self._begun), ALARM_INTERVAL, cut):
+            yield

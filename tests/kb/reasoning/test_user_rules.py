@@ -112,7 +112,6 @@ def test_a_search_that_is_cut_off_is_refused(tmp_path: Path) -> None:
 
 WRONG = {
     "colour(X,r,90) :- shape(X,disc,C).": "rules0.lp:1:1-1: error: this changes nothing",
-    "has(X,shape,disc,90) :- candidate(X,C).": "has/4 says what there is, and rules add nothing to it",
     "in(X,r1) :- held(X).": "this changes nothing",
     "door(99,100).": "rules0.lp:1:6-6: error: there is no neck 99",
     'kind("x",object,"90").': 'rules0.lp:1:6-6: error: a name was expected, not "x"',

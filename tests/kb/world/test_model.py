@@ -138,7 +138,7 @@ ROOM = [
 
 
 def test_a_square_seen_from_one_side_is_believed() -> None:
-    model = walked(ROOM, [(0, 2), (-2, 2), (3, 0)], colour="g").model
+    model = walked(ROOM, [(0, 2), (0, 2), (-2, 0), (3, 0)], colour="g").model
     thing = model.objects[0]
     assert thing.confidence == 95
     assert thing.open == 0
@@ -150,7 +150,7 @@ def test_a_square_seen_from_one_side_is_believed() -> None:
 
 
 def test_an_object_that_reaches_into_the_robots_square_leaves_it_open() -> None:
-    walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
+    walk = walked(ROOM, [(0, 2), (0, 2), (-2, 0), (3, 0), (0, -4), (-3, 0)], colour="g")
     x, y = utak_in(ROOM)
     seen = impression(world_of(ROOM), (x - 2, y), colour="g")
     here = walk.model.view.locate(*walk.model.place)
@@ -198,7 +198,7 @@ def test_walls_stay_walls_within_the_tolerance_of_a_held_object() -> None:
 def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
     def grasped(aside: int, felt: str | None, angle: int = 0, wall: bool = False) -> str | None:
         """Return what is held after a grasp to the north, if an object lies `aside` squares to the east of it."""
-        walk = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g")
+        walk = walked(ROOM, [(0, 2), (0, 2), (-2, 0), (3, 0), (0, -4), (-3, 0)], colour="g")
         (x, y), knowledge = utak_in(ROOM), walk.knowledge
         seen = replace(impression(world_of(ROOM), (x - 2, y), colour="g"), touch=(felt, *[None] * 7))
         knowledge.perceive(Move(0.0, 0.0), seen)
@@ -212,7 +212,7 @@ def test_a_felt_object_is_in_hand_after_a_grasp_in_its_direction() -> None:
         knowledge._grasp("north")
         return knowledge.memory.in_hand
 
-    name = walked(ROOM, [(0, 2), (-2, 2), (3, 0), (-3, -4)], colour="g").model.objects[0].name
+    name = walked(ROOM, [(0, 2), (0, 2), (-2, 0), (3, 0), (0, -4), (-3, 0)], colour="g").model.objects[0].name
     assert grasped(0, None) == name
     assert grasped(1, "g") == name
     assert grasped(1, "g", wall=True) is None

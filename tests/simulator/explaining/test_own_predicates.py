@@ -57,8 +57,9 @@ def test_an_atom_of_an_encoding_is_explained_and_so_is_its_absence(
     asked: tuple[Questions, Episode, list[str]],
 ) -> None:
     """A predicate that users' rules define in an encoding alone is answered from what the encoding was given."""
-    questions, _, _ = asked
-    call = next(one for one in reversed(questions.beliefs.record.decisions(2)) if one.encoding == "interpretation")
+    questions, episode, _ = asked
+    last = questions.beliefs.record.decisions(len(episode.steps) - 1)
+    call = next(one for one in reversed(last) if one.encoding == "interpretation")
     extents = {parts[0]: int(parts[1]) for parts in (f[7:-1].split(",") for f in call.facts if f.startswith("extent("))}
     assert {length > 20 for length in extents.values()} == {True, False}
     for region, length in extents.items():
