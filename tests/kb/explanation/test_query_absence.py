@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from kb.explanation.programs import ExplanationError
+from kb.explanation.programs import DecisionProgram, ExplanationError
 from kb.explanation.query_absence import explain_query_absence
 from kb.language.diagnostics import BadInputError
 from kb.reasoning.query import QueryEngine
@@ -28,6 +28,14 @@ POOL = [
     "kind(o1,object,95)", "kind(o2,object,90)", "kind(o3,verge,99)", "offset(o1,100,200)", "offset(o2,300,400)",
     "held(o1)", "shape(o1,square,90)", "shape(o1,square,60)", "door(d1)", "connects(d1,r1,r2)", "room(r1)",
 ]  # fmt: skip
+
+
+@pytest.fixture(autouse=True, scope="module")
+def time_enough() -> Iterator[None]:
+    """Give explanations so much time that none is given up on a busy machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(DecisionProgram.__init__, "__defaults__", ((), 120.0))
+        yield
 
 
 @pytest.fixture(scope="module")

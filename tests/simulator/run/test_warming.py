@@ -7,6 +7,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
+from shutil import copytree, ignore_patterns
 
 import pytest
 
@@ -148,7 +149,10 @@ def compiling(**environment: str) -> "subprocess.CompletedProcess[str]":
 
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
 def test_kernels_are_kept_in_the_users_cache_where_the_installation_cannot_be_written(monkeypatch, tmp_path) -> None:
+    # A copy: kernels that the installation keeps already would be read.
+    copytree(ROOT / "geometry", tmp_path / "code" / "geometry", ignore=ignore_patterns("__pycache__"))
     place = {"XDG_CACHE_HOME": str(tmp_path), "NUMBA_CACHE_LOCATOR_CLASSES": "UserWideCacheLocator"}
+    place |= {"PYTHONPATH": str(tmp_path / "code"), "PYTHONSAFEPATH": "1"}
     assert "compiling" in compiling(**place).stderr
     assert "compiling" not in compiling(**place).stderr
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
