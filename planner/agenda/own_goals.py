@@ -48,7 +48,7 @@ class Round:
     before: float = 0.0
 
     def besides(self, track: Sequence[XY], node: Node, back: bool) -> float:
-        """Return by how many degrees the whole track goes round the thing besides the way round, shortest way back.
+        """Return by how many degrees the robot goes round the thing before this way round and on the shortest way back.
 
         track : where the robot has been, (x, y) in squares, map frame. back : whether it goes back to where it woke.
         """
@@ -217,7 +217,7 @@ class OwnGoals:
         assert node is not None
         is_home = (np.floor(track[0]) == np.floor(model.place)).all()
         winding = winding_number(track, node)
-        besides = self._round.besides(turn.track, node, back=any(map(is_back_at_start, situation.task.goals)))
+        besides = self._round.besides(turn.track, node, back=any(map(_is_back_at_start, situation.task.goals)))
         if is_home and abs(winding) == 1 and abs(besides + 360.0 * winding) >= LEAST_ROUND:
             return _attained(f"{stage} holds", turn)
         offered = encircling_routes(cost_maps, track, node)
@@ -234,7 +234,7 @@ class OwnGoals:
         return Decision(move, f"the way round {name}; {stage}")
 
 
-def is_back_at_start(goal: Fact) -> bool:
+def _is_back_at_start(goal: Fact) -> bool:
     """Return whether a goal is that the robot is where it woke."""
     return goal.name == "at" and str(goal.args[0]) == ROBOT and str(goal.args[1]) == "start"
 

@@ -83,8 +83,9 @@ class Pursuer:
         """
         model = situation.model
         fewest = FewestMoves(situation.cost_maps) if stage.carried else None
+        round_doors = without_priced_doors(situation)
         while True:
-            offered = with_door_prices(self._circles.priced(subgoals, model), situation)
+            offered = [_priced(one, situation, round_doors)[0] for one in self._circles.priced(subgoals, model)]
             if fewest is not None:
                 offered = fewest.priced(offered)
             subgoal = choose(offered, situation.cost_maps, self._kept.subgoal(model))
@@ -95,18 +96,12 @@ class Pursuer:
                 return taken
             if model.held is not None:
                 return Decision(Release(), f"{model.held} is released, because the robot must walk; {stage}")
-            decision = self._walk(subgoal, stage, *self._way_round(subgoal, situation, fewest))
+            _, within = _priced(subgoal, situation, round_doors)
+            ways = fewest if fewest is None or within is situation else FewestMoves(within.cost_maps)
+            decision = self._walk(subgoal, stage, within, ways)
             if decision.command is None or not self._circles.noticed(model, decision.command):
                 return decision
             self._circles.tire(to_map_squares(subgoal.squares, model))
-
-    @staticmethod
-    def _way_round(
-        subgoal: Subgoal, situation: Situation, fewest: FewestMoves | None
-    ) -> tuple[Situation, FewestMoves | None]:
-        """Return the situation in which the way to a subgoal leads, and what finds routes of few moves, if any."""
-        _, within = _priced(subgoal, situation, without_priced_doors(situation))
-        return within, fewest if fewest is None or within is situation else FewestMoves(within.cost_maps)
 
     def pursue_look(self, look: Subgoal | None, stage: Stage, situation: Situation) -> Decision | None:
         """Return the next command towards a look, or the verdict `limit` when no way leads there; None for no look.
@@ -232,16 +227,6 @@ class Pursuer:
         return choose_route(offered, situation.cost_maps, before, situation.doors, forbidden, prices)
 
 
-def with_door_prices(subgoals: Sequence[Subgoal], situation: Situation) -> list[Subgoal]:
-    """Return subgoals, in order, with what a pass through doors costs that users' rules price, or the way round them.
-
-    Of several priced doors the least price counts. Where the way round costs no more, only the squares are left to
-    which it leads.
-    """
-    within = without_priced_doors(situation)
-    return [_priced(subgoal, situation, within)[0] for subgoal in subgoals]
-
-
 def without_priced_doors(situation: Situation) -> Situation:
     """Return the situation in which the doors that users' rules price are shut; the same one where there are none."""
     priced = [door for door in situation.doors if door.name in situation.door_prices]
@@ -250,6 +235,9 @@ def without_priced_doors(situation: Situation) -> Situation:
 
 def _priced(subgoal: Subgoal, situation: Situation, within: Situation) -> tuple[Subgoal, Situation]:
     """Return a subgoal with what its way costs by the prices of doors, and the situation in which that way leads.
+
+    Of several priced doors the least price counts. Where the way round them costs no more, only the squares are left to
+    which it leads.
 
     within : the situation in which the priced doors are shut.
     """
